@@ -1,10 +1,10 @@
 //! Planes and checkerboards: horizons, integers, great heights and distances, and surfaces in one plane.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
+    inputs::{MIDDLE, Random},
     oracle::ALL_SIZES,
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
@@ -27,10 +27,9 @@ fn horizon(random: &mut Random) -> Input {
     let eye = random.between([-9.0, 0.5, -9.0], [9.0, 4.0, 9.0]);
     let level = random.between([-1.0, 0.0, -1.0], [1.0, 0.0, -1.0]);
     input(along(eye, level), &[board(0.0, 1.0)]).at(move |random| {
-        let column = random.pixel();
-        let below = random.power(-13.0, -0.01);
-        let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
-        (column, SIZE / 2, offset)
+        let (column, below) = (random.pixel(), random.power(-13.0, -0.01));
+        let x = random.within(-0.5, 0.5);
+        [(column, x), (SIZE / 2, -0.5 + below)]
     })
 }
 
@@ -45,14 +44,10 @@ fn parallels(random: &mut Random) -> Input {
     let mut camera = along(eye, level);
     camera.up = random.pick(&[DVec3::Y, DVec3::NEG_Y]);
     input(camera, &[board(0.0, 1.0)]).at(move |random| {
-        let column = random.pixel();
-        let x = random.within(-0.5, 0.5);
-        let (row, y) = random.pick(&[
-            (SIZE / 2, -0.5),
-            (SIZE / 2, (-0.5_f64).next_up()),
-            (SIZE / 2 - 1, 0.5_f64.next_down()),
-        ]);
-        (column, row, dvec2(x, y))
+        let column = (random.pixel(), random.within(-0.5, 0.5));
+        let [before, middle] = MIDDLE;
+        let behind = (SIZE / 2, (-0.5_f64).next_up());
+        [column, random.pick(&[middle, behind, before])]
     })
 }
 
@@ -103,15 +98,14 @@ fn corners(random: &mut Random) -> Input {
     let mut camera = along(eye, DVec3::NEG_Y);
     camera.up = random.pick(&[DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z]);
     input(camera, &[board(0.0, size)]).at(move |random| {
-        let [x, y] = [0, 0].map(|_: u32| {
+        [0, 0].map(|_: u32| {
             let pixel = random.pixel();
             let beside = random.pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 1e5]) * f64::EPSILON / 4.0;
             match random.below(2) {
                 0 => (pixel, -0.5 + beside),
                 _ => (pixel, 0.5_f64.next_down() - beside),
             }
-        });
-        (x.0, y.0, dvec2(x.1, y.1))
+        })
     })
 }
 

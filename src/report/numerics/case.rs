@@ -1,10 +1,10 @@
 //! A hard case: what makes its inputs, and where in a scene it asks.
 
 use super::{
-    inputs::Random,
+    inputs::{Point, Random},
     oracle::USUAL_SIZES,
     scenes::scene,
-    trial::{Point, Tally, Trial, axes},
+    trial::{Tally, Trial, axes},
 };
 use crate::scene::{Camera, Scene, Shape};
 

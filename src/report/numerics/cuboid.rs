@@ -1,11 +1,11 @@
 //! Boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and neighbours.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, sphere},
+    inputs::{MIDDLE, Random},
+    scenes::{along, camera, cuboid, sphere},
 };
 use crate::math::Angle;
 
@@ -30,18 +30,13 @@ fn in_planes(random: &mut Random) -> Input {
     let mut camera = along(eye, DVec3::NEG_Z);
     camera.roll = Angle::from_degrees(90.0 * random.whole(-3, 3));
     input(camera, &[cuboid(min, max)]).at(move |random| {
-        let middle = [
-            (SIZE / 2, -0.5),
-            (SIZE / 2, -0.5),
-            (SIZE / 2 - 1, 0.5_f64.next_down()),
-        ];
+        let middle = [MIDDLE[1], MIDDLE[1], MIDDLE[0]];
         let in_plane = random.pick(&middle);
         let other = match random.below(3) {
             0 => random.pick(&middle),
             _ => (random.pixel(), random.within(-0.5, 0.5)),
         };
-        let (x, y) = random.pick(&[(in_plane, other), (other, in_plane)]);
-        (x.0, y.0, dvec2(x.1, y.1))
+        random.pick(&[[in_plane, other], [other, in_plane]])
     })
 }
 
@@ -102,9 +97,8 @@ fn neighbours(random: &mut Random) -> Input {
     }
     let in_plane = |random: &mut Random| {
         let row = random.pixel();
-        let middle = [(SIZE / 2, -0.5), (SIZE / 2 - 1, 0.5_f64.next_down())];
-        let (column, x) = random.pick(&middle);
-        (column, row, dvec2(x, random.within(-0.5, 0.5)))
+        let column = random.pick(&[MIDDLE[1], MIDDLE[0]]);
+        [column, (row, random.within(-0.5, 0.5))]
     };
     input.at(in_plane).mixed()
 }

@@ -1,13 +1,19 @@
 //! Numbers that only look random, of which inputs are made.
 
-use glam::{DVec2, DVec3, dvec2};
+use glam::DVec3;
 use rand::{Rng, RngExt};
 
-use super::{scenes::SIZE, trial::Point};
+use super::scenes::SIZE;
 use crate::sampling::{
     CounterRng,
     rng::{Key, scale},
 };
+
+/// A point of a picture: along each axis a pixel's column or row, and an offset from its centre.
+pub type Point = [(u32, f64); 2];
+
+/// The coordinates on either side of the middle of a picture of the usual size, the second one upon it.
+pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]
@@ -89,11 +95,12 @@ impl Random {
 
     /// A point of a picture of the usual size.
     pub fn point(&mut self) -> Point {
-        (self.pixel(), self.pixel(), self.offset())
+        self.point_of([SIZE; 2])
     }
 
-    /// An offset from the centre of a pixel.
-    pub fn offset(&mut self) -> DVec2 {
-        dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
+    /// A point of a picture of so many columns and rows.
+    pub fn point_of(&mut self, size: [u32; 2]) -> Point {
+        let pixels = size.map(|pixels| self.below(pixels.into()) as u32);
+        pixels.map(|pixel| (pixel, self.within(-0.5, 0.5)))
     }
 }

@@ -1,6 +1,6 @@
 //! Spheres: tangents, small and far ones, huge ones, and eyes inside and on the surface.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
@@ -43,11 +43,11 @@ fn touches(random: &mut Random) -> Input {
     let shape = sphere(dvec3(side * radius, y, -depth), radius);
     input(camera, &[shape]).at(move |random| {
         let steps = random.pick(&[0.0, 0.0, 1.0, 2.0, 64.0, 1e6]) * f64::EPSILON / 4.0;
-        let (column, offset) = match random.below(2) {
+        let column = match random.below(2) {
             0 => (SIZE / 2, -0.5 + steps),
             _ => (SIZE / 2 - 1, 0.5_f64.next_down() - steps),
         };
-        (column, row, dvec2(offset, -0.5))
+        [column, (row, -0.5)]
     })
 }
 

@@ -1,6 +1,6 @@
 //! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the eye.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
@@ -99,13 +99,13 @@ fn lattice_points(random: &mut Random) -> Input {
     let half = f64::from(SIZE) / 2.0;
     input(along(DVec3::ZERO, DVec3::NEG_Z), &shapes).at(move |random| {
         let (x, y) = random.pick(points);
-        let (column, row) = (half + place[0] + x, half - place[1] - y);
-        let beside = |random: &mut Random| match random.below(3) {
-            0 => -0.5 + random.pick(&[1.0, 2.0, 1e4]) * f64::EPSILON / 4.0,
-            _ => -0.5,
-        };
-        let offset = dvec2(beside(random), beside(random));
-        (column as u32, row as u32, offset)
+        [half + place[0] + x, half - place[1] - y].map(|pixel| match random.below(3) {
+            0 => (
+                pixel as u32,
+                -0.5 + random.pick(&[1.0, 2.0, 1e4]) * f64::EPSILON / 4.0,
+            ),
+            _ => (pixel as u32, -0.5),
+        })
     })
 }
 

@@ -131,24 +131,18 @@ impl Oracle {
 
     /// What is seen along a direction.
     pub fn seen(&self, r: &V) -> Option<Seen> {
-        let camera = &self.scene.camera;
-        let (near, far) = (
-            self.number.exact(camera.near),
-            camera.far.map(|far| self.number.exact(far)),
-        );
+        let (camera, n) = (&self.scene.camera, |x| self.number.exact(x));
+        let (near, far) = (n(camera.near), camera.far.map(n));
         let ahead = -dot(r, &self.axes[2]);
         let is_visible = |t: &N| {
             let depth = t * &ahead;
             self.order(&depth, &near) == Ordering::Greater
                 && (far.as_ref()).is_none_or(|far| self.order(&depth, far) == Ordering::Less)
         };
-        let first = |object| {
-            Some((
-                object,
-                self.crossings(object, r).into_iter().find(is_visible)?,
-            ))
-        };
-        let seen = (0..self.surfaces.len()).filter_map(first);
+        let seen = (0..self.surfaces.len()).filter_map(|object| {
+            let crossings = self.crossings(object, r);
+            Some((object, crossings.into_iter().find(is_visible)?))
+        });
         // On a tie the first one of the file.
         let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
             Ordering::Less => next,
