@@ -199,17 +199,13 @@ impl Session<'_> {
     /// Renders by each method what it makes of the time of the slowest one.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
-        let rungs = &measured.rungs;
-        let Some(rung) = rungs
-            .iter()
-            .position(|&rung| rung >= SHOWN || Some(&rung) == rungs.last())
-        else {
+        let Some(last) = measured.rungs.len().checked_sub(1) else {
             return Ok(());
         };
-        let times = measured
-            .series
-            .iter()
-            .map(|it| it.points[rung].typical().cpu);
+        let enough = measured.rungs.iter().position(|&rung| rung >= SHOWN);
+        let rung = enough.unwrap_or(last);
+        let series = measured.series.iter();
+        let times = series.map(|it| it.points[rung].typical().cpu);
         let cpu = times.fold(0.0, f64::max);
         let mut part = None;
         for series in &mut measured.series {
@@ -219,17 +215,16 @@ impl Session<'_> {
             let samples = [per_pixel, measured.seed];
             let (made, run) = timed(|| rendered(self.scene, series.method, samples, self.control))?;
             let (film, reference) = (made.film(), &measured.reference.film);
-            let here = match part {
+            let part = match part {
                 Some(part) => part,
-                None => worst_part(film, reference)?,
+                None => *part.insert(worst_part(film, reference)?),
             };
-            part = Some(here);
             series.picture = Some(Shown {
                 per_pixel,
                 cpu: run.cpu,
                 rmse: film::rmse(film, reference),
-                part: here,
-                film: film.part(here)?,
+                part,
+                film: film.part(part)?,
             });
         }
         Ok(())
