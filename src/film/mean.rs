@@ -16,6 +16,14 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
             *sum = sum.plus(&two_product(count as f64, channel));
         }
     }
-    let count = Double::from_f64(samples as f64);
-    sums.map(|sum| sum.over(&count).to_f64())
+    sums.map(|sum| quotient(&sum, samples as f64))
+}
+
+/// sum / count by two steps of long division: the rest of the first is exact but for the rounding of what `lo` adds, so a quotient that lies in the
+/// middle between two f64 is exact before its only rounding, too.
+fn quotient(sum: &Double, count: f64) -> f64 {
+    let first = sum.hi / count;
+    let product = two_product(first, count);
+    let rest = (sum.hi - product.hi) - product.lo + sum.lo;
+    first + rest / count
 }

@@ -111,7 +111,7 @@ pub fn write_png<P: Pixel>(
 
     // Row by row: the bytes of the whole are never in memory at once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
-    let encoder = srgb::Encoder::new();
+    let encoder = srgb::Encoder::default();
     let mut room = Vec::new();
     for y in 0..film.height() {
         rows.write_all(P::bytes(film.row(y), &encoder, &mut room))?;

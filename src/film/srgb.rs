@@ -19,15 +19,9 @@ pub struct Encoder {
     start: [u8; PARTS + 1],
 }
 
+/// Prepares the thresholds.
 impl Default for Encoder {
     fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Encoder {
-    /// Prepares the thresholds.
-    pub fn new() -> Self {
         let thresholds = array::from_fn(|k| half_byte(k as u8));
         let start = array::from_fn(|part| {
             let light = part as f64 / PARTS as f64;
@@ -35,7 +29,9 @@ impl Encoder {
         });
         Self { thresholds, start }
     }
+}
 
+impl Encoder {
     /// The bytes of a pixel.
     pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
         light.map(|channel| self.encode(channel))

@@ -3,7 +3,10 @@
 use pinhole::{
     color::{Color, half_byte},
     film::{Encoder, mean},
+    math::{Double, Real, two_product},
+    sampling::CounterRng,
 };
+use rand::{Rng, RngExt, SeedableRng};
 
 #[test]
 fn a_colour_alone_is_its_own_mean() {
@@ -12,6 +15,29 @@ fn a_colour_alone_is_its_own_mean() {
         for count in [1, 3, 7, 16, 1_000_003, (1 << 53) - 1, 1 << 53] {
             assert_eq!(mean([(count, color)].into_iter()), color);
         }
+    }
+}
+
+#[test]
+fn a_mean_is_that_of_long_division() {
+    let mut rng = CounterRng::seed_from_u64(1);
+    for round in 0..100_000 {
+        let seen = [0; 3].map(|_: u32| {
+            let count = rng.next_u64() >> 13 >> (rng.next_u64() % 51);
+            let light = match round % 3 {
+                0 => [1.0; 3],
+                1 => [f64::from(rng.next_u32() % 256) / 256.0; 3],
+                _ => [0; 3].map(|_: u32| rng.random::<f64>()),
+            };
+            (count.max(1), light)
+        });
+        let samples: u64 = seen.iter().map(|(count, _)| count).sum();
+        let long = [0, 1, 2].map(|channel| {
+            let terms = seen.map(|(count, light)| two_product(count as f64, light[channel]));
+            let sum = terms[0].plus(&terms[1]).plus(&terms[2]);
+            sum.over(&Double::from_f64(samples as f64)).to_f64()
+        });
+        assert_eq!(mean(seen.into_iter()), long, "{seen:?}");
     }
 }
 
@@ -28,7 +54,7 @@ fn a_mean_is_rounded_once() {
 
 #[test]
 fn colours_come_back_as_their_bytes() {
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     for step in 0..=255 * 64 {
         let channel = f64::from(step) / 64.0;
         let color = Color { srgb: [channel; 3] };
@@ -42,7 +68,7 @@ fn colours_come_back_as_their_bytes() {
 
 #[test]
 fn the_nearest_byte_is_found_all_the_way() {
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     for step in 0..=200_000 {
         let light = f64::from(step) / 200_000.0;
         let encoded = if light <= 0.003_130_8 {
