@@ -77,7 +77,7 @@ fn main() {
         &mut || {
             black_box(plain(&scene));
         },
-        &mut || write_png(&film, &recipe, &mut Vec::new()).expect("a list takes all bytes"),
+        &mut || write_png(&film, Some(&recipe), &mut Vec::new()).expect("a list takes all bytes"),
         &mut || {
             write_exr(&film, whole, whole, &mut Cursor::new(Vec::new()))
                 .expect("a list takes all bytes");

@@ -43,10 +43,7 @@ impl Area {
 
     /// Whether it lies within another one.
     pub fn lies_in(self, other: Self) -> bool {
-        other.columns().contains(&u64::from(self.x))
-            && other.rows().contains(&u64::from(self.y))
-            && self.columns().end <= other.columns().end
-            && self.rows().end <= other.rows().end
+        self.common(other) == self
     }
 
     /// Whether the two have a pixel in common.

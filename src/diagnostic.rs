@@ -13,7 +13,7 @@ pub use fix::{Edit, Fix, apply};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(any(feature = "cli", feature = "report"))]
-pub use visible::visible;
+pub use visible::{escaped, visible};
 
 use serde_json::{Value, json};
 

@@ -193,7 +193,7 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
-    film::write_whole(path, cancel, |out| film::write_plain_png(&map, out))
+    film::write_whole(path, cancel, |out| film::write_png(&map, None, out))
         .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
     let legend = legend(is_equal);
     output::to_people(&format!("{}: {legend}\n", visible(&shown(path))));

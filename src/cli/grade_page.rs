@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, io};
 
-use pinhole::film::HEAT_LEGEND;
+use pinhole::{diagnostic::escaped, film::HEAT_LEGEND};
 
 use super::{
     graded::{Graded, Judged},
@@ -54,12 +54,4 @@ pub fn page(scene: &str, graded: &[Graded]) -> io::Result<String> {
     )
     .map_err(io::Error::other)?;
     Ok(html)
-}
-
-fn escaped(text: &str) -> String {
-    pinhole::diagnostic::visible(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }

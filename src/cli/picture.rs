@@ -263,8 +263,8 @@ impl Output {
 
 fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io::Result<()> {
     match picture {
-        Picture::Light(light) => film::write_png(light.film(), recipe, out),
-        Picture::Bytes(bytes) => film::write_png(bytes.film(), recipe, out),
+        Picture::Light(light) => film::write_png(light.film(), Some(recipe), out),
+        Picture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
     }
 }
 

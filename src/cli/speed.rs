@@ -60,7 +60,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
                 check_samples(&scene, &request)?;
                 let subject = Subject {
                     name: shown(path),
-                    recipe: input.recipe(None),
+                    overrides: input.recipe(None).overrides,
                 };
                 subjects.push((subject, scene));
             }

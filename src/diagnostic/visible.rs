@@ -17,6 +17,15 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// The visible text as it stands in HTML and XML, in an attribute too.
+pub fn escaped(text: &str) -> String {
+    visible(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
 /// Adds a character as [`visible`] shows it.
 pub fn push_visible(text: &mut String, character: char) {
     match is_invisible(character) {

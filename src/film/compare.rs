@@ -137,12 +137,9 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 /// The channel in which two pixels differ most, the first one of equal ones, and by how many steps.
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| (steps(p[channel]) - steps(q[channel])).abs());
-    (0..3).fold((0, 0.0), |most, channel| {
-        match differences[channel] > most.1 {
-            true => (channel, differences[channel]),
-            false => most,
-        }
-    })
+    let most = differences.into_iter().fold(0.0, f64::max);
+    let channel = differences.iter().position(|&steps| steps == most);
+    (channel.unwrap_or(0), most)
 }
 
 /// The root of the mean square of the differences of two pictures of one size, in linear light.

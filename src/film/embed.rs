@@ -4,7 +4,7 @@ use std::io;
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 
-use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_plain_png};
+use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
 /// A picture of no more than so many columns and rows: squares of as many pixels as it takes are averaged, in linear light.
@@ -16,8 +16,7 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
         let square = Area {
             x: x * side,
             y: y * side,
-            width: side,
-            height: side,
+            ..Area::whole(side, side)
         };
         let pixels = square.common(whole).iter();
         mean(pixels.map(|(x, y)| (1, film.pixel(x, y))))
@@ -27,7 +26,7 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
 /// A picture as a PNG in a `data:` URI.
 pub fn data_uri(film: &Film) -> io::Result<String> {
     let mut bytes = Vec::new();
-    write_plain_png(film, &mut bytes)?;
+    write_png(film, None, &mut bytes)?;
     Ok(format!(
         "data:image/png;base64,{}",
         BASE64_STANDARD.encode(bytes)

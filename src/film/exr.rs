@@ -113,8 +113,7 @@ pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
         (Ok(x), Ok(y)) if !is_whole => Some(Area {
             x,
             y,
-            width,
-            height,
+            ..Area::whole(width, height)
         }),
         _ => None,
     };
@@ -132,18 +131,12 @@ pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
 
 fn unreadable(error: Error) -> Unreadable {
     let format = "OpenEXR".to_owned();
+    let cause = match &error {
+        Error::NotSupported(what) | Error::Invalid(what) => what.to_string(),
+        other => other.to_string(),
+    };
     match error {
-        Error::NotSupported(what) => Unreadable::Unsupported {
-            format,
-            cause: what.into_owned(),
-        },
-        Error::Invalid(what) => Unreadable::Damaged {
-            format,
-            cause: what.into_owned(),
-        },
-        other => Unreadable::Damaged {
-            format,
-            cause: other.to_string(),
-        },
+        Error::NotSupported(_) => Unreadable::Unsupported { format, cause },
+        _ => Unreadable::Damaged { format, cause },
     }
 }

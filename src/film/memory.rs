@@ -18,33 +18,26 @@ pub struct TooLarge {
     pub available: Option<u64>,
 }
 
-/// Refuses a picture for which there is not so much memory, and says how many pixels it has.
-pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<usize, TooLarge> {
-    let count = u64::from(width) * u64::from(height);
-    let refused = TooLarge {
+/// Refuses a picture for which there is not so much memory.
+pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
+    let pixels = u64::from(width) * u64::from(height);
+    let needed = pixels.saturating_mul(bytes_per_pixel);
+    let refused = |available| TooLarge {
         width,
         height,
-        needed: count.saturating_mul(bytes_per_pixel),
-        available: available(),
+        needed,
+        available,
     };
-    let fits = |available| refused.needed <= available;
-    let count = usize::try_from(count).ok();
-    count
-        .filter(|_| refused.available.is_none_or(fits))
-        .ok_or(refused)
-}
-
-/// Room for the pixels of a picture, unless there is none.
-pub fn reserve<T>(width: u32, height: u32) -> Result<Vec<T>, TooLarge> {
-    let count = check(width, height, size_of::<T>() as u64)?;
-    let mut pixels = Vec::new();
-    pixels.try_reserve_exact(count).map_err(|_| TooLarge {
-        width,
-        height,
-        needed: count as u64 * size_of::<T>() as u64,
-        available: None,
-    })?;
-    Ok(pixels)
+    let available = available();
+    if available.is_some_and(|available| needed > available) {
+        return Err(refused(available));
+    }
+    // Given back at once.
+    let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
+    match usize::try_from(needed).is_ok_and(fits) {
+        true => Ok(()),
+        false => Err(refused(None)),
+    }
 }
 
 /// How many bytes this process may still take: what the machine has available and what is left of its control group's limit, the

@@ -28,10 +28,7 @@ pub use self::{
     memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable},
     pixels::{Film, Pixel, certified},
-    png::{
-        NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_plain_png,
-        write_png,
-    },
+    png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
     read::{is_picture, read_picture},
     srgb::Encoder,
     write::{Sink, check_writable, write_stream, write_whole},

@@ -129,10 +129,9 @@ pub(super) fn name(format: ImageFormat) -> String {
 }
 
 /// Refuses sides that no picture has which is read here.
-pub(super) fn check_pixels(width: u64, height: u64) -> Result<(u32, u32), Unreadable> {
-    let sides = [width, height].map(u32::try_from);
-    match (sides, width.checked_mul(height)) {
-        ([Ok(columns), Ok(rows)], Some(1..=PIXELS)) => Ok((columns, rows)),
+pub(super) fn check_pixels(width: u64, height: u64) -> Result<(), Unreadable> {
+    match width.checked_mul(height) {
+        Some(1..=PIXELS) => Ok(()),
         _ => Err(Unreadable::Pixels(width, height)),
     }
 }

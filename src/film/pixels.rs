@@ -70,7 +70,7 @@ pub struct Film<P = [f64; 3]> {
 impl<P: Pixel> Film<P> {
     /// A black picture, if the memory for it is there.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
-        memory::reserve::<P>(width, height)?;
+        memory::check(width, height, size_of::<P>() as u64)?;
         // The system has zeros at hand, so that a page is touched only when something is put there.
         Ok(Self {
             width,
@@ -85,15 +85,21 @@ impl<P: Pixel> Film<P> {
         height: u32,
         pixel: impl Fn(u32, u32) -> P,
     ) -> Result<Self, TooLarge> {
-        let mut pixels = memory::reserve(width, height)?;
-        pixels.extend((0..height).flat_map(|y| {
-            let pixel = &pixel;
-            (0..width).map(move |x| pixel(x, y))
-        }));
-        Ok(Self {
-            width,
-            height,
-            pixels,
+        let mut film = Self::new(width, height)?;
+        for (place, (x, y)) in film
+            .pixels
+            .iter_mut()
+            .zip(Area::whole(width, height).iter())
+        {
+            *place = pixel(x, y);
+        }
+        Ok(film)
+    }
+
+    /// A part of it, which lies in it.
+    pub fn part(&self, part: Area) -> Result<Self, TooLarge> {
+        Self::from_fn(part.width, part.height, |x, y| {
+            self.pixel(part.x + x, part.y + y)
         })
     }
 
@@ -140,7 +146,7 @@ impl<P: Pixel> Film<P> {
 
 /// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {
         <[u8; 3]>::is_certain(light, bound.into(), &encoder)
     };

@@ -74,7 +74,7 @@ impl Recipe {
         self.overrides.len() <= OVERRIDES_LIMIT && self.scene.len() + overrides + crop <= TEXT_LIMIT
     }
 
-    fn chunks(&self) -> impl Iterator<Item = (&'static str, String)> {
+    fn texts(&self) -> impl Iterator<Item = (&'static str, String)> {
         let overrides = self.overrides.iter().map(|set| (SET, set.clone()));
         let crop = self.crop.map(|crop| (CROP, crop.to_string()));
         [(SCENE, self.scene.clone())]
@@ -84,21 +84,10 @@ impl Recipe {
     }
 }
 
-/// Writes a picture, with what it was made from if that [`fits`](Recipe::fits).
-pub fn write_png<P: Pixel>(film: &Film<P>, recipe: &Recipe, out: &mut dyn Write) -> io::Result<()> {
-    let recipe = recipe.fits().then_some(recipe);
-    let chunks = recipe.into_iter().flat_map(Recipe::chunks).collect();
-    write(film, chunks, out)
-}
-
-/// Writes a picture that no scene makes.
-pub fn write_plain_png<P: Pixel>(film: &Film<P>, out: &mut dyn Write) -> io::Result<()> {
-    write(film, Vec::new(), out)
-}
-
-fn write<P: Pixel>(
+/// Writes a picture, with what it was made from if that is given and [`fits`](Recipe::fits).
+pub fn write_png<P: Pixel>(
     film: &Film<P>,
-    chunks: Vec<(&'static str, String)>,
+    recipe: Option<&Recipe>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let mut encoder = Encoder::new(out, film.width(), film.height());
@@ -112,7 +101,9 @@ fn write<P: Pixel>(
     let mut writer = encoder.write_header()?;
 
     let software = concat!("pinhole ", env!("CARGO_PKG_VERSION"));
-    for (keyword, text) in [(SOFTWARE, software.to_owned())].into_iter().chain(chunks) {
+    let recipe = recipe.filter(|recipe| recipe.fits());
+    let texts = recipe.into_iter().flat_map(Recipe::texts);
+    for (keyword, text) in [(SOFTWARE, software.to_owned())].into_iter().chain(texts) {
         let mut chunk = png::text_metadata::ITXtChunk::new(keyword, text);
         chunk.compressed = true;
         writer.write_text_chunk(&chunk)?;
@@ -120,7 +111,7 @@ fn write<P: Pixel>(
 
     // Row by row: the bytes of the whole are never in memory at once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
-    let encoder = srgb::Encoder::new();
+    let encoder = srgb::Encoder::default();
     let mut room = Vec::new();
     for y in 0..film.height() {
         rows.write_all(P::bytes(film.row(y), &encoder, &mut room))?;

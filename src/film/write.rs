@@ -30,8 +30,8 @@ pub fn write_whole(
         Place::File(path, found) => {
             let temporary = temporary(&path, found.as_ref())?;
             // Not the temporary file itself, whose errors would name it.
-            let mut out =
-                BufWriter::with_capacity(1 << 16, Checked::new(temporary.as_file(), cancel));
+            let sink = temporary.as_file();
+            let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
             write(&mut out)?;
             out.flush()?;
             drop(out);
@@ -42,7 +42,8 @@ pub fn write_whole(
             Ok(())
         }
         Place::Device(path) => {
-            let mut content = Checked::new(Cursor::new(Vec::new()), cancel);
+            let sink = Cursor::new(Vec::new());
+            let mut content = Checked { sink, cancel };
             write(&mut content)?;
             let mut device = OpenOptions::new().write(true).open(path)?;
             device.write_all(content.sink.get_ref())?;
@@ -53,11 +54,11 @@ pub fn write_whole(
 
 /// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by then cannot be taken back.
 pub fn write_stream(
-    out: impl Write,
+    sink: impl Write,
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut out = BufWriter::with_capacity(1 << 16, Checked::new(out, cancel));
+    let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()
 }
@@ -88,24 +89,13 @@ fn place(path: &Path) -> io::Result<Place> {
             Ok(Place::File(fs::canonicalize(path)?, Some(found)))
         }
         Ok(_) => Ok(Place::Device(path.to_owned())),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            Ok(Place::File(end_of_links(path)?, None))
-        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
+            // A link to nothing: the file that it would create. Links in a circle are another error.
+            Ok(target) => place(&folder(path).join(target)),
+            Err(_) => Ok(Place::File(path.to_owned(), None)),
+        },
         Err(error) => Err(error),
     }
-}
-
-/// The file that a symbolic link to nothing would create.
-fn end_of_links(path: &Path) -> io::Result<PathBuf> {
-    let mut path = path.to_owned();
-    // `metadata` has found nothing at the end, so the links form no circle; but somebody may be changing them.
-    for _ in 0..64 {
-        match fs::read_link(&path) {
-            Ok(target) => path = folder(&path).join(target),
-            Err(_) => return Ok(path),
-        }
-    }
-    Err(io::ErrorKind::NotFound.into())
 }
 
 fn folder(path: &Path) -> &Path {
@@ -197,12 +187,6 @@ fn without_path(error: io::Error) -> io::Error {
 struct Checked<'a, S> {
     sink: S,
     cancel: &'a AtomicBool,
-}
-
-impl<'a, S> Checked<'a, S> {
-    fn new(sink: S, cancel: &'a AtomicBool) -> Self {
-        Self { sink, cancel }
-    }
 }
 
 fn check(cancel: &AtomicBool) -> io::Result<()> {

@@ -161,7 +161,7 @@ impl Frame {
             return Ok(None);
         }
         let mut png = Vec::new();
-        film::write_plain_png(&begun.film, &mut png).map_err(Refusal::failed)?;
+        film::write_png(&begun.film, None, &mut png).map_err(Refusal::failed)?;
         let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,

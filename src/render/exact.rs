@@ -62,7 +62,7 @@ pub(super) fn render_exact_as<P: film::Pixel>(
         certain: 0,
     });
     let integrator = Integrator::new(world);
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     threads::install(control.threads, || {
         wanted(part, TILE, control).par_bridge().for_each(|tile| {
             let Some(pixels) = integrator.pixels(tile, control.cancel) else {

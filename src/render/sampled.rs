@@ -40,7 +40,7 @@ pub(super) fn render_as<P: film::Pixel>(
         .iter()
         .map(|color| color.to_linear())
         .collect();
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
     let renderer = Renderer {
         world,

@@ -40,12 +40,8 @@ impl Hammersley {
         let columns = scale(columns, self.n);
         if self.turned.is_empty() {
             for (i, (x, y)) in range.zip(x.iter_mut().zip(y)) {
-                let to_the_edge = self.n - columns;
-                let column = if i < to_the_edge {
-                    i + columns
-                } else {
-                    i - to_the_edge
-                };
+                let column = i + columns;
+                let column = column.checked_sub(self.n).unwrap_or(column);
                 *x = self.columns.choose(column, within);
                 *y = lattice::offset_of_bits(i.reverse_bits().wrapping_add(shift));
             }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::{
     bricks::Bricks,
     lattice::{self, Strata},
-    rng::Key,
+    rng::{Key, scale},
 };
 
 /// The cells, and the strata that bound them.
@@ -39,12 +39,13 @@ impl Jittered {
             let end = first + pairs.len() as u64;
             for (row, columns) in self.bricks.parts(first..end) {
                 let strata = &self.columns[(row.cells - short) as usize];
-                let places = self.rows.places(row.first, row.first + row.cells);
+                let top = self.rows.get(row.first).start();
+                let height = self.rows.get(row.first + row.cells).start() - top;
                 let (here, rest) = pairs.split_at((columns.end - columns.start) as usize);
                 pairs = rest;
                 for ((column, bits), (x, y)) in columns.zip(here).zip(&mut points) {
                     *x = strata.choose(column, bits[0]);
-                    *y = lattice::choose(places.clone(), bits[1]);
+                    *y = lattice::offset(top + scale(bits[1], height));
                 }
             }
         });

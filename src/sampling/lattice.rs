@@ -4,8 +4,6 @@
 //! or on its middle, and they are symmetric about 0, so that a mean over all of them is exactly that of the pixel. An offset
 //! is handled as its place k, from 0 to 2^53 − 1, among them.
 
-use std::ops::Range;
-
 use super::rng::{scale, scale_by_parts};
 
 /// How many offsets there are.
@@ -32,12 +30,6 @@ pub fn offset(place: u64) -> f64 {
 #[inline(always)]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
-}
-
-/// The offset of a place chosen among some by random bits.
-#[inline(always)]
-pub fn choose(places: Range<u64>, bits: u64) -> f64 {
-    offset(places.start + scale(bits, places.end - places.start))
 }
 
 /// A pixel's width or height, cut into n equal strata: which places lie in which. Each holds at least one place, up to n = 2^53.
@@ -100,12 +92,6 @@ impl Strata {
         (!self.stored.is_empty()).then(|| &self.stored[..self.n as usize])
     }
 
-    /// The places in the strata from `first` to before `end`.
-    #[inline(always)]
-    pub fn places(&self, first: u64, end: u64) -> Range<u64> {
-        self.get(first).start()..self.get(end).start()
-    }
-
     /// How many places each stratum has at least; some have one more.
     pub fn least(&self) -> u64 {
         self.least
@@ -154,14 +140,15 @@ mod tests {
         for n in (1..200).chain([65_535, 65_536, 65_537, PLACES - 1, PLACES]) {
             let strata = Strata::new(n);
             for i in (0..n.min(200)).chain([n / 3, n / 2, n - 1]) {
-                let places = strata.places(i, i + 1);
+                let places = strata.get(i).start()..strata.get(i + 1).start();
                 assert!(!places.is_empty());
                 let more = places.end - places.start - strata.least();
                 assert!(more <= 1);
                 let stratum = strata.get(i);
                 assert_eq!((stratum.start(), stratum.more()), (places.start, more));
                 for bits in [0, u64::MAX / 3, u64::MAX] {
-                    assert_eq!(strata.choose(i, bits), choose(places.clone(), bits));
+                    let place = places.start + scale(bits, places.end - places.start);
+                    assert_eq!(strata.choose(i, bits), offset(place));
                 }
                 // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for their neighbours.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;

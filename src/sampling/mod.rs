@@ -39,8 +39,8 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use self::{
-    bricks::Bricks, halton::Halton, hammersley::Hammersley, hilbert::HilbertOrder,
-    jittered::Jittered, multi_jittered::MultiJittered, rng::Key, scatter::Scatter, sobol::Sobol,
+    bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
+    multi_jittered::MultiJittered, rng::Key, sobol::Sobol,
 };
 pub use self::{points::Points, rng::CounterRng};
 use crate::{
@@ -56,31 +56,12 @@ pub struct Sampling {
     /// The key of seed and method; a pixel's own is a part of it.
     key: Key,
     total: u64,
-    pixels: u64,
-    share: Share,
-}
-
-/// How the samples are shared out to the pixels.
-#[derive(Debug)]
-enum Share {
-    /// Evenly.
-    Even(Box<Even>),
-    /// As they fall.
-    Scattered(Scatter),
-}
-
-/// The same number of samples for each pixel, or one more for some.
-#[derive(Debug)]
-struct Even {
-    /// The smaller number.
+    picture: Area,
+    /// How many samples each pixel has at least, and how many pixels have one more. Those of `scatter` have as many as fall there.
     count: u64,
-    /// How many pixels have one more.
     extra: u64,
-    pixels: u64,
-    /// Along which the extra ones are dealt out.
-    order: HilbertOrder,
-    /// How `count` points lie, and how one more.
-    patterns: [Pattern; 2],
+    /// How `count` points lie, and how one more; of `scatter`, how any number does.
+    patterns: Box<[Pattern; 2]>,
 }
 
 /// How a known number of points lie in a pixel.
@@ -108,19 +89,16 @@ impl Sampling {
             Count::PerPixel(n) => n.saturating_mul(pixels),
             Count::Total(total) => total,
         };
-        let share = match sampler.method {
-            // No pixel has this number.
-            Method::Scatter => {
-                Share::Scattered(Scatter::new(key.part(u64::MAX), total, width, height))
-            }
-            method => Share::Even(Box::new(Even::new(method, total, width, height))),
-        };
+        let (count, extra) = (total / pixels, total % pixels);
+        let more = if extra > 0 { count + 1 } else { 0 };
         Self {
             method: sampler.method,
             key,
             total,
-            pixels,
-            share,
+            picture: Area::whole(width, height),
+            count,
+            extra,
+            patterns: Box::new([count, more].map(|n| Pattern::new(sampler.method, n))),
         }
     }
 
@@ -136,20 +114,17 @@ impl Sampling {
 
     /// How many samples a pixel has on average, rounded up.
     pub fn samples_per_pixel(&self) -> u64 {
-        self.total.div_ceil(self.pixels)
+        self.total.div_ceil(self.picture.pixels())
     }
 
     /// How many samples a pixel has on average.
     pub fn mean_count(&self) -> f64 {
-        self.total as f64 / self.pixels as f64
+        self.total as f64 / self.picture.pixels() as f64
     }
 
     /// How many samples each pixel has, if all have the same number.
     pub fn same_count(&self) -> Option<u64> {
-        match &self.share {
-            Share::Even(even) if even.extra == 0 => Some(even.count),
-            _ => None,
-        }
+        (self.extra == 0 && self.method != Method::Scatter).then_some(self.count)
     }
 
     /// How many samples a pixel has.
@@ -159,11 +134,24 @@ impl Sampling {
 
     /// How many samples each pixel of a part of the picture has, row by row: much faster than asking pixel by pixel.
     pub fn counts(&self, part: Area) -> Vec<u64> {
-        match &self.share {
-            Share::Even(even) if even.extra == 0 => vec![even.count; part.pixels() as usize],
-            Share::Even(even) => part.iter().map(|(x, y)| even.count(x, y)).collect(),
-            Share::Scattered(scatter) => scatter.counts(part),
+        match self.same_count() {
+            Some(count) => vec![count; part.pixels() as usize],
+            None if self.method == Method::Scatter => {
+                // No pixel has this number.
+                let key = self.key.part(u64::MAX);
+                scatter::counts(key, self.total, self.picture, part)
+            }
+            None => part.iter().map(|(x, y)| self.even_count(x, y)).collect(),
         }
+    }
+
+    /// Of N samples and P pixels the one with rank i along Hilbert's curve has ⌊(i + 1)N/P⌋ − ⌊iN/P⌋.
+    fn even_count(&self, x: u32, y: u32) -> u64 {
+        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i + 1)·extra/P⌋ than of ⌊i·extra/P⌋
+        // where the remainder of the latter is within extra of P.
+        let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
+        let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
+        self.count + u64::from(remainder + extra >= pixels)
     }
 
     /// Places the points of a pixel with the indices in `range`, which ends at `count` or before, by vectors of either kind; `count` is what
@@ -180,11 +168,7 @@ impl Sampling {
     ) {
         debug_assert!(range.end <= count);
         let key = self.key.part(u64::from(y) << 32 | u64::from(x));
-        let pattern = match &self.share {
-            Share::Even(even) if count == even.count => &even.patterns[0],
-            Share::Even(even) => &even.patterns[1],
-            Share::Scattered(_) => &Pattern::Random,
-        };
+        let pattern = &self.patterns[usize::from(count != self.count)];
         let out = out.room(range.clone().count());
         match vectors {
             SimdWidth::Widest => place_simd(pattern, key, range, out),
@@ -201,39 +185,13 @@ fn place_simd(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 
     pattern.place(key, range, out);
 }
 
-impl Even {
-    fn new(method: Method, total: u64, width: u32, height: u32) -> Self {
-        let pixels = u64::from(width) * u64::from(height);
-        let (count, extra) = (total / pixels, total % pixels);
-        let more = if extra > 0 { count + 1 } else { 0 };
-        Self {
-            count,
-            extra,
-            pixels,
-            order: HilbertOrder::new(width, height),
-            patterns: [count, more].map(|n| Pattern::new(method, n)),
-        }
-    }
-
-    /// The pixel with rank i has ⌊(i + 1)N/P⌋ − ⌊iN/P⌋ of the N samples, P being the number of pixels.
-    fn count(&self, x: u32, y: u32) -> u64 {
-        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i + 1)·extra/P⌋ than of ⌊i·extra/P⌋
-        // where the remainder of the latter is within extra of P.
-        let extra = u128::from(self.extra);
-        let remainder = u128::from(self.order.rank(x, y)) * extra % u128::from(self.pixels);
-        self.count + u64::from(remainder + extra >= u128::from(self.pixels))
-    }
-}
-
 impl Pattern {
     fn new(method: Method, n: u64) -> Self {
-        if n == 0 {
-            return Self::Empty;
-        }
         match method {
-            Method::Regular => Self::Regular(Bricks::new(n)),
             Method::Random | Method::Scatter => Self::Random,
             Method::Exact => Self::Empty,
+            _ if n == 0 => Self::Empty,
+            Method::Regular => Self::Regular(Bricks::new(n)),
             Method::Jittered => Self::Jittered(Jittered::new(n)),
             Method::NRooks => Self::MultiJittered(MultiJittered::n_rooks(n)),
             Method::MultiJittered => Self::MultiJittered(MultiJittered::new(n)),

@@ -50,9 +50,6 @@ impl MultiJittered {
     /// Places the points with these indices, row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
-        if range.is_empty() {
-            return;
-        }
         let sigma = Shuffle::new(self.rows, key.part(0));
         let tau = Shuffle::new(self.columns, key.part(1));
         match (sigma.stored(), tau.stored(), self.strata.stored()) {

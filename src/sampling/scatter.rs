@@ -9,14 +9,6 @@
 use super::{binomial, rng::Key};
 use crate::area::Area;
 
-/// How `total` points fall into the pixels of a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Scatter {
-    key: Key,
-    total: u64,
-    picture: Area,
-}
-
 /// A rectangle of the tree, and what fell into it.
 #[derive(Clone, Copy)]
 struct Node {
@@ -26,63 +18,52 @@ struct Node {
     points: u64,
 }
 
-impl Scatter {
-    /// The fall of `total` points that `key` decides.
-    pub fn new(key: Key, total: u64, width: u32, height: u32) -> Self {
-        Self {
-            key,
-            total,
-            picture: Area::whole(width, height),
-        }
-    }
+/// How many of `total` points fall into each pixel of a part of the picture, row by row, as `key` decides.
+pub fn counts(key: Key, total: u64, picture: Area, part: Area) -> Vec<u64> {
+    let mut counts = vec![0; part.pixels() as usize];
+    let root = Node {
+        path: 1,
+        area: picture,
+        points: total,
+    };
+    fall(key, root, part, &mut counts);
+    counts
+}
 
-    /// How many points fall into each pixel of a part of the picture, row by row.
-    pub fn counts(&self, part: Area) -> Vec<u64> {
-        let mut counts = vec![0; part.pixels() as usize];
-        let root = Node {
-            path: 1,
-            area: self.picture,
-            points: self.total,
-        };
-        self.fall(root, part, &mut counts);
-        counts
+fn fall(key: Key, node: Node, part: Area, counts: &mut [u64]) {
+    if node.points == 0 || !node.area.meets(part) {
+        return;
     }
+    if node.area.pixels() == 1 {
+        counts[part.index(node.area.x, node.area.y)] = node.points;
+        return;
+    }
+    for half in split(key, node) {
+        fall(key, half, part, counts);
+    }
+}
 
-    fn fall(&self, node: Node, part: Area, counts: &mut [u64]) {
-        if node.points == 0 || !node.area.meets(part) {
-            return;
-        }
-        if node.area.pixels() == 1 {
-            counts[part.index(node.area.x, node.area.y)] = node.points;
-            return;
-        }
-        for half in self.split(node) {
-            self.fall(half, part, counts);
-        }
+fn split(key: Key, node: Node) -> [Node; 2] {
+    let area = node.area;
+    let mut halves = [area; 2];
+    if area.width >= area.height {
+        halves[0].width = area.width.next_power_of_two() / 2;
+        halves[1].width -= halves[0].width;
+        halves[1].x += halves[0].width;
+    } else {
+        halves[0].height = area.height.next_power_of_two() / 2;
+        halves[1].height -= halves[0].height;
+        halves[1].y += halves[0].height;
     }
-
-    fn split(&self, node: Node) -> [Node; 2] {
-        let area = node.area;
-        let mut halves = [area; 2];
-        if area.width >= area.height {
-            halves[0].width = area.width.next_power_of_two() / 2;
-            halves[1].width -= halves[0].width;
-            halves[1].x += halves[0].width;
-        } else {
-            halves[0].height = area.height.next_power_of_two() / 2;
-            halves[1].height -= halves[0].height;
-            halves[1].y += halves[0].height;
-        }
-        let fallen = binomial::draw(
-            &mut self.key.part(node.path).rng(),
-            node.points,
-            halves[0].pixels(),
-            area.pixels(),
-        );
-        [(0, fallen), (1, node.points - fallen)].map(|(half, points)| Node {
-            path: 2 * node.path + half,
-            area: halves[half as usize],
-            points,
-        })
-    }
+    let fallen = binomial::draw(
+        &mut key.part(node.path).rng(),
+        node.points,
+        halves[0].pixels(),
+        area.pixels(),
+    );
+    [(0, fallen), (1, node.points - fallen)].map(|(half, points)| Node {
+        path: 2 * node.path + half,
+        area: halves[half as usize],
+        points,
+    })
 }

@@ -69,7 +69,7 @@ fn write_png(
         overrides: Vec::new(),
         crop: None,
     };
-    Ok(film::write_png(&film, &recipe, file)?)
+    Ok(film::write_png(&film, Some(&recipe), file)?)
 }
 
 /// For the host on this machine alone: the tables of the format's compressions are a quarter of what a browser would have to load.

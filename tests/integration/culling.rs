@@ -150,7 +150,7 @@ fn squares_whose_edges_are_those_of_pixels() {
 
 #[test]
 fn bytes_are_those_of_the_light() {
-    let encoder = Encoder::new();
+    let encoder = Encoder::default();
     for count in [
         Count::PerPixel(1),
         Count::PerPixel(13),

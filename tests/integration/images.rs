@@ -30,7 +30,7 @@ fn rendered(text: &str) -> image::RgbImage {
         crop: None,
     };
     let mut png = Vec::new();
-    write_png(&film, &recipe, &mut png).unwrap();
+    write_png(&film, Some(&recipe), &mut png).unwrap();
     image::load_from_memory(&png).unwrap().into_rgb8()
 }
 

@@ -1,10 +1,10 @@
 //! Planes and checkerboards: horizons, integers, great heights and distances, and surfaces in one plane.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
+    inputs::{MIDDLE, Random},
     oracle::ALL_SIZES,
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
@@ -24,23 +24,18 @@ pub const CASES: &[Case] = &[
 ];
 
 fn horizon(random: &mut Random) -> Input {
-    let eye = dvec3(
-        random.within(-9.0, 9.0),
-        random.within(0.5, 4.0),
-        random.within(-9.0, 9.0),
-    );
-    let level = dvec3(random.within(-1.0, 1.0), 0.0, -1.0);
+    let eye = random.between([-9.0, 0.5, -9.0], [9.0, 4.0, 9.0]);
+    let level = random.between([-1.0, 0.0, -1.0], [1.0, 0.0, -1.0]);
     input(along(eye, level), &[board(0.0, 1.0)]).at(move |random| {
-        let column = random.pixel();
-        let below = random.power(-13.0, -0.01);
-        let offset = dvec2(random.within(-0.5, 0.5), -0.5 + below);
-        (column, SIZE / 2, offset)
+        let (column, below) = (random.pixel(), random.power(-13.0, -0.01));
+        let x = random.within(-0.5, 0.5);
+        [(column, x), (SIZE / 2, -0.5 + below)]
     })
 }
 
 fn parallels(random: &mut Random) -> Input {
     let height = random.power(-3.0, 3.0) * random.sign();
-    let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
+    let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
     let level = dvec3(
         random.within(-1.0, 1.0),
         random.pick(&[0.0, -0.0]),
@@ -49,14 +44,10 @@ fn parallels(random: &mut Random) -> Input {
     let mut camera = along(eye, level);
     camera.up = random.pick(&[DVec3::Y, DVec3::NEG_Y]);
     input(camera, &[board(0.0, 1.0)]).at(move |random| {
-        let column = random.pixel();
-        let x = random.within(-0.5, 0.5);
-        let (row, y) = random.pick(&[
-            (SIZE / 2, -0.5),
-            (SIZE / 2, (-0.5_f64).next_up()),
-            (SIZE / 2 - 1, 0.5_f64.next_down()),
-        ]);
-        (column, row, dvec2(x, y))
+        let column = (random.pixel(), random.within(-0.5, 0.5));
+        let [before, middle] = MIDDLE;
+        let behind = (SIZE / 2, (-0.5_f64).next_up());
+        [column, random.pick(&[middle, behind, before])]
     })
 }
 
@@ -77,65 +68,50 @@ fn edge_on(random: &mut Random) -> Input {
 
 fn low(random: &mut Random) -> Input {
     let height = random.power(-323.0, -9.0);
-    let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
+    let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
     let shapes = [
         board(0.0, random.power(-3.0, 0.0) * height.max(1e-300)),
         sphere(eye - DVec3::Z, 0.3),
     ];
-    let camera = along(
-        eye,
-        dvec3(random.within(-1.0, 1.0), random.within(-0.5, 0.0), -1.0),
-    );
-    input(camera, &shapes).bits(ALL_SIZES)
+    let ahead = random.between([-1.0, -0.5, -1.0], [1.0, 0.0, -1.0]);
+    input(along(eye, ahead), &shapes).bits(ALL_SIZES)
 }
 
 fn high(random: &mut Random) -> Input {
     let height = random.power(9.0, 15.0);
-    let eye = dvec3(random.within(-9.0, 9.0), height, random.within(-9.0, 9.0));
-    let camera = along(
-        eye,
-        dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
-    );
-    let shapes = [board(0.0, random.power(0.0, 3.0))];
-    input(camera, &shapes)
+    let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
+    let down = random.between([-1.0, -1.0, -1.0], [1.0, -0.2, -1.0]);
+    input(along(eye, down), &[board(0.0, random.power(0.0, 3.0))])
 }
 
 fn displaced(random: &mut Random) -> Input {
     let distance = |random: &mut Random| random.sign() * random.power(9.0, 15.6);
     let eye = dvec3(distance(random), random.within(0.5, 4.0), distance(random));
-    let camera = along(
-        eye,
-        dvec3(random.within(-1.0, 1.0), random.within(-1.0, -0.2), -1.0),
-    );
-    input(camera, &[board(0.0, 1.0)])
+    let down = random.between([-1.0, -1.0, -1.0], [1.0, -0.2, -1.0]);
+    input(along(eye, down), &[board(0.0, 1.0)])
 }
 
 /// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left corner shows that of a square.
 fn corners(random: &mut Random) -> Input {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
-    let eye = dvec3(
-        random.whole(-reach, reach),
-        64.0,
-        random.whole(-reach, reach),
-    ) * size;
+    let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;
     let mut camera = along(eye, DVec3::NEG_Y);
     camera.up = random.pick(&[DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z]);
     input(camera, &[board(0.0, size)]).at(move |random| {
-        let [x, y] = [0, 0].map(|_: u32| {
+        [0, 0].map(|_: u32| {
             let pixel = random.pixel();
             let beside = random.pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 1e5]) * f64::EPSILON / 4.0;
             match random.below(2) {
                 0 => (pixel, -0.5 + beside),
                 _ => (pixel, 0.5_f64.next_down() - beside),
             }
-        });
-        (x.0, y.0, dvec2(x.1, y.1))
+        })
     })
 }
 
 fn from_below(random: &mut Random) -> Input {
     let y = random.within(-2.0, 2.0);
-    let at = |random: &mut Random| dvec3(random.within(-1.5, 1.5), y, random.within(-1.5, 1.5));
+    let at = |random: &mut Random| random.between([-1.5, y, -1.5], [1.5, y, 1.5]);
     let eye = at(random) - DVec3::Y * random.within(1.0, 5.0);
     let (one, other) = (at(random), at(random));
     let mut shapes = [
@@ -143,7 +119,7 @@ fn from_below(random: &mut Random) -> Input {
         cuboid(one - dvec3(1.0, 0.0, 1.0), one + dvec3(0.5, 1.5, 1.0)),
         triangle(
             at(random),
-            dvec3(0.0, random.power(-3.0, 3.0), 0.0),
+            DVec3::Y * random.power(-3.0, 3.0),
             DVec3::splat(2.0),
         ),
         cuboid(other - dvec3(0.5, 0.2, 0.5), other + dvec3(0.5, 0.0, 0.5)),
@@ -155,22 +131,14 @@ fn from_below(random: &mut Random) -> Input {
 fn coincident(random: &mut Random) -> Input {
     let y = random.within(-2.0, 2.0);
     let (eye, at) = (random.vector(3.0) + DVec3::Y * 6.0, random.vector(1.0));
-    let normal = dvec3(random.whole(-9, 9), random.whole(1, 9), random.whole(-9, 9));
+    let normal = random.wholes([-9, 1, -9], [9, 9, 9]);
     let sides = DVec3::splat(8.0);
     let shapes = match random.below(2) {
-        0 => [
-            board(y, random.within(0.2, 2.0)),
-            board(y, random.within(0.2, 2.0)),
-        ],
-        _ => [
-            triangle(at, normal, sides),
-            spun(
-                at,
-                normal * random.whole(-9, -1),
-                sides,
-                random.within(0.0, 360.0),
-            ),
-        ],
+        0 => [0, 1].map(|_: u32| board(y, random.within(0.2, 2.0))),
+        _ => {
+            let (against, spin) = (normal * random.whole(-9, -1), random.within(0.0, 360.0));
+            [triangle(at, normal, sides), spun(at, against, sides, spin)]
+        }
     };
     input(camera(eye, at), &shapes).mixed()
 }

@@ -1,4 +1,4 @@
-//! The camera: nearly parallel up vectors, directions of all lengths, rolls, lenses, wide pictures, and symmetry.
+//! The camera: nearly parallel up vectors, directions of all lengths, rolls, lenses, and wide pictures.
 
 use glam::{DVec3, dvec3};
 
@@ -26,7 +26,8 @@ pub const CASES: &[Case] = &[
     Case { id: "C4", title: "rolls of up to 1e22 degrees", bound: 4.0, subject: Axes(rolls) },
     Case { id: "C3b", title: "view planes at d = 1e±9 … 1e±302", bound: 2.0, subject: Seen(lenses) },
     Case { id: "C5", title: "a picture of 2^20 columns", bound: 2.0, subject: Seen(wide) },
-    Case { id: "C6", title: "symmetric scenes", bound: 2.0, subject: Seen(symmetric) },
+    Case { id: "K2", title: "surfaces exactly at the near or the far plane", bound: 2.0, subject: Seen(exactly_there) },
+    Case { id: "K3", title: "objects cut by both planes", bound: 2.0, subject: Seen(cut) },
 ];
 
 fn nearly_parallel(random: &mut Random) -> Camera {
@@ -43,12 +44,10 @@ fn nearly_parallel(random: &mut Random) -> Camera {
 }
 
 fn differences(random: &mut Random) -> Camera {
-    let whole =
-        |random: &mut Random| dvec3(random.whole(-9, 9), random.whole(-9, 9), random.whole(1, 9));
     let least = f64::from_bits(1);
     let far = random.unit() * random.power(6.0, 12.0);
     let (eye, lookat) = match random.below(3) {
-        0 => (DVec3::ZERO, whole(random) * least),
+        0 => (DVec3::ZERO, random.wholes([-9, -9, 1], [9, 9, 9]) * least),
         1 => (far, far + random.unit() * random.power(-3.0, 0.0)),
         _ => (random.vector(1.0) * 1.7e308, random.vector(1.0) * 1.7e308),
     };
@@ -104,15 +103,13 @@ fn rolls(random: &mut Random) -> Camera {
 }
 
 fn wide(random: &mut Random) -> Input {
-    let eye = dvec3(random.within(-1.0, 1.0), 9.0, random.within(-1.0, 1.0));
+    let eye = random.between([-1.0, 9.0, -1.0], [1.0, 9.0, 1.0]);
     let mut camera = along(eye, dvec3(random.within(-0.2, 0.2), -1.0, -0.1));
     let mut shapes = vec![board(0.0, random.within(0.01, 1.0))];
     for _ in 0..8 {
         let corner = dvec3(random.within(-9.0, 9.0), 0.1, -9.0);
-        shapes.push(cuboid(
-            corner,
-            corner + dvec3(0.7, random.within(0.1, 2.0), 18.0),
-        ));
+        let size = dvec3(0.7, random.within(0.1, 2.0), 18.0);
+        shapes.push(cuboid(corner, corner + size));
     }
     // The window is 2 m high and as wide as 2^20 of its 64 rows.
     camera.lens = Lens::Distance(16384.0);
@@ -121,26 +118,44 @@ fn wide(random: &mut Random) -> Input {
     input
 }
 
-/// Everything is symmetric in x, so that what is seen is, too: on the axis of symmetry there are ties.
-fn symmetric(random: &mut Random) -> Input {
-    let eye = dvec3(0.0, random.within(1.0, 4.0), random.within(4.0, 8.0));
-    let at = dvec3(0.0, random.within(0.0, 1.0), random.within(-1.0, 1.0));
-    let (min, max) = (
-        dvec3(0.7, -1.0, -1.0),
-        dvec3(1.9, random.within(0.0, 2.0), 0.7),
-    );
+/// View directions with a length that is a whole number, so that depths can be.
+const WHOLE: [(DVec3, f64); 4] = [
+    (dvec3(0.0, 0.0, -1.0), 1.0),
+    (dvec3(3.0, 0.0, -4.0), 5.0),
+    (dvec3(2.0, -1.0, -2.0), 3.0),
+    (dvec3(6.0, 3.0, -2.0), 7.0),
+];
+
+/// A wall across the view, at a depth that is one of the two planes' or a neighbouring f64.
+fn exactly_there(random: &mut Random) -> Input {
+    let (direction, length) = random.pick(&WHOLE);
+    let steps = random.whole(1, 1 << 20) / 1024.0;
+    let depth = length * steps;
+    let eye = random.wholes([-9; 3], [9; 3]) / 4.0;
+    let wall = eye + direction * steps;
+    let shape = triangle(wall, direction * random.sign(), DVec3::splat(8.0 * depth));
+    let mut camera = along(eye, direction);
+    let at = random.pick(&[depth, depth, depth.next_up(), depth.next_down()]);
+    match random.below(2) {
+        0 => camera.near = at,
+        _ => camera.far = Some(at),
+    }
+    input(camera, &[shape]).anywhere()
+}
+
+fn cut(random: &mut Random) -> Input {
+    let at = random.vector(1.0);
+    let eye = at + random.unit() * random.within(4.0, 8.0);
+    let distance = (at - eye).length();
+    let mut camera = camera(eye, at);
+    camera.near = distance - random.within(0.2, 1.5);
+    camera.far = Some(distance + random.within(0.0, 1.0));
+    let corner = at + random.vector(1.0);
     let shapes = [
-        sphere(
-            dvec3(0.0, random.within(-0.5, 1.5), random.within(-1.0, 0.5)),
-            1.0,
-        ),
-        cuboid(min, max),
-        cuboid(dvec3(-max.x, min.y, min.z), dvec3(-min.x, max.y, max.z)),
-        triangle(
-            dvec3(0.0, 0.5, 1.0),
-            dvec3(0.0, random.within(0.0, 1.0), 1.0),
-            dvec3(2.0, 2.0, 1.5),
-        ),
+        board(at.y + random.within(-0.5, 0.5), 0.6),
+        sphere(at + random.unit(), 1.0),
+        cuboid(corner, corner + DVec3::ONE),
+        triangle(at + random.vector(0.5), random.unit(), dvec3(2.0, 2.0, 1.0)),
     ];
-    input(camera(eye, at), &shapes)
+    input(camera, &shapes)
 }

@@ -1,10 +1,10 @@
 //! A hard case: what makes its inputs, and where in a scene it asks.
 
 use super::{
-    inputs::Random,
+    inputs::{Point, Random},
     oracle::USUAL_SIZES,
     scenes::scene,
-    trial::{Point, Tally, Trial, axes},
+    trial::{Tally, Trial, axes},
 };
 use crate::scene::{Camera, Scene, Shape};
 
@@ -49,26 +49,19 @@ impl Case {
         let trial = Trial::new(input.scene, input.bits);
         let at_points = count * input.halves / 2;
         for _ in 0..at_points {
-            let point = match &input.points {
-                Some(point) => point(random),
-                None => trial.anywhere(random),
-            };
-            trial.decide(point, tally);
+            trial.decide((input.points)(random), tally);
         }
         trial.boundaries(random, count - at_points, tally);
     }
 }
-
-/// Makes points.
-type Points = dyn Fn(&mut Random) -> Point;
 
 /// A scene and where in its picture questions are asked.
 pub(super) struct Input {
     pub scene: Scene,
     /// Those that the oracle computes with.
     bits: usize,
-    /// Points of the picture; anywhere if nothing is said.
-    points: Option<Box<Points>>,
+    /// Makes points of the picture: anywhere if nothing is said.
+    points: Box<dyn Fn(&mut Random) -> Point>,
     /// How many of the questions are asked there, in halves of all; the others close to boundaries.
     halves: u64,
 }
@@ -78,7 +71,7 @@ pub(super) fn input(camera: Camera, shapes: &[Shape]) -> Input {
     Input {
         scene: scene(camera, shapes),
         bits: USUAL_SIZES,
-        points: None,
+        points: Box::new(Random::point),
         halves: 0,
     }
 }
@@ -97,7 +90,7 @@ impl Input {
     /// These points.
     pub fn at(self, point: impl Fn(&mut Random) -> Point + 'static) -> Self {
         Self {
-            points: Some(Box::new(point)),
+            points: Box::new(point),
             ..self.anywhere()
         }
     }

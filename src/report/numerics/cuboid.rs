@@ -1,11 +1,11 @@
 //! Boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and neighbours.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, sphere},
+    inputs::{MIDDLE, Random},
+    scenes::{along, camera, cuboid, sphere},
 };
 use crate::math::Angle;
 
@@ -21,40 +21,28 @@ pub const CASES: &[Case] = &[
 
 /// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.
 fn in_planes(random: &mut Random) -> Input {
-    let min = dvec3(
-        random.whole(-9, 9),
-        random.whole(-9, 9),
-        random.whole(-40, -9),
-    ) / 4.0;
-    let max = min + random.wholes(1, 9) / 4.0;
+    let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
+    let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
     let middle = (min + max) / 2.0;
     let mut place = |axis: usize| random.pick(&[min[axis], max[axis], middle[axis]]);
-    let eye = dvec3(
-        place(0),
-        place(1),
-        random.pick(&[0.0, 0.0, middle.z, min.z, max.z]),
-    );
+    let (x, y) = (place(0), place(1));
+    let eye = dvec3(x, y, random.pick(&[0.0, 0.0, middle.z, min.z, max.z]));
     let mut camera = along(eye, DVec3::NEG_Z);
     camera.roll = Angle::from_degrees(90.0 * random.whole(-3, 3));
     input(camera, &[cuboid(min, max)]).at(move |random| {
-        let middle = [
-            (SIZE / 2, -0.5),
-            (SIZE / 2, -0.5),
-            (SIZE / 2 - 1, 0.5_f64.next_down()),
-        ];
+        let middle = [MIDDLE[1], MIDDLE[1], MIDDLE[0]];
         let in_plane = random.pick(&middle);
         let other = match random.below(3) {
             0 => random.pick(&middle),
             _ => (random.pixel(), random.within(-0.5, 0.5)),
         };
-        let (x, y) = random.pick(&[(in_plane, other), (other, in_plane)]);
-        (x.0, y.0, dvec2(x.1, y.1))
+        random.pick(&[[in_plane, other], [other, in_plane]])
     })
 }
 
 fn inside(random: &mut Random) -> Input {
     let min = random.vector(2.0);
-    let max = min + random.withins(0.5, 3.0);
+    let max = min + random.between([0.5; 3], [3.0; 3]);
     let mut place = |axis: usize| {
         let between = random.within(min[axis], max[axis]);
         random.pick(&[min[axis], max[axis], between])
@@ -86,7 +74,7 @@ fn thin(random: &mut Random) -> Input {
 fn silhouettes(random: &mut Random) -> Input {
     let place = random.unit() * random.power(0.0, 9.0);
     let min = place + random.vector(1.0);
-    let max = min + random.withins(0.5, 2.0);
+    let max = min + random.between([0.5; 3], [2.0; 3]);
     let eye = place + random.unit() * random.within(4.0, 8.0);
     let shapes = [cuboid(min, max)];
     input(camera(eye, (min + max) / 2.0), &shapes)
@@ -101,20 +89,16 @@ fn neighbours(random: &mut Random) -> Input {
     ];
     shapes.rotate_left(random.below(2) as usize);
     let beside = random.pick(&[0.0, 1.0]) * random.within(-1.0, 1.0);
-    let eye = dvec3(
-        seam + beside,
-        random.within(-0.5, 1.5),
-        random.within(1.0, 3.0),
-    );
+    let x = seam + beside;
+    let eye = random.between([x, -0.5, 1.0], [x, 1.5, 3.0]);
     let input = input(along(eye, DVec3::NEG_Z), &shapes);
     if beside != 0.0 {
         return input;
     }
     let in_plane = |random: &mut Random| {
         let row = random.pixel();
-        let middle = [(SIZE / 2, -0.5), (SIZE / 2 - 1, 0.5_f64.next_down())];
-        let (column, x) = random.pick(&middle);
-        (column, row, dvec2(x, random.within(-0.5, 0.5)))
+        let column = random.pick(&[MIDDLE[1], MIDDLE[0]]);
+        [column, (row, random.within(-0.5, 0.5))]
     };
     input.at(in_plane).mixed()
 }

@@ -1,6 +1,6 @@
 //! Numbers that only look random, of which inputs are made.
 
-use glam::{DVec2, DVec3, dvec2, dvec3};
+use glam::DVec3;
 use rand::{Rng, RngExt};
 
 use super::scenes::SIZE;
@@ -8,6 +8,12 @@ use crate::sampling::{
     CounterRng,
     rng::{Key, scale},
 };
+
+/// A point of a picture: along each axis a pixel's column or row, and an offset from its centre.
+pub type Point = [(u32, f64); 2];
+
+/// The coordinates on either side of the middle of a picture of the usual size, the second one upon it.
+pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
 /// Numbers that are a function of a case and a block of its inputs.
 #[derive(Clone, Debug)]
@@ -56,21 +62,25 @@ impl Random {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Three numbers between two others, evenly.
-    pub fn withins(&mut self, low: f64, high: f64) -> DVec3 {
-        let mut one = || self.within(low, high);
-        dvec3(one(), one(), one())
+    /// A point of a box, evenly. An axis along which it has no length takes no number.
+    pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
+        DVec3::from([0, 1, 2].map(|axis| match low[axis] == high[axis] {
+            true => low[axis],
+            false => self.within(low[axis], high[axis]),
+        }))
     }
 
-    /// Three whole numbers from `low` to `high`.
-    pub fn wholes(&mut self, low: i64, high: i64) -> DVec3 {
-        let mut one = || self.whole(low, high);
-        dvec3(one(), one(), one())
+    /// A point of a box whose coordinates are whole numbers. An axis along which it has no length takes no number.
+    pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
+        DVec3::from([0, 1, 2].map(|axis| match low[axis] == high[axis] {
+            true => low[axis] as f64,
+            false => self.whole(low[axis], high[axis]),
+        }))
     }
 
     /// A point of a cube about the origin.
     pub fn vector(&mut self, half: f64) -> DVec3 {
-        self.withins(-half, half)
+        self.between([-half; 3], [half; 3])
     }
 
     /// A vector of length 1.
@@ -83,8 +93,14 @@ impl Random {
         }
     }
 
-    /// An offset from the centre of a pixel.
-    pub fn offset(&mut self) -> DVec2 {
-        dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
+    /// A point of a picture of the usual size.
+    pub fn point(&mut self) -> Point {
+        self.point_of([SIZE; 2])
+    }
+
+    /// A point of a picture of so many columns and rows.
+    pub fn point_of(&mut self, size: [u32; 2]) -> Point {
+        let pixels = size.map(|pixels| self.below(pixels.into()) as u32);
+        pixels.map(|pixel| (pixel, self.within(-0.5, 0.5)))
     }
 }

@@ -14,7 +14,6 @@
 mod board;
 mod camera;
 mod case;
-mod clip;
 mod cuboid;
 mod inputs;
 pub mod oracle;
@@ -45,7 +44,6 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         cuboid::CASES,
         triangle::CASES,
         camera::CASES,
-        clip::CASES,
     ];
     families.into_iter().flatten()
 }

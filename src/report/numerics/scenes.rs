@@ -82,19 +82,22 @@ pub fn board(y: f64, square: f64) -> Shape {
     })
 }
 
+/// The colour that tells an object of a scene apart, or a checkerboard's second one.
+pub fn color(object: usize, is_odd: bool) -> Color {
+    let [low, high] = (object as u16 + 1).to_le_bytes();
+    Color::from_bytes([low, u8::from(is_odd), high])
+}
+
 /// A scene whose colours tell its objects apart.
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
-    let objects = (1u16..).zip(shapes).map(|(number, shape)| {
-        let [low, high] = number.to_le_bytes();
-        let own = Color::from_bytes([low, 0, high]);
+    let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let mut shape = *shape;
+        let own = [false, true].map(|is_odd| color(object, is_odd));
         match &mut shape {
-            Shape::Sphere(Sphere { color, .. })
-            | Shape::Triangle(Triangle { color, .. })
-            | Shape::Box(Cuboid { color, .. }) => *color = own,
-            Shape::Checkerboard(Checkerboard { colors, .. }) => {
-                *colors = [own, Color::from_bytes([low, 1, high])];
-            }
+            Shape::Sphere(sphere) => sphere.color = own[0],
+            Shape::Triangle(triangle) => triangle.color = own[0],
+            Shape::Box(cuboid) => cuboid.color = own[0],
+            Shape::Checkerboard(board) => board.colors = own,
         }
         Object {
             name: None,

@@ -1,6 +1,6 @@
 //! Spheres: tangents, small and far ones, huge ones, and eyes inside and on the surface.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
@@ -43,11 +43,11 @@ fn touches(random: &mut Random) -> Input {
     let shape = sphere(dvec3(side * radius, y, -depth), radius);
     input(camera, &[shape]).at(move |random| {
         let steps = random.pick(&[0.0, 0.0, 1.0, 2.0, 64.0, 1e6]) * f64::EPSILON / 4.0;
-        let (column, offset) = match random.below(2) {
+        let column = match random.below(2) {
             0 => (SIZE / 2, -0.5 + steps),
             _ => (SIZE / 2 - 1, 0.5_f64.next_down() - steps),
         };
-        (column, row, dvec2(offset, -0.5))
+        [column, (row, -0.5)]
     })
 }
 
@@ -93,15 +93,12 @@ fn at_the_surface(random: &mut Random) -> Input {
 
 fn globes(random: &mut Random) -> Input {
     let radius = random.power(6.0, 15.0);
-    let camera = camera(
-        dvec3(random.within(-1.0, 1.0), 1.0, 0.2),
-        dvec3(3.0, 0.9, -4.0),
-    );
+    let eye = dvec3(random.within(-1.0, 1.0), 1.0, 0.2);
     let shapes = [
         sphere(dvec3(0.0, -radius, 0.0), radius),
         sphere(dvec3(3.0, random.within(0.2, 0.7), -4.0), 0.8),
     ];
-    input(camera, &shapes)
+    input(camera(eye, dvec3(3.0, 0.9, -4.0)), &shapes)
 }
 
 fn out_of_range(random: &mut Random) -> Input {

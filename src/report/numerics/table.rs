@@ -68,38 +68,23 @@ impl Table {
 /// The same for people.
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let columns = |f: &mut fmt::Formatter<'_>, cells: [&str; 7]| {
+        let heads = [
+            ["", "", "wrong", "wrong", "error", "error", "bound"],
+            ["case", "", "textbook", "pinhole", "textbook", "pinhole", ""],
+        ];
+        let heads = heads.map(|head| head.map(str::to_owned)).into_iter();
+        for cells in heads.chain(self.rows.iter().map(cells)) {
             let [case, title, one, two, three, four, five] = cells;
             let line =
                 format!("{case:<4} {title:<46} {one:>8} {two:>7}  {three:>8} {four:>7} {five:>6}");
-            writeln!(f, "{}", line.trim_end())
-        };
-        columns(f, ["", "", "wrong", "wrong", "error", "error", "bound"])?;
-        columns(
-            f,
-            ["case", "", "textbook", "pinhole", "textbook", "pinhole", ""],
-        )?;
-        for Row { case, tally } in &self.rows {
-            let wrong = match case.decides() {
-                true => [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])],
-                false => [String::new(), String::new()],
-            };
-            let errors = tally.error.map(size);
-            let bound = format!("{} {}", case.bound, case.unit());
-            let cells = [
-                case.id, case.title, &wrong[0], &wrong[1], &errors[0], &errors[1], &bound,
-            ];
-            columns(f, cells)?;
+            writeln!(f, "{}", line.trim_end())?;
         }
-        let (inputs, wrong) = (grouped(self.inputs()), grouped(self.wrong()));
-        writeln!(f)?;
         writeln!(
             f,
-            "{inputs} inputs; wrong decisions of Pinhole: {wrong}. Textbook: the usual formulas in f64."
-        )?;
-        writeln!(
-            f,
-            "Errors are of the distance and the point seen in ulp, of unit vectors in u = 2^-53."
+            "\n{} inputs; wrong decisions of Pinhole: {}. Textbook: the usual formulas in f64.\n\
+             Errors are of the distance and the point seen in ulp, of unit vectors in u = 2^-53.",
+            grouped(self.inputs()),
+            grouped(self.wrong())
         )?;
         match self.is_complete() {
             true => Ok(()),
@@ -110,6 +95,18 @@ impl fmt::Display for Table {
             ),
         }
     }
+}
+
+/// A row: the case, what is hard about it, wrong decisions and errors of the textbook and of Pinhole, and the bound.
+fn cells(Row { case, tally }: &Row) -> [String; 7] {
+    let [theirs, ours] = match case.decides() {
+        true => [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])],
+        false => Default::default(),
+    };
+    let [their_error, our_error] = tally.error.map(size);
+    let bound = format!("{} {}", case.bound, case.unit());
+    let (id, title) = (case.id.to_owned(), case.title.to_owned());
+    [id, title, theirs, ours, their_error, our_error, bound]
 }
 
 /// A share of the inputs in per cent, with an exponent where it is small.

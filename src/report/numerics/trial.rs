@@ -4,14 +4,15 @@ use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
 
 use super::{
-    inputs::Random,
+    inputs::{Point, Random},
     oracle::{ALL_SIZES, N, Oracle, V, length},
-    scenes::scene,
+    scenes::{color, scene},
     textbook::{self, Textbook},
 };
 use crate::{
+    color::Color,
     math::Real,
-    scene::{Camera, Scene, Shape},
+    scene::{Camera, Scene},
     tracer::{Basis, World, ray},
 };
 
@@ -36,10 +37,9 @@ impl Tally {
         }
     }
 
-    /// Counts the errors of the two, where they were measured; what is no number is as wrong as can be.
+    /// Counts the errors of the two, where they were measured.
     pub fn errors(&mut self, errors: [Option<f64>; 2]) {
-        let number = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
-        self.error = [0, 1].map(|i| greater(self.error[i], errors[i].map(number)));
+        self.error = [0, 1].map(|i| greater(self.error[i], errors[i]));
     }
 }
 
@@ -47,12 +47,6 @@ impl Tally {
 fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
-
-/// What is seen: an object, and whether in its second colour.
-type Answer = Option<(usize, bool)>;
-
-/// A pixel's column and row, and an offset from its centre.
-pub(super) type Point = (u32, u32, DVec2);
 
 /// The axes of a camera: their errors in units of 2^−53.
 pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
@@ -63,11 +57,11 @@ pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
     let theirs = textbook::axes(camera).map(|v| v.to_array());
     let errors = [theirs, ours].map(|axes| {
         let mut greatest = 0.0_f64;
-        for (x, truth) in axes.iter().flatten().zip(oracle.axes().iter().flatten()) {
+        for (x, truth) in axes.iter().flatten().zip(oracle.axes.iter().flatten()) {
             if !x.is_finite() {
                 return f64::INFINITY;
             }
-            let error = (oracle.exact(*x) - truth).to_f64().value().abs();
+            let error = (oracle.number.exact(*x) - truth).to_f64().value().abs();
             greatest = greatest.max(error / (f64::EPSILON / 2.0));
         }
         greatest
@@ -83,8 +77,6 @@ pub(super) struct Trial {
     world: World,
     textbook: Textbook,
     oracle: Oracle,
-    /// By slot of the palette.
-    answers: Vec<Answer>,
 }
 
 /// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
@@ -96,30 +88,22 @@ const BY_THE_ORACLE: u64 = 8;
 impl Trial {
     /// Prepares a scene; the oracle computes with so many bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
-        let mut answers = Vec::new();
-        for (index, object) in scene.objects.iter().enumerate() {
-            answers.push(Some((index, false)));
-            if matches!(object.shape, Shape::Checkerboard(_)) {
-                answers.push(Some((index, true)));
-            }
-        }
-        answers.push(None);
         Self {
             world: World::new(&scene),
             textbook: Textbook::new(&scene),
             oracle: Oracle::new(&scene, bits),
             scene,
-            answers,
         }
     }
 
     /// Asks all three what is seen at a sample point.
-    pub fn decide(&self, (x, y, offset): Point, tally: &mut Tally) {
-        let truth = self.truth(x, y, offset);
-        let pixels = dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5) + offset;
+    pub fn decide(&self, point: Point, tally: &mut Tally) {
+        let truth = self.truth(point);
+        let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
+        let pixels = DVec2::from(pixels);
         let textbook = self.textbook.seen(pixels);
-        let textbook = textbook.map(|seen| (seen.object, seen.odd));
-        let ours = self.ours(x, y, offset);
+        let textbook = self.color(textbook.map(|seen| (seen.object, seen.odd)));
+        let ours = self.ours(point);
         tally.inputs += 1;
         for (wrong, answer) in tally.wrong.iter_mut().zip([textbook, ours]) {
             *wrong += u64::from(answer != truth);
@@ -129,44 +113,47 @@ impl Trial {
         }
     }
 
-    fn truth(&self, x: u32, y: u32, offset: DVec2) -> Answer {
-        let seen = self.oracle.seen(&self.oracle.direction(x, y, offset));
-        seen.map(|seen| (seen.object, seen.odd))
+    fn truth(&self, [(x, dx), (y, dy)]: Point) -> Color {
+        let r = self.oracle.direction(x, y, dvec2(dx, dy));
+        let seen = self.oracle.seen(&r);
+        self.color(seen.map(|seen| (seen.object, seen.odd)))
     }
 
-    fn ours(&self, x: u32, y: u32, offset: DVec2) -> Answer {
-        self.answers[self.world.slot_at(x, y, offset)]
+    fn ours(&self, [(x, dx), (y, dy)]: Point) -> Color {
+        self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
+    }
+
+    /// What an object shows, a board perhaps in its second colour, or else the background.
+    fn color(&self, seen: Option<(usize, bool)>) -> Color {
+        let background = self.scene.image.background;
+        seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
     /// Measures the distance and the point that are seen through a point of the picture, in units of the last place: of the distance,
     /// and of the greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut Tally) {
-        let r = self.oracle.direction_through(pixels);
+        let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
             return;
         };
         let t = &seen.t * length(&r);
         let point = self.oracle.point(&seen.t, &r);
-        if let Some(theirs) = self.textbook.seen(pixels)
-            && theirs.object == seen.object
-        {
-            let error = self.distance(theirs.t, theirs.point, &t, &point);
-            tally.errors([Some(error), None]);
-        }
+        let theirs = self.textbook.seen(pixels);
+        let theirs = theirs.filter(|theirs| theirs.object == seen.object);
+        let theirs = theirs.map(|theirs| self.distance(theirs.t, theirs.point, &t, &point));
         let (_, hits) = ray(&self.world, pixels);
-        let error = match hits.iter().find(|hit| hit.visible) {
-            Some(hit) if hit.object == seen.object => self.distance(hit.t, hit.point, &t, &point),
-            _ => f64::INFINITY,
-        };
-        tally.errors([None, Some(error)]);
+        let ours = hits.iter().find(|hit| hit.visible);
+        let ours = ours.filter(|hit| hit.object == seen.object);
+        let ours = ours.map_or(f64::INFINITY, |hit| {
+            self.distance(hit.t, hit.point, &t, &point)
+        });
+        tally.errors([theirs, Some(ours)]);
     }
 
     /// How far a distance and a point are from the true ones.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
-        let greatest = true_point
-            .iter()
-            .map(|x| x.to_f64().value().abs())
-            .fold(0.0, f64::max);
+        let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
+        let greatest = coordinates.fold(0.0, f64::max);
         let of_t = self.ulps(t, true_t, true_t.to_f64().value());
         let of_point = [0, 1, 2].map(|i| self.ulps(point[i], &true_point[i], greatest));
         of_point.into_iter().fold(of_t, f64::max)
@@ -178,16 +165,8 @@ impl Trial {
             return f64::INFINITY;
         }
         let unit = of.abs().next_up() - of.abs();
-        let error = (self.oracle.exact(x) - truth).abs() / self.oracle.exact(unit);
+        let error = (self.oracle.number.exact(x) - truth).abs() / self.oracle.number.exact(unit);
         error.to_f64().value()
-    }
-
-    /// A point anywhere in the picture.
-    pub fn anywhere(&self, random: &mut Random) -> Point {
-        let size = self.scene.image;
-        let mut below = |pixels: u32| random.below(pixels.into()) as u32;
-        let (x, y) = (below(size.width), below(size.height));
-        (x, y, random.offset())
     }
 
     /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
@@ -201,15 +180,15 @@ impl Trial {
             patience -= 1;
             let axis = random.below(2) as usize;
             let found = match random.below(BY_THE_ORACLE) {
-                0 => self.boundary(random, axis, &|x, y, offset| self.truth(x, y, offset)),
-                _ => self.boundary(random, axis, &|x, y, offset| self.ours(x, y, offset)),
+                0 => self.boundary(random, axis, &|point| self.truth(point)),
+                _ => self.boundary(random, axis, &|point| self.ours(point)),
             };
             if let Some(boundary) = found {
                 self.beside(random, axis, boundary, end - tally.inputs, tally);
             }
         }
         while tally.inputs < end {
-            self.decide(self.anywhere(random), tally);
+            self.decide(random.point(), tally);
         }
     }
 
@@ -218,15 +197,14 @@ impl Trial {
         &self,
         random: &mut Random,
         axis: usize,
-        seen: &dyn Fn(u32, u32, DVec2) -> Answer,
-    ) -> Option<([u32; 2], DVec2)> {
+        seen: &dyn Fn(Point) -> Color,
+    ) -> Option<Point> {
         let size = [self.scene.image.width, self.scene.image.height];
-        let mut pixel = size.map(|size| random.below(size.into()) as u32);
-        let mut offset = random.offset();
-        let at = |index: u32, place: f64| {
-            let (mut pixel, mut offset) = (pixel, offset);
-            (pixel[axis], offset[axis]) = (index, place);
-            seen(pixel[0], pixel[1], offset)
+        let mut point = random.point_of(size);
+        let at = |index: u32, offset: f64| {
+            let mut point = point;
+            point[axis] = (index, offset);
+            seen(point)
         };
         let mut ends = [0, 0].map(|_: u32| random.below(size[axis].into()) as u32);
         ends.sort_unstable();
@@ -254,8 +232,8 @@ impl Trial {
                 false => high = middle,
             }
         }
-        (pixel[axis], offset[axis]) = (ends[0], low);
-        Some((pixel, offset))
+        point[axis] = (ends[0], low);
+        Some(point)
     }
 
     /// Asks on both sides of a boundary.
@@ -263,11 +241,11 @@ impl Trial {
         &self,
         random: &mut Random,
         axis: usize,
-        ([x, y], offset): ([u32; 2], DVec2),
+        boundary: Point,
         count: u64,
         tally: &mut Tally,
     ) {
-        let at = offset[axis];
+        let (pixel, at) = boundary[axis];
         let unit = at.abs().next_up() - at.abs();
         for i in 0..count.min(12) {
             let step = match i {
@@ -277,9 +255,9 @@ impl Trial {
                 3 => 2.0,
                 _ => random.sign() * libm::exp2(random.within(1.0, 48.0)).floor(),
             };
-            let mut near = offset;
-            near[axis] = (at + step * unit).clamp(-0.5, 0.5_f64.next_down());
-            self.decide((x, y, near), tally);
+            let mut near = boundary;
+            near[axis] = (pixel, (at + step * unit).clamp(-0.5, 0.5_f64.next_down()));
+            self.decide(near, tally);
         }
     }
 }

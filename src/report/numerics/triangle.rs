@@ -1,6 +1,6 @@
 //! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the eye.
 
-use glam::{DVec3, dvec2, dvec3};
+use glam::{DVec3, dvec3};
 
 use super::{
     case::{Case, Input, Subject::Seen, input},
@@ -52,25 +52,11 @@ fn slivers(random: &mut Random) -> Input {
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
 /// Centroids of the turned triangle for each edge, and points of that edge, as seen from the first centroid.
-const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
-    (
-        [0.0, -8.0],
-        &[
-            [-9.0, -4.0],
-            [-4.0, -4.0],
-            [0.0, -4.0],
-            [7.0, -4.0],
-            [9.0, -4.0],
-        ],
-    ),
-    (
-        [9.0, 4.0],
-        &[[9.0, -4.0], [6.0, 0.0], [3.0, 4.0], [0.0, 8.0]],
-    ),
-    (
-        [-9.0, 4.0],
-        &[[-9.0, -4.0], [-6.0, 0.0], [-3.0, 4.0], [0.0, 8.0]],
-    ),
+#[rustfmt::skip]
+const SHARED: [([f64; 2], &[(f64, f64)]); 3] = [
+    ([0.0, -8.0], &[(-9.0, -4.0), (-4.0, -4.0), (0.0, -4.0), (7.0, -4.0), (9.0, -4.0)]),
+    ([9.0, 4.0], &[(9.0, -4.0), (6.0, 0.0), (3.0, 4.0), (0.0, 8.0)]),
+    ([-9.0, 4.0], &[(-9.0, -4.0), (-6.0, 0.0), (-3.0, 4.0), (0.0, 8.0)]),
 ];
 
 fn shared_edges(random: &mut Random) -> Input {
@@ -112,14 +98,14 @@ fn lattice_points(random: &mut Random) -> Input {
     shapes.rotate_left(random.below(2) as usize);
     let half = f64::from(SIZE) / 2.0;
     input(along(DVec3::ZERO, DVec3::NEG_Z), &shapes).at(move |random| {
-        let [x, y] = random.pick(points);
-        let (column, row) = (half + place[0] + x, half - place[1] - y);
-        let beside = |random: &mut Random| match random.below(3) {
-            0 => -0.5 + random.pick(&[1.0, 2.0, 1e4]) * f64::EPSILON / 4.0,
-            _ => -0.5,
-        };
-        let offset = dvec2(beside(random), beside(random));
-        (column as u32, row as u32, offset)
+        let (x, y) = random.pick(points);
+        [half + place[0] + x, half - place[1] - y].map(|pixel| match random.below(3) {
+            0 => (
+                pixel as u32,
+                -0.5 + random.pick(&[1.0, 2.0, 1e4]) * f64::EPSILON / 4.0,
+            ),
+            _ => (pixel as u32, -0.5),
+        })
     })
 }
 
@@ -146,7 +132,7 @@ fn normals(random: &mut Random) -> Input {
         _ => random.unit() * random.power(exponent, exponent),
     };
     let centroid = random.vector(2.0);
-    let eye = centroid + dvec3(random.within(-2.0, 2.0), 3.0, random.within(-2.0, 2.0));
+    let eye = centroid + random.between([-2.0, 3.0, -2.0], [2.0, 3.0, 2.0]);
     let shape = spun(centroid, normal, SIDES, random.within(0.0, 360.0));
     input(camera(eye, centroid), &[shape])
 }
@@ -165,10 +151,8 @@ fn around(random: &mut Random) -> Input {
     let (centroid, normal) = (random.vector(2.0), random.unit());
     let aside = normal.cross(random.unit()).normalize();
     let eye = centroid + aside * random.within(0.0, 9.0) + normal * random.power(-6.0, 0.5);
-    let mut camera = along(
-        eye,
-        normal.cross(random.unit()) - normal * random.within(-0.1, 0.3),
-    );
+    let ahead = normal.cross(random.unit()) - normal * random.within(-0.1, 0.3);
+    let mut camera = along(eye, ahead);
     camera.up = normal;
     let sides = dvec3(70.0, 60.0, random.within(15.0, 90.0));
     let shape = spun(centroid, normal, sides, random.within(0.0, 360.0));

@@ -24,7 +24,7 @@ use super::{
     results::{Measurement, Point, Run},
     summary::printable,
 };
-use crate::numbers;
+use crate::{diagnostic::escaped, numbers};
 
 /// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is 400 of its pixels wide.
 const SIZE: (u32, u32) = (560, 440);
@@ -96,14 +96,6 @@ fn svg(measured: &Measurement, against: &Against) -> String {
     svg.replace("#000000", "currentColor")
         .replacen("<svg ", &opening, 1)
         .replacen(">\n", &head, 1)
-}
-
-/// Text as it stands in XML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }
 
 fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {

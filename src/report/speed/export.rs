@@ -86,7 +86,7 @@ pub fn to_json(measured: &Measurement) -> Value {
     let methods = measured.series.iter();
     json!({
         "scene": measured.subject.name,
-        "overrides": measured.subject.recipe.overrides,
+        "overrides": measured.subject.overrides,
         "version": env!("CARGO_PKG_VERSION"),
         "machine": {"processor": machine.processor, "processors": machine.processors},
         "threads": measured.threads,

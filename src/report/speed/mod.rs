@@ -11,7 +11,6 @@ mod line_style;
 mod machine;
 mod notation;
 mod page;
-mod picture;
 mod results;
 mod session;
 pub mod statistics;

@@ -9,7 +9,6 @@ use minijinja::{AutoEscape, Environment, Value, context};
 use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
-    picture::cropped,
     results::{Measurement, Run, Shown},
     summary::{heading, notes, printable, table, verdicts},
 };
@@ -36,7 +35,7 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
 /// What the template fills in for a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
-    let overrides = measured.subject.recipe.overrides.iter();
+    let overrides = measured.subject.overrides.iter();
     let fits = || measured.series.iter().filter_map(|series| series.fit());
     let charts = match measured.series.is_empty() {
         true => Vec::new(),
@@ -70,7 +69,8 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let Some(&(first, &Shown { part, .. })) = shown.first() else {
         return Ok(Default::default());
     };
-    let exact = cropped(&measured.reference.film, part).map_err(io::Error::other)?;
+    let exact = measured.reference.film.part(part);
+    let exact = exact.map_err(io::Error::other)?;
     let time = measured.exact.as_ref();
     let time = time.map_or(String::new(), |times| {
         format!(", {}", seconds(Run::typical(times).cpu, 2))

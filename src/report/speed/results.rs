@@ -6,20 +6,15 @@ use super::{
     machine::Machine,
     statistics::{PowerLaw, median, root_mean_square},
 };
-use crate::{
-    area::Area,
-    film::{Film, Recipe},
-    render::Exact,
-    scene::Method,
-};
+use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
 /// The scene that is measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Subject {
     /// What the user calls it.
     pub name: String,
-    /// Its text and the overrides.
-    pub recipe: Recipe,
+    /// What the command line changes in it.
+    pub overrides: Vec<String>,
 }
 
 /// What the user asks for.

@@ -13,13 +13,12 @@ use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
-    picture,
     results::{Measurement, Point, Request, Run, Series, Shown, Subject},
 };
 use crate::{
     area::Area,
-    film::{self, Film},
-    render::{Control, Exact, RenderError, render, render_exact},
+    film::{self, Film, TooLarge},
+    render::{Control, RenderError, Rendered, render_as_asked, render_exact},
     sampling::{Sampling, rng::Key},
     scene::{Count, Method, Sampler, Scene},
     threads,
@@ -50,7 +49,10 @@ pub fn measure(
         progress: &|_| {},
         ..*control
     };
-    let reference = exact(scene, control)?;
+    let reference = {
+        let world = World::new_unless(scene, control.cancel)?;
+        render_exact(&world, world.picture(), control)?
+    };
     let methods = Method::SAMPLED.into_iter();
     let series = methods.filter(|method| request.methods.contains(method));
     let series = series.map(|method| Series {
@@ -177,15 +179,15 @@ impl Session<'_> {
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
-            let (film, run) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
+            let (made, run) = timed(|| rendered(self.scene, series.method, samples, self.control))?;
             if series.points.len() == point {
                 let runs = Vec::new();
                 series.points.push(Point { per_pixel, runs });
             }
-            let error = film::rmse(&film, &measured.reference.film);
+            let error = film::rmse(made.film(), &measured.reference.film);
             series.points[point].runs.push(Run { error, ..run });
         } else if let Some(runs) = &mut measured.exact {
-            let (_, run) = timed(|| exact(self.scene, self.control))?;
+            let (_, run) = timed(|| rendered(self.scene, Method::Exact, [1, 0], self.control))?;
             runs.push(run);
         } else {
             return Ok(());
@@ -197,17 +199,13 @@ impl Session<'_> {
     /// Renders by each method what it makes of the time of the slowest one.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
-        let rungs = &measured.rungs;
-        let Some(rung) = rungs
-            .iter()
-            .position(|&rung| rung >= SHOWN || Some(&rung) == rungs.last())
-        else {
+        let Some(last) = measured.rungs.len().checked_sub(1) else {
             return Ok(());
         };
-        let times = measured
-            .series
-            .iter()
-            .map(|it| it.points[rung].typical().cpu);
+        let enough = measured.rungs.iter().position(|&rung| rung >= SHOWN);
+        let rung = enough.unwrap_or(last);
+        let series = measured.series.iter();
+        let times = series.map(|it| it.points[rung].typical().cpu);
         let cpu = times.fold(0.0, f64::max);
         let mut part = None;
         for series in &mut measured.series {
@@ -215,19 +213,18 @@ impl Session<'_> {
                 continue;
             };
             let samples = [per_pixel, measured.seed];
-            let (film, run) = timed(|| sampled(self.scene, series.method, samples, self.control))?;
-            let reference = &measured.reference.film;
-            let here = match part {
+            let (made, run) = timed(|| rendered(self.scene, series.method, samples, self.control))?;
+            let (film, reference) = (made.film(), &measured.reference.film);
+            let part = match part {
                 Some(part) => part,
-                None => picture::part(&film, reference)?,
+                None => *part.insert(worst_part(film, reference)?),
             };
-            part = Some(here);
             series.picture = Some(Shown {
                 per_pixel,
                 cpu: run.cpu,
-                rmse: film::rmse(&film, reference),
-                part: here,
-                film: picture::cropped(&film, here)?,
+                rmse: film::rmse(film, reference),
+                part,
+                film: film.part(part)?,
             });
         }
         Ok(())
@@ -250,19 +247,13 @@ impl Session<'_> {
     }
 }
 
-/// Computes the exact picture.
-fn exact(scene: &Scene, control: &Control) -> Result<Exact, RenderError> {
-    let world = World::new_unless(scene, control.cancel)?;
-    render_exact(&world, whole(scene), control)
-}
-
-/// Renders by a method with so many samples per pixel and a seed.
-fn sampled(
+/// Renders by a method with so many samples per pixel and a seed, of which the exact method takes none.
+fn rendered(
     scene: &Scene,
     method: Method,
     [per_pixel, seed]: [u64; 2],
     control: &Control,
-) -> Result<Film, RenderError> {
+) -> Result<Rendered, RenderError> {
     let sampler = Sampler {
         method,
         count: Count::PerPixel(per_pixel),
@@ -270,11 +261,30 @@ fn sampled(
     };
     let world = World::new_unless(scene, control.cancel)?;
     let sampling = Sampling::new(&sampler, scene.image.width, scene.image.height);
-    render(&world, &sampling, whole(scene), control)
+    render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-fn whole(scene: &Scene) -> Area {
-    Area::whole(scene.image.width, scene.image.height)
+/// The largest part that is shown: several stand beside each other on a page, and a sample's noise is to be seen.
+const PART: (u32, u32) = (240, 135);
+
+/// The part of a picture where it is most wrong, in steps of half its size.
+fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
+    let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
+    let places = |length: u32, size: u32| {
+        let last = length - size;
+        (0..last).step_by((size / 2).max(1) as usize).chain([last])
+    };
+    let (mut worst, mut most) = (Area::whole(width, height), 0.0);
+    for y in places(film.height(), height) {
+        for x in places(film.width(), width) {
+            let part = Area { x, y, ..worst };
+            let error = film::rmse(&film.part(part)?, &reference.part(part)?);
+            if error > most {
+                (worst, most) = (part, error);
+            }
+        }
+    }
+    Ok(worst)
 }
 
 /// Does work, and tells its times, and no error. Nothing else runs in the process meanwhile, but for a progress bar.

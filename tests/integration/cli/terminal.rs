@@ -59,7 +59,7 @@ fn nothing_acts_on_it() {
     };
     let film = Film::<[u8; 3]>::new(1, 1).unwrap();
     let mut picture = Vec::new();
-    film::write_png(&film, &recipe, &mut picture).unwrap();
+    film::write_png(&film, Some(&recipe), &mut picture).unwrap();
     let output = pinhole_reading(&folder, &picture, &["check", "-"]);
     assert_ne!(status(&output), 0);
     assert_tame(&errors(&output), "a picture");

@@ -109,7 +109,7 @@ fn bytes_are_those_of_the_means() {
         let certain = film::certified(&means.film, &means.bounds);
         assert_eq!(bytes.certain, certain, "{name}");
         assert!(certain <= area.pixels());
-        let encoder = film::Encoder::new();
+        let encoder = film::Encoder::default();
         for (bytes, light) in bytes.film.pixels().iter().zip(means.film.pixels()) {
             assert_eq!(*bytes, encoder.pixel(*light), "{name}");
         }

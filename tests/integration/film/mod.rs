@@ -1,6 +1,7 @@
 //! Picture files: what is in them, and that they are whole.
 
 mod compare;
+mod light;
 
 use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
 
@@ -38,7 +39,7 @@ fn recipe() -> Recipe {
 
 fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_png(film, recipe, &mut bytes).unwrap();
+    write_png(film, Some(recipe), &mut bytes).unwrap();
     bytes
 }
 

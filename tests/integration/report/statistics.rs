@@ -4,7 +4,6 @@ use std::{cell::RefCell, num::NonZero, time::Duration};
 
 use pinhole::{
     area::Area,
-    film::Recipe,
     render::{Control, render_exact},
     report::speed::{
         Estimate, Machine, Measurement, Point, Request, Run, Series, Subject, measure,
@@ -197,11 +196,7 @@ fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
 fn subject() -> Subject {
     Subject {
         name: "a.scn".to_owned(),
-        recipe: Recipe {
-            scene: String::new(),
-            overrides: Vec::new(),
-            crop: None,
-        },
+        overrides: Vec::new(),
     }
 }
 

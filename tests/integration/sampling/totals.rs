@@ -74,6 +74,20 @@ fn the_extra_samples_are_spread_evenly_in_both_directions() {
 }
 
 #[test]
+fn the_largest_picture_has_a_last_pixel() {
+    let side = 1 << 20;
+    let sampler = Sampler {
+        method: Method::Random,
+        count: Count::Total((1 << 40) + 1),
+        seed: 0,
+    };
+    // The curve ends at the top right.
+    let sampling = Sampling::new(&sampler, side, side);
+    let corners = [(0, 0), (0, side - 1), (side - 1, side - 1), (side - 1, 0)];
+    assert_eq!(corners.map(|(x, y)| sampling.count(x, y)), [1, 1, 1, 2]);
+}
+
+#[test]
 fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
     let sampler = Sampler {
         method: Method::Random,

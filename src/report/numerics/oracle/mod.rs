@@ -9,11 +9,14 @@ mod number;
 use std::cmp::Ordering;
 
 use dashu_int::IBig;
-use glam::DVec2;
+use glam::{DVec2, dvec2};
 
-pub use self::number::{N, V, length};
-use self::number::{Number, abs, axpy, cross, dot, scale, size, sub, unit};
-use crate::scene::{Lens, Outline, Scene, Shape, View};
+pub use self::number::{N, Number, V, length};
+use self::number::{abs, axpy, cross, dot, scale, size, sub, unit};
+use crate::{
+    math::Angle,
+    scene::{Lens, Outline, Scene, Shape, View},
+};
 
 /// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
 pub const ALL_SIZES: usize = 1400;
@@ -27,12 +30,13 @@ pub const USUAL_SIZES: usize = 512;
 /// A scene, ready to be asked what is seen.
 #[derive(Debug)]
 pub struct Oracle {
-    number: Number,
+    /// Its arithmetic.
+    pub number: Number,
     scene: Scene,
     surfaces: Vec<Surface>,
     eye: V,
     /// The picture's right, its top, and against the view direction.
-    axes: [V; 3],
+    pub axes: [V; 3],
     /// Distance of the view plane.
     d: N,
     /// The side of a pixel in it.
@@ -85,17 +89,16 @@ impl Oracle {
         let (s, c) = number.sin_cos(camera.roll);
         let rolled_u = axpy(&scale(&c, &u), &-s.clone(), &top);
         let rolled_v = axpy(&scale(&s, &u), &c, &top);
+        let twice_tan_of_half = |angle: Angle| {
+            let (s, c) = number.sin_cos(angle * 0.5);
+            n(2.0) * s / c
+        };
+        let [width, height] = [scene.image.width, scene.image.height].map(|side| n(side.into()));
         let d = match camera.lens {
             Lens::Distance(d) => n(d),
-            Lens::Fov(angle) => {
-                let (s, c) = number.sin_cos(angle * 0.5);
-                n(camera.view_height) * c / (n(2.0) * s)
-            }
+            Lens::Fov(angle) => n(camera.view_height) / twice_tan_of_half(angle),
             Lens::HorizontalFov(angle) => {
-                let (s, c) = number.sin_cos(angle * 0.5);
-                let [width, height] =
-                    [scene.image.width, scene.image.height].map(|pixels| n(f64::from(pixels)));
-                n(camera.view_height) * width * c / (n(2.0) * height * s)
+                width / height.clone() * n(camera.view_height) / twice_tan_of_half(angle)
             }
         };
         let surface = |shape: &Shape| Surface::new(number, shape, &eye);
@@ -106,67 +109,45 @@ impl Oracle {
             eye,
             axes: [rolled_u, rolled_v, w],
             d,
-            pixel: n(camera.view_height) / n(f64::from(scene.image.height)),
+            pixel: n(camera.view_height) / height,
             scene: scene.clone(),
         }
     }
 
-    /// The picture's right, its top, and against the view direction.
-    pub fn axes(&self) -> &[V; 3] {
-        &self.axes
-    }
-
-    /// A number as the oracle's arithmetic has it.
-    pub fn exact(&self, x: f64) -> N {
-        self.number.exact(x)
-    }
-
     /// The direction of the ray through an offset from the centre of the pixel in column `x` and row `y`.
     pub fn direction(&self, x: u32, y: u32, offset: DVec2) -> V {
+        self.direction_through(dvec2(f64::from(x), f64::from(y)) + 0.5, offset)
+    }
+
+    /// The direction of the ray through an offset from a point so many pixels from the picture's top left corner.
+    pub fn direction_through(&self, pixels: DVec2, offset: DVec2) -> V {
         let n = |x| self.number.exact(x);
-        let half = n(0.5);
-        self.towards(
-            n(f64::from(x)) + &half + n(offset.x),
-            n(f64::from(y)) + &half + n(offset.y),
-        )
-    }
-
-    /// The direction of the ray through a point so many pixels from the picture's top left corner.
-    pub fn direction_through(&self, pixels: DVec2) -> V {
-        self.towards(self.number.exact(pixels.x), self.number.exact(pixels.y))
-    }
-
-    fn towards(&self, x: N, y: N) -> V {
-        let half = |pixels: u32| self.number.exact(f64::from(pixels) / 2.0);
-        let right = (x - half(self.scene.image.width)) * &self.pixel;
-        let up = (half(self.scene.image.height) - y) * &self.pixel;
+        let half = |pixels: u32| n(f64::from(pixels) / 2.0);
+        let right = (n(pixels.x) + n(offset.x) - half(self.scene.image.width)) * &self.pixel;
+        let up = (half(self.scene.image.height) - n(pixels.y) - n(offset.y)) * &self.pixel;
         let [u, v, w] = &self.axes;
         axpy(&axpy(&scale(&right, u), &up, v), &-self.d.clone(), w)
     }
 
     /// What is seen along a direction.
     pub fn seen(&self, r: &V) -> Option<Seen> {
-        let camera = &self.scene.camera;
-        let (near, far) = (
-            self.number.exact(camera.near),
-            camera.far.map(|far| self.number.exact(far)),
-        );
+        let (camera, n) = (&self.scene.camera, |x| self.number.exact(x));
+        let (near, far) = (n(camera.near), camera.far.map(n));
         let ahead = -dot(r, &self.axes[2]);
-        let mut best: Option<(usize, N)> = None;
-        for index in 0..self.scene.objects.len() {
-            let visible = self.crossings(index, r).into_iter().find(|t| {
-                let depth = t * &ahead;
-                self.order(&depth, &near) == Ordering::Greater
-                    && (far.as_ref()).is_none_or(|far| self.order(&depth, far) == Ordering::Less)
-            });
-            if let Some(t) = visible
-                && (best.as_ref())
-                    .is_none_or(|(_, nearest)| self.order(&t, nearest) == Ordering::Less)
-            {
-                best = Some((index, t));
-            }
-        }
-        let (object, t) = best?;
+        let is_visible = |t: &N| {
+            let depth = t * &ahead;
+            self.order(&depth, &near) == Ordering::Greater
+                && (far.as_ref()).is_none_or(|far| self.order(&depth, far) == Ordering::Less)
+        };
+        let seen = (0..self.surfaces.len()).filter_map(|object| {
+            let crossings = self.crossings(object, r);
+            Some((object, crossings.into_iter().find(is_visible)?))
+        });
+        // On a tie the first one of the file.
+        let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
+            Ordering::Less => next,
+            _ => best,
+        })?;
         let odd = match &self.surfaces[object] {
             Surface::Checkerboard { square, .. } => {
                 let p = self.point(&t, r);
@@ -221,17 +202,13 @@ impl Oracle {
             return Vec::new();
         }
         let root = discriminant.sqrt();
-        let inside = self.sign(c, square);
-        [(-&b - &root) / &a, (-&b + &root) / &a]
-            .into_iter()
-            .enumerate()
-            // On the surface itself one root is zero, whatever its rounding.
-            .filter(|(i, t)| match inside {
-                Ordering::Equal => *i == 1 && self.sign(&-&b, &square.sqrt()) == Ordering::Greater,
-                _ => *t > N::ZERO,
-            })
-            .map(|(_, t)| t)
-            .collect()
+        let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
+        // On the surface itself one root is zero, whatever its rounding.
+        if self.sign(c, square) == Ordering::Equal {
+            let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
+            return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
+        }
+        roots.into_iter().filter(|t| *t > N::ZERO).collect()
     }
 
     /// Where the ray meets the plane n·(p − eye) = height.
@@ -255,35 +232,20 @@ impl Oracle {
 
     /// The greatest t of the slabs' entries to the least of their exits.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
-        let mut enter: Option<N> = None;
-        let mut leave: Option<N> = None;
-        for axis in 0..3 {
-            if self.sign(&r[axis], &size(r)) == Ordering::Equal {
-                if lo[axis] > N::ZERO || hi[axis] < N::ZERO {
-                    return Vec::new();
-                }
-                continue;
-            }
-            let (mut near, mut far) = (&lo[axis] / &r[axis], &hi[axis] / &r[axis]);
-            if near > far {
-                std::mem::swap(&mut near, &mut far);
-            }
-            if enter.as_ref().is_none_or(|enter| near > *enter) {
-                enter = Some(near);
-            }
-            if leave.as_ref().is_none_or(|leave| far < *leave) {
-                leave = Some(far);
-            }
-        }
-        let (Some(enter), Some(leave)) = (enter, leave) else {
-            return Vec::new();
-        };
-        if self.order(&enter, &leave) == Ordering::Greater {
+        let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
+        let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
+        if (parallel.iter()).any(|&axis| lo[axis] > N::ZERO || hi[axis] < N::ZERO) {
             return Vec::new();
         }
-        let mut crossings = vec![enter, leave];
-        crossings.retain(|t| *t > N::ZERO);
-        crossings
+        let slabs = across.into_iter().map(|axis| {
+            let mut ends = [&lo[axis], &hi[axis]].map(|end| end / &r[axis]);
+            ends.sort_unstable();
+            ends
+        });
+        let common = slabs.reduce(|[enter, leave], [a, b]| [enter.max(a), leave.min(b)]);
+        let common = common.filter(|[enter, leave]| self.order(enter, leave) != Ordering::Greater);
+        let ends = common.into_iter().flatten();
+        ends.filter(|t| *t > N::ZERO).collect()
     }
 
     /// The order of two numbers, which are equal if they are equal up to a certain part of the larger one.

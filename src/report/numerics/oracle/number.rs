@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use dashu_float::{FBig, round::mode::HalfEven};
+use dashu_float::{FBig, ops::Abs, round::mode::HalfEven};
 use glam::DVec3;
 
 use crate::{math::Angle, scene::CenteredTriangle};
@@ -70,11 +70,9 @@ impl Number {
         let [a, b, c] = triangle.sides.to_array().map(n);
         let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
         let sin = (n(1.0) - &cos * &cos).sqrt();
-        let corners = [(n(0.0), n(0.0)), (c, n(0.0)), (&a * cos, &a * sin)];
-        let mean = |pick: fn(&(N, N)) -> &N| {
-            (pick(&corners[0]) + pick(&corners[1]) + pick(&corners[2])) / n(3.0)
-        };
-        let (mean_x, mean_y) = (mean(|p| &p.0), mean(|p| &p.1));
+        let apex = (&a * cos, &a * sin);
+        let (mean_x, mean_y) = ((&c + &apex.0) / n(3.0), &apex.1 / n(3.0));
+        let corners = [(n(0.0), n(0.0)), (c, n(0.0)), apex];
         let (s, k) = self.sin_cos(triangle.spin);
         corners.map(|(x, y)| {
             let (x, y) = (x - &mean_x, y - &mean_y);
@@ -132,5 +130,5 @@ pub fn unit(a: &V) -> V {
 
 /// |x|.
 pub fn abs(x: &N) -> N {
-    if *x < N::ZERO { -x.clone() } else { x.clone() }
+    x.clone().abs()
 }

@@ -1,0 +1,91 @@
+//! The light of a pixel: the mean of its samples, and its bytes.
+
+use pinhole::{
+    color::{Color, half_byte},
+    film::{Encoder, mean},
+    math::{Double, Real, two_product},
+    sampling::CounterRng,
+};
+use rand::{Rng, RngExt, SeedableRng};
+
+#[test]
+fn a_colour_alone_is_its_own_mean() {
+    for bytes in 0..=255 {
+        let color = Color::from_bytes([bytes, 255 - bytes, 1]).to_linear();
+        for count in [1, 3, 7, 16, 1_000_003, (1 << 53) - 1, 1 << 53] {
+            assert_eq!(mean([(count, color)].into_iter()), color);
+        }
+    }
+}
+
+#[test]
+fn a_mean_is_that_of_long_division() {
+    let mut rng = CounterRng::seed_from_u64(1);
+    for round in 0..100_000 {
+        let seen = [0; 3].map(|_: u32| {
+            let count = rng.next_u64() >> 13 >> (rng.next_u64() % 51);
+            let light = match round % 3 {
+                0 => [1.0; 3],
+                1 => [f64::from(rng.next_u32() % 256) / 256.0; 3],
+                _ => [0; 3].map(|_: u32| rng.random::<f64>()),
+            };
+            (count.max(1), light)
+        });
+        let samples: u64 = seen.iter().map(|(count, _)| count).sum();
+        let long = [0, 1, 2].map(|channel| {
+            let terms = seen.map(|(count, light)| two_product(count as f64, light[channel]));
+            let sum = terms[0].plus(&terms[1]).plus(&terms[2]);
+            sum.over(&Double::from_f64(samples as f64)).to_f64()
+        });
+        assert_eq!(mean(seen.into_iter()), long, "{seen:?}");
+    }
+}
+
+#[test]
+fn a_mean_is_rounded_once() {
+    // 3 · 0.1 + 7 · 0.3, of which 0.1 is 0.1000000000000000055511151231257827 and 0.3 is 0.299999999999999988897769753748: 0.24
+    // within 6e-18, a quarter of the distance between neighbours there.
+    let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
+    assert_eq!(found, [0.24; 3]);
+    // 1 of 2^53 samples is half a unit in the last place of the others: exact, where a running sum would lose it.
+    let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
+    assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
+}
+
+#[test]
+fn colours_come_back_as_their_bytes() {
+    let encoder = Encoder::default();
+    for step in 0..=255 * 64 {
+        let channel = f64::from(step) / 64.0;
+        let color = Color { srgb: [channel; 3] };
+        assert_eq!(
+            color.to_linear().map(|light| encoder.encode(light)),
+            color.to_bytes(),
+            "{channel}"
+        );
+    }
+}
+
+#[test]
+fn the_nearest_byte_is_found_all_the_way() {
+    let encoder = Encoder::default();
+    for step in 0..=200_000 {
+        let light = f64::from(step) / 200_000.0;
+        let encoded = if light <= 0.003_130_8 {
+            12.92 * light
+        } else {
+            1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+        };
+        let scaled = 255.0 * encoded;
+        let error = (scaled - f64::from(encoder.encode(light))).abs();
+        assert!(error < 0.5 + 1e-5, "{light}: off by {error}");
+    }
+    for k in 0..255_u8 {
+        let light = half_byte(k);
+        let around = [light.next_down(), light, light.next_up()];
+        let bytes = around.map(|light| encoder.encode(light));
+        assert_eq!(bytes, [k, k + 1, k + 1]);
+    }
+    assert_eq!(encoder.encode(-1.0), 0);
+    assert_eq!(encoder.encode(2.0), 255);
+}
