@@ -351,4 +351,13 @@ fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_that_fails_is_an_answer() {
+        let answer = unharmed::<Value>(|| panic!("on purpose"));
+        let code = answer.err().map(|Refusal(code, _)| code as i32);
+        assert_eq!(code, Some(ErrorCode::InternalError as i32));
+    }
+}

@@ -11,7 +11,7 @@ use std::{
 };
 
 use pinhole::{
-    diagnostic::{self, Diagnostic, Drawing, Label, Report, Severity, Style},
+    diagnostic::{self, Diagnostic, Drawing, Label, Report, Style},
     scene,
     source::{Source, SourceId, Sources, Span},
 };
@@ -150,24 +150,19 @@ pub fn codes() -> BTreeSet<String> {
     for path in sources_in(&root.join("src/scene")) {
         let text = fs::read_to_string(path).expect("the source can be read");
         for start in ["error(", "warning(", "twice("] {
-            let made = text.split(start).skip(1);
-            let code = |made: &str| {
-                Some(
-                    made.trim_start()
-                        .strip_prefix('"')?
-                        .split_once('"')?
-                        .0
-                        .to_owned(),
-                )
-            };
-            codes.extend(made.filter_map(code));
+            codes.extend(text.split(start).skip(1).filter_map(quoted));
         }
     }
     let messages = root.join("src/syntax/messages.rs");
     let syntax = fs::read_to_string(messages).expect("the source can be read");
-    let made = syntax.split("Message::new(\"").skip(1);
-    codes.extend(made.filter_map(|made| Some(made.split_once('"')?.0.to_owned())));
+    codes.extend(syntax.split("Message::new(").skip(1).filter_map(quoted));
     codes
+}
+
+/// What stands in quotes at the start of a text.
+fn quoted(text: &str) -> Option<String> {
+    let (quoted, _) = text.trim_start().strip_prefix('"')?.split_once('"')?;
+    Some(quoted.to_owned())
 }
 
 /// Every file in a folder and in those within.
@@ -216,13 +211,17 @@ fn every_report_stands_alone_and_helps() {
     }
 }
 
-/// The reports of a scene, in every manner.
-fn report(sources: &Sources, drawing: Drawing) -> String {
+/// Reports on some sources in one manner.
+fn reports(sources: &Sources, drawing: Drawing) -> Report<'_> {
     let style = Style {
         drawing,
         ..Style::default()
     };
-    Report::new(sources, style).human(&scene::read(sources).diagnostics)
+    Report::new(sources, style)
+}
+
+fn report(sources: &Sources, drawing: Drawing) -> String {
+    reports(sources, drawing).human(&scene::read(sources).diagnostics)
 }
 
 #[test]
@@ -254,17 +253,14 @@ fn whole_reports() {
 fn colour_is_only_added_where_it_is_wanted() {
     let sources = Sources::new(Source::from_text("a.scn", "sphere { radus 2 }"));
     let diagnostics = scene::read(&sources).diagnostics;
-    let drawn = |color, drawing| {
-        let style = Style {
-            color,
-            drawing,
-            ..Style::default()
-        };
-        Report::new(&sources, style).human(&diagnostics)
+    let style = Style {
+        color: true,
+        ..Style::default()
     };
-    assert!(!drawn(false, Drawing::Unicode).contains('\x1b'));
-    assert!(drawn(true, Drawing::Unicode).contains("\x1b["));
-    assert!(drawn(false, Drawing::Ascii).is_ascii());
+    let colored = Report::new(&sources, style).human(&diagnostics);
+    assert!(colored.contains("\x1b["));
+    assert!(!report(&sources, Drawing::Unicode).contains('\x1b'));
+    assert!(report(&sources, Drawing::Ascii).is_ascii());
 }
 
 #[test]
@@ -273,16 +269,12 @@ fn json_is_as_the_contract_says() {
     let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(["x=1", "cam=2"]);
     let diagnostics = scene::read(&sources).diagnostics;
     let lines = diagnostic::json_lines(&diagnostics, &sources);
-    let values: Vec<serde_json::Value> = lines
-        .lines()
-        .map(|line| serde_json::from_str(line).expect("a line is an object"))
-        .collect();
-    let codes: Vec<_> = values
-        .iter()
-        .map(|v| v["code"].as_str().unwrap_or_default())
-        .collect();
+    let value = |line| serde_json::from_str(line).expect("a line is an object");
+    let values: Vec<serde_json::Value> = lines.lines().map(value).collect();
+    let codes = values.iter().filter_map(|value| value["code"].as_str());
+    let codes = codes.collect::<Vec<_>>().join(" ");
     let expected = "missing_camera missing_field unknown_field no_such_target no_such_target";
-    assert_eq!(codes.join(" ").replace("pinhole::", ""), expected);
+    assert_eq!(codes.replace("pinhole::", ""), expected);
     assert_eq!(
         values[2].to_string(),
         concat!(
@@ -313,21 +305,12 @@ fn labels_at_and_past_the_end_are_drawn() {
     for (start, end) in [(8, 8), (8, 9), (7, 100), (100, 200), (0, 0)] {
         let nothing = Sources::new(Source::from_text("a.scn", ""));
         let mut diagnostic = scene::read(&nothing).diagnostics.remove(0);
-        diagnostic.severity = Severity::Error;
-        diagnostic.code = "pinhole::test".to_owned();
-        diagnostic.message = "a test".to_owned();
-        diagnostic.help = None;
         diagnostic.labels = vec![Label {
             span: Span::new(SourceId::File, start, end),
             message: "here it is".to_owned(),
         }];
-        diagnostic.fixes = Vec::new();
         for drawing in [Drawing::Unicode, Drawing::Ascii, Drawing::Narrated] {
-            let style = Style {
-                drawing,
-                ..Style::default()
-            };
-            let text = Report::new(&sources, style).one(&diagnostic);
+            let text = reports(&sources, drawing).one(&diagnostic);
             assert!(text.contains("here it is"), "{start}..{end}: {text}");
         }
         let json = diagnostic::to_json(&diagnostic, &sources);
@@ -344,10 +327,8 @@ fn a_long_line_is_cut() {
     );
     let sources = Sources::new(Source::from_text("a.scn", long));
     let text = report(&sources, Drawing::Unicode);
-    assert!(
-        text.lines().all(|line| line.chars().count() < 250),
-        "{text}"
-    );
+    let is_cut = |line: &str| line.chars().count() < 250;
+    assert!(text.lines().all(is_cut), "{text}");
 }
 
 #[test]

@@ -6,8 +6,6 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::PathBuf,
-    process::{Command, Output},
 };
 
 use pinhole::{
@@ -16,7 +14,12 @@ use pinhole::{
     source::{Source, Sources},
 };
 
-use crate::{diagnostics::codes, scenes::fenced, table::rows};
+use crate::{
+    diagnostics::codes,
+    program::{Folder, names, words},
+    scenes::fenced,
+    table::rows,
+};
 
 /// What stands in a page below a heading of the second order.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
@@ -58,17 +61,9 @@ fn unescaped(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// The `--set` arguments of a command line; quotes, if any, are single ones.
+/// The `--set` arguments of a command line.
 fn sets(command: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut is_quoted = false;
-    for character in command.chars() {
-        match character {
-            '\'' => is_quoted = !is_quoted,
-            _ if character.is_whitespace() && !is_quoted => words.push(String::new()),
-            _ => words.last_mut().expect("a word").push(character),
-        }
-    }
+    let words = words(command);
     let pairs = words.windows(2).filter(|pair| pair[0] == "--set");
     pairs.map(|pair| pair[1].clone()).collect()
 }
@@ -83,14 +78,11 @@ fn every_code_has_its_page_and_every_page_its_code() {
     let pages: BTreeSet<String> = explain::pages().map(|page| page.code.to_owned()).collect();
     assert_eq!(pages.len(), explain::pages().count(), "a code has one page");
     assert_eq!(pages, codes());
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"));
-    let files = fs::read_dir(folder).unwrap();
-    let names: BTreeSet<String> = files
-        .map(|file| file.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name != "README.md")
-        .map(|name| name.trim_end_matches(".md").to_owned())
-        .collect();
-    assert_eq!(names, pages);
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes");
+    let mut files: BTreeSet<String> = names(folder.as_ref()).into_iter().collect();
+    assert!(files.remove("README.md"));
+    let pages = pages.into_iter().map(|code| format!("{code}.md"));
+    assert_eq!(files, pages.collect());
 }
 
 #[test]
@@ -145,39 +137,29 @@ fn the_index_lists_all_pages() {
     assert_eq!(fs::read_to_string(path).unwrap_or_default(), index);
 }
 
-fn explained(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
-    command.arg("explain").args(arguments).output().unwrap()
+/// What is told of a word, as it is typed.
+fn explained(word: &str) -> String {
+    let said = Folder::with([]).done(&format!("explain {word}"));
+    said.text().to_owned()
 }
 
 #[test]
 fn a_pipe_gets_the_page_as_it_is() {
-    let codes = "bare_angle|pinhole::bare_angle|pinhole:bare_angle|[pinhole::bare_angle]|error[pinhole::bare_angle]|error[pinhole::bare_angle]:| bare_angle ";
+    let codes = "bare_angle|pinhole::bare_angle|pinhole:bare_angle|[pinhole::bare_angle]|error[pinhole::bare_angle]|error[pinhole::bare_angle]:|' bare_angle '";
+    let page = explain::page("bare_angle").unwrap();
     for code in codes.split('|') {
-        let output = explained(&[code]);
-        assert_eq!(output.status.code(), Some(0));
-        assert_eq!(output.stderr, b"");
-        let page = explain::page("bare_angle").unwrap();
-        assert_eq!(String::from_utf8(output.stdout).unwrap(), page.text);
+        assert_eq!(explained(code), page.text);
     }
 }
 
 #[test]
 fn without_a_code_all_are_listed() {
-    let output = explained(&[]);
-    assert_eq!(output.status.code(), Some(0));
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = explained("");
     let lines: Vec<&str> = text.lines().filter_map(|l| l.strip_prefix("  ")).collect();
-    let listed: BTreeSet<String> = lines
-        .iter()
-        .map(|line| line.split_whitespace().next().unwrap().to_owned())
-        .collect();
-    assert_eq!(listed, codes());
-    assert!(
-        lines
-            .iter()
-            .any(|l| l.ends_with("  An angle needs its unit"))
-    );
+    let code = |line: &&str| line.split(' ').next().unwrap().to_owned();
+    assert_eq!(lines.iter().map(code).collect::<BTreeSet<_>>(), codes());
+    let title = "  An angle needs its unit";
+    assert!(lines.iter().any(|line| line.ends_with(title)));
 }
 
 #[test]
@@ -186,14 +168,11 @@ fn a_mistyped_code_gets_the_nearest_one() {
         bear_angle -> there is no code `bear_angle`: did you mean `bare_angle`?
         cammera -> there is no code `cammera`: did you mean `camera`?
         pinhole::E0308 -> there is no code `pinhole::E0308`: `pinhole explain` lists them all
-         -> the code is empty: `pinhole explain` lists all codes
+        '' -> the code is empty: `pinhole explain` lists all codes
     ";
     for [written, says] in rows(table) {
-        let output = explained(&[written]);
-        assert_eq!(output.status.code(), Some(2));
-        assert_eq!(output.stdout, b"");
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(errors, format!("error: {says}\n"));
+        let told = Folder::with([]).told(&format!("explain {written}"), 2);
+        assert_eq!(told, format!("error: {says}\n"));
     }
 }
 
@@ -206,39 +185,38 @@ fn the_right_scenes_are_in_the_canonical_layout() {
     }
 }
 
-fn text_of(word: &str) -> String {
-    let output = explained(&[word]);
-    assert_eq!(output.status.code(), Some(0), "{word}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
 #[test]
 fn words_of_the_language_are_explained() {
     use pinhole::schema;
     for row in schema::BLOCKS {
-        let page = text_of(row.name);
+        let page = explained(row.name);
         assert!(page.contains(row.help), "{page}");
         for field in row.fields {
             assert!(page.contains(&format!("- `{}` (", field.name)), "{page}");
         }
     }
-    let roll = text_of("roll");
+    let roll = explained("roll");
     assert_eq!(
         roll,
         "# roll\n\n`roll` of a camera: the turn about the view direction; positive dips the right side\n\n\
          (angle, `0deg` by default)\n\n```scn\nroll 30deg\n```\n"
     );
-    assert!(text_of("v0").contains("not together with `centroid`, `normal`, `sides` or `spin`"));
-    assert!(text_of("sobol").contains("`sobol`, a method of the sampler: Sobol' points"));
-    assert!(text_of("atan2").contains("`atan2(y, x) → angle`"));
-    // A field of a box and a function; a function and a colour.
-    let min = text_of("min");
-    assert!(min.contains("`min` of a box") && min.contains("`min(number, number, …) → number`"));
-    assert!(
-        text_of("tan").contains("the tangent of an angle") && text_of("tan").contains("#d2b48c")
-    );
+    for [word, part] in rows(
+        "
+        v0 -> not together with `centroid`, `normal`, `sides` or `spin`
+        sobol -> `sobol`, a method of the sampler: Sobol' points
+        atan2 -> `atan2(y, x) → angle`
+        -- A field of a box and a function; a function and a colour.
+        min -> `min` of a box
+        min -> `min(number, number, …) → number`
+        tan -> the tangent of an angle
+        tan -> #d2b48c
+    ",
+    ) {
+        assert!(explained(word).contains(part), "{word}: {part}");
+    }
     assert_eq!(
-        text_of("language"),
+        explained("language"),
         include_str!("../../grammar/language.md")
     );
 }

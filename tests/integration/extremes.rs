@@ -2,22 +2,20 @@
 //!
 //! The tests ask thousands; `PINHOLE_SCENES=10000000 cargo test extremes` asks ten million, for some hours.
 
-use std::{fmt::Write, num::NonZero};
-
 use glam::{DVec2, dvec3};
 use pinhole::{
     area::Area,
     film::Film,
-    render::{self, Control, render_exact},
+    render::{self, render_exact},
     sampling::Sampling,
     scene::{self, Count, Method, Scene},
-    source::{Source, Sources},
     tracer::World,
 };
 
 use crate::{
     culling::one_by_one,
     effort::{Effort, sampled_and_exhaustive},
+    scenes::{one_thread, read, scenes, sources},
     tracer::Random,
 };
 
@@ -97,47 +95,41 @@ impl Numbers {
             "image {{ width {width} height {height} background {} }}\n",
             self.color()
         );
-        write!(text, "camera {{ eye {} ", self.vector()).unwrap();
+        text += &format!("camera {{ eye {} ", self.vector());
         let view = ["direction", "lookat"][self.below(2) as usize];
-        write!(text, "{view} {} ", self.vector()).unwrap();
+        text += &format!("{view} {} ", self.vector());
         let maybe = |numbers: &mut Self| numbers.below(3) == 0;
         if maybe(self) {
-            write!(text, "up {} ", self.vector()).unwrap();
+            text += &format!("up {} ", self.vector());
         }
         if maybe(self) {
-            write!(text, "roll {:?}deg ", 90.0 * self.number()).unwrap();
+            text += &format!("roll {:?}deg ", 90.0 * self.number());
         }
-        match self.below(3) {
-            0 => write!(text, "d {:?} ", self.length()).unwrap(),
-            1 => write!(text, "fov {:?}deg ", 45.0 * self.length()).unwrap(),
-            _ => {}
+        text += &match self.below(3) {
+            0 => format!("d {:?} ", self.length()),
+            1 => format!("fov {:?}deg ", 45.0 * self.length()),
+            _ => String::new(),
+        };
+        for clip in ["near", "far"] {
+            if maybe(self) {
+                text += &format!("{clip} {:?} ", self.length());
+            }
         }
-        if maybe(self) {
-            write!(text, "near {:?} ", self.length()).unwrap();
-        }
-        if maybe(self) {
-            write!(text, "far {:?} ", self.length()).unwrap();
-        }
-        writeln!(
-            text,
-            "}}\nsampler {{ method random per_pixel {SAMPLES} seed {} }}",
-            self.below(1000)
-        )
-        .unwrap();
+        let seed = self.below(1000);
+        text += &format!("}}\nsampler {{ method random per_pixel {SAMPLES} seed {seed} }}\n");
         for _ in 0..self.below(6) {
-            self.object(&mut text);
+            text += &self.object();
         }
         text
     }
 
-    fn object(&mut self, text: &mut String) {
+    fn object(&mut self) -> String {
         let color = self.color();
-        let line = match self.below(4) {
-            0 => format!(
-                "sphere {{ center {} radius {:?} color {color} }}",
-                self.vector(),
-                self.length()
-            ),
+        match self.below(4) {
+            0 => {
+                let (center, radius) = (self.vector(), self.length());
+                format!("sphere {{ center {center} radius {radius:?} color {color} }}\n")
+            }
             1 => {
                 let [a, b] = [0; 2].map(|_: u32| self.length());
                 // No longer than the other two together, and often just as long.
@@ -146,28 +138,21 @@ impl Numbers {
                     1 => (a - b).abs(),
                     _ => a.max(b),
                 };
+                let (centroid, normal, spin) = (self.vector(), self.vector(), 90.0 * self.number());
                 format!(
-                    "triangle {{ centroid {} normal {} sides ({a:?}, {b:?}, {c:?}) spin {:?}deg color {color} }}",
-                    self.vector(),
-                    self.vector(),
-                    90.0 * self.number()
+                    "triangle {{ centroid {centroid} normal {normal} sides ({a:?}, {b:?}, {c:?}) spin {spin:?}deg color {color} }}\n"
                 )
             }
-            2 => format!(
-                "box {{ center {} size ({:?}, {:?}, {:?}) color {color} }}",
-                self.vector(),
-                self.length(),
-                self.length(),
-                self.length()
-            ),
-            _ => format!(
-                "checkerboard {{ y {:?} square {:?} colors ({color}, {}) }}",
-                self.number(),
-                self.length(),
-                self.color()
-            ),
-        };
-        writeln!(text, "{line}").unwrap();
+            2 => {
+                let center = self.vector();
+                let [x, y, z] = [0; 3].map(|_: u32| self.length());
+                format!("box {{ center {center} size ({x:?}, {y:?}, {z:?}) color {color} }}\n")
+            }
+            _ => {
+                let (y, square, other) = (self.number(), self.length(), self.color());
+                format!("checkerboard {{ y {y:?} square {square:?} colors ({color}, {other}) }}\n")
+            }
+        }
     }
 }
 
@@ -181,10 +166,7 @@ fn assert_light(film: &Film, text: &str) {
 /// Renders a scene culled, one by one and exactly. Whether the samples' squares are those that the exact picture sums up is decided but by
 /// hundreds of bits where squares and places are numbers of all sizes, and not asked then.
 fn render(scene: &Scene, text: &str, is_decided: bool) {
-    let control = Control {
-        threads: NonZero::new(1),
-        ..Control::default()
-    };
+    let control = one_thread();
     let [width, height] = [scene.image.width, scene.image.height];
     let whole = Area::whole(width, height);
     let world = World::new(scene);
@@ -207,11 +189,6 @@ fn render(scene: &Scene, text: &str, is_decided: bool) {
     }
 }
 
-fn read(text: &str) -> Scene {
-    let sources = Sources::new(Source::from_text("a.scn", text));
-    scene::read(&sources).scene.unwrap()
-}
-
 sampled_and_exhaustive!(whatever_the_numbers_every_channel_is_light);
 
 fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
@@ -226,8 +203,7 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
         let mut numbers = Numbers::new(seed);
         let text = numbers.scene();
         let is_decided = numbers.wild == 0 || !text.contains("checkerboard");
-        let sources = Sources::new(Source::from_text("a.scn", text.as_str()));
-        if let Some(scene) = scene::read(&sources).scene {
+        if let Some(scene) = scene::read(&sources(&text)).scene {
             rendered += 1;
             render(&scene, &text, is_decided);
         }
@@ -239,16 +215,12 @@ sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
 /// Whatever part of the picture is asked for, a pixel's candidates are those of one grid.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
-    let control = Control {
-        threads: NonZero::new(1),
-        ..Control::default()
-    };
+    let control = one_thread();
     let mut compared = 0;
     let count = effort.part_of(9600) as u64;
     for seed in 0..count {
         let mut numbers = Numbers::new(seed);
-        let sources = Sources::new(Source::from_text("a.scn", numbers.scene()));
-        let Some(mut scene) = scene::read(&sources).scene else {
+        let Some(mut scene) = scene::read(&sources(&numbers.scene())).scene else {
             continue;
         };
         if seed % 50 == 0 {
@@ -290,77 +262,26 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     assert!(compared > 2 * count, "{compared}");
 }
 
-/// Planes that are one in hundreds of bits but not in more; a view so wide that Z is no normal number, before a near plane; a board that an
-/// arc with a weight out of the range of numbers cuts.
+/// The scenes of `tests/extremes`.
 #[test]
-fn numbers_at_the_ends_of_their_range() {
-    for text in [
-        "image { width 1 height 3 background olive }
-         camera {
-             eye (-5e-324, 3.3381639243931894e66, -9361.924398029163)
-             lookat (4050288887262.404, 0, 0) d 2978899169125.1675
-         }
-         sampler { method random per_pixel 64 seed 624 }
-         checkerboard { y 2.2250738585072014e-308 square 1.2181708731575115e-44 colors (white, #012345) }
-         checkerboard { y 9361.924398029163 square 1.0476640477433287e257 colors (#012345, red) }",
-        "image { width 1 height 1 background #012345 }
-         camera {
-             eye (-1.0000000000000004, 5e-324, -5e-324)
-             lookat (2.2250738585072014e-308, 1.7976931348623157e308, -2.2250738585072014e-308)
-             d 5e-324 near 2.2250738585072014e-308
-         }
-         sampler { method random per_pixel 64 seed 325 }
-         box {
-             center (-2.2250738585072014e-308, 1.1569846590502684e-11, -1.4928749380437587e-266)
-             size (2.4134299687027053e17, 9.581610938194515e253, 2.0669146701027507e-246) color red
-         }",
-        "image { width 1 height 2 background #012345 }
-         camera {
-             eye (-5e-324, 6.017102002826018e-16, 1e-323)
-             direction (-1.7976931348623157e308, 9.780116474456474e135, -5e-324) d 5e-324
-         }
-         sampler { method random per_pixel 64 seed 24 }
-         checkerboard { y 0 square 2.225073858507201e-308 colors (red, olive) }
-         sphere { center (3.3788900381063465e18, -9.5e152, -1.7976931348623157e308) radius 1.7976931348623157e308 color #012345 }",
-    ] {
-        render(&read(text), text, false);
-    }
+fn scenes_at_the_ends_of_the_range_of_numbers() {
+    render_file(|name| name != SLOW);
 }
 
-/// A face of a box some 1e-157 m from the eye that looks along it; the eye as close inside of a sphere that is a plane, before a far plane.
 #[test]
-fn surfaces_next_to_the_eye_hide_none_that_are_farther() {
-    for text in [
-        "image { width 1 height 3 background black }
-         camera {
-             eye (-1.375, 2.2792403242184486e-157, 0) direction (5.728277404885035e18, 2, -1.0828772186899993)
-             fov 90.14124049522594deg
-         }
-         sampler { method random per_pixel 64 seed 431 }
-         checkerboard { y 1.625 square 4 colors (red, black) }
-         box { center (-2.20258731564851, 1, -1) size (2.5229940151210704, 2, 2) color black }",
-        "image { width 1 height 1 background red }
-         camera {
-             eye (-1.4400948323844044e-123, 5e-324, -5.891752382539124e49)
-             lookat (5e-324, 1.7976931348623157e308, -1.4400948323844046e-123) far 1.7976931348623155e308
-         }
-         sampler { method random per_pixel 64 seed 15 }
-         sphere { center (-1.7976931348623157e308, 0, 5e-324) radius 1.7976931348623157e308 color black }",
-        "image { width 3 height 2 background red }
-         camera {
-             eye (2.033051027204003, 3.0322417127975214, 2.2250738585072014e-308)
-             lookat (-1.981158728347209, -2.8181625723516945, -1)
-             d 2.2250738585072014e-308 far 5.366531308989971e-12
-         }
-         sampler { method random per_pixel 64 seed 529 }
-         box {
-             center (5.716374985185332e-5, 3.25, -2.1128630514894749e-7)
-             size (3.3250148901145167, 2, 0.50616931698793) color olive
-         }
-         sphere { center (2.2746313737473036, 0, -0.375) radius 0.8301405841253926 color white }
-         box { center (0, -2, 1) size (2.25, 3.3238474424977014, 2) color #012345 }",
-    ] {
-        render(&read(text), text, true);
+#[ignore = "exhaustive"]
+fn what_quarters_do_not_mend_is_left_in_doubt() {
+    render_file(|name| name == SLOW);
+}
+
+const SLOW: &str = "what_quarters_do_not_mend";
+
+fn render_file(is_wanted: impl Fn(&str) -> bool) {
+    for path in scenes("tests/extremes") {
+        if is_wanted(path.file_stem().unwrap().to_str().unwrap()) {
+            let text = std::fs::read_to_string(path).unwrap();
+            render(&read(&text), &text, !text.contains("// not decided"));
+        }
     }
 }
 
@@ -373,10 +294,7 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
              camera {{ eye (1.25, -0.25, 3.5) direction (1, 0, 0) }}
              sphere {{ center (1.25, {radius}, 3.5) radius {radius} color white }}"
         );
-        let control = Control {
-            threads: NonZero::new(1),
-            ..Control::default()
-        };
+        let control = one_thread();
         let world = World::new(&read(&text));
         let exact = render_exact(&world, Area::whole(1, 1), &control).unwrap();
         let bound = f64::from(exact.bounds[0]);
@@ -418,34 +336,4 @@ fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
             }
         }
     }
-}
-
-/// A pixel in doubt of which every quarter holds smaller and smaller pieces that are known no better ends nevertheless.
-#[test]
-#[ignore = "exhaustive"]
-fn what_quarters_do_not_mend_is_left_in_doubt() {
-    let text = "image { width 2 height 3 background olive }
-        camera {
-          eye (0.4329846651823165, 8.082295773346728e-42, 3.663700849918921e-17)
-          lookat (0, -1.0000000000000002, 4.573506416522241e212)
-          d 5e-324
-        }
-        sphere {
-          center (7.800537973684832e238, -1.0000000000000002, 2611905.4745264417)
-          radius 7.315898598278973e-10
-          color black
-        }
-        triangle {
-          centroid (4.664825139693755e-7, 0, 5e-324)
-          normal (-60642909.83607577, -2.226370637041624, 2.2250738585072014e-308)
-          sides (1.7976931348623157e308, 5e-324, 1.7976931348623157e308)
-          spin 1.5950348447970576e-5deg
-          color white
-        }
-        sphere {
-          center (-2.130586840912591e-18, 2.2250738585072014e-308, 1.2555945330501196e-45)
-          radius 5e-324
-          color white
-        }";
-    render(&read(text), text, true);
 }

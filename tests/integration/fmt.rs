@@ -7,71 +7,39 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-use tempfile::TempDir;
-
-use crate::program::{command, reading};
+use crate::program::Folder;
 
 const UNTIDY: &str = "let a=1\nsphere {center (a,2,3)} // c\n";
 const TIDY: &str = "let a = 1\nsphere { center (a, 2, 3) }  // c\n";
 const BROKEN: &str = "let a=1;\nsphere {center (a,2,3)}\n";
 
-/// Runs `pinhole fmt`: its status, standard output and standard error.
-fn fmt(folder: &Path, input: &str, arguments: &[&str]) -> (i32, String, String) {
-    let arguments = [&["fmt"], arguments].concat();
-    let mut command = command(folder, &arguments);
-    command.env("NO_COLOR", "1");
-    let output = reading(command, input.as_bytes());
-    (
-        output.status.code().unwrap(),
-        String::from_utf8(output.stdout).unwrap(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
-}
-
-fn silent(status: i32) -> (i32, String, String) {
-    (status, String::new(), String::new())
-}
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
-
-fn read(folder: &TempDir, name: &str) -> String {
-    fs::read_to_string(folder.path().join(name)).unwrap()
+/// The status of a command that reads this, its output, and what it tells.
+fn piped(folder: &Folder, line: &str, input: &str) -> (i32, String, String) {
+    let said = folder.run_reading(line, input);
+    (said.status, said.text().to_owned(), said.errors)
 }
 
 #[test]
 fn files_are_laid_out_in_place() {
-    let folder = folder(&[("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "")]);
+    let folder = Folder::with([("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "")]);
     let long_ago = SystemTime::now() - Duration::from_secs(1000);
-    let tidy = fs::File::options()
-        .write(true)
-        .open(folder.path().join("b.scn"))
-        .unwrap();
+    let tidy = fs::File::options().write(true).open(folder.path("b.scn"));
+    let tidy = tidy.unwrap();
     tidy.set_modified(long_ago).unwrap();
-    assert_eq!(
-        fmt(folder.path(), "", &["a.scn", "b.scn", "c.scn"]),
-        silent(0)
-    );
-    assert_eq!(read(&folder, "a.scn"), TIDY);
-    assert_eq!(read(&folder, "c.scn"), "");
+    assert_eq!(folder.done("fmt a.scn b.scn c.scn").text(), "");
+    assert_eq!(folder.text("a.scn"), TIDY);
+    assert_eq!(folder.text("c.scn"), "");
     // What is canonical already is not touched.
     assert_eq!(tidy.metadata().unwrap().modified().unwrap(), long_ago);
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
-    assert_eq!(fmt(folder.path(), "", &["a.scn", "--check"]), silent(0));
+    assert_eq!(folder.names(), ["a.scn", "b.scn", "c.scn"]);
+    assert_eq!(folder.done("fmt a.scn --check").text(), "");
 }
 
 #[test]
 fn check_prints_a_diff_and_writes_nothing() {
-    let folder = folder(&[("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "sphere  {}")]);
-    let (status, output, errors) = fmt(folder.path(), "", &["--check", "a.scn", "b.scn", "c.scn"]);
-    assert_eq!((status, output.as_str()), (1, ""));
+    let folder = Folder::with([("a.scn", UNTIDY), ("b.scn", TIDY), ("c.scn", "sphere  {}")]);
     assert_eq!(
-        errors,
+        folder.told("fmt --check a.scn b.scn c.scn", 1),
         "\
 --- a.scn
 +++ a.scn, formatted
@@ -88,106 +56,74 @@ fn check_prints_a_diff_and_writes_nothing() {
 +sphere {}
 "
     );
-    assert_eq!(read(&folder, "a.scn"), UNTIDY);
-}
-
-#[test]
-fn check_shows_line_ends_where_they_are_all_that_changes() {
-    let text = "let a = 1\r\nlet b = 2\n";
-    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
-    assert_eq!(status, 1);
-    assert!(errors.contains("\n-let a = 1␍\n+let a = 1\n"), "{errors}");
-    // Where all lines have one, there is nothing to show.
-    let text = "let  a = 1\r\nlet b = 2\r\n";
-    let (status, _, errors) = fmt(Path::new("."), text, &["--check", "-"]);
-    assert_eq!(status, 1);
-    assert!(!errors.contains('␍'), "{errors}");
+    assert_eq!(folder.text("a.scn"), UNTIDY);
+    // Line ends are shown where they are all that changes, and not where every line has one.
+    for (text, is_shown) in [
+        ("let a = 1\r\nlet b = 2\n", true),
+        ("let  a = 1\r\nlet b = 2\r\n", false),
+    ] {
+        let (status, _, errors) = piped(&folder, "fmt --check -", text);
+        assert_eq!(status, 1);
+        let shown = "\n-let a = 1␍\n+let a = 1\n";
+        assert_eq!(errors.contains(shown), is_shown, "{errors}");
+        assert_eq!(errors.contains('␍'), is_shown, "{errors}");
+    }
 }
 
 /// What is written into a pipe comes back to nobody, and one that nobody writes to is waited for without end.
 #[cfg(unix)]
 #[test]
 fn what_is_no_file_is_refused() {
-    let refused = |path: &str| {
-        let hint = "fmt takes files, or standard input as `-`";
-        let errors = format!("error: {path} is not a file: {hint}\n");
-        (2, String::new(), errors)
-    };
-    for path in ["/dev/stdin", "/dev/null"] {
-        assert_eq!(fmt(Path::new("."), UNTIDY, &[path]), refused(path));
-        assert_eq!(
-            fmt(Path::new("."), UNTIDY, &["--check", path]),
-            refused(path)
-        );
-    }
-    let folder = folder(&[]);
-    let made = Command::new("mkfifo")
-        .arg(folder.path().join("pipe"))
-        .status();
+    let folder = Folder::with([("a.scn", "camera { eye (0, 1, 5) lookat (0, 1, 0) }")]);
+    let made = Command::new("mkfifo").arg(folder.path("pipe")).status();
     assert!(made.unwrap().success());
-    assert_eq!(fmt(folder.path(), "", &["pipe"]), refused("pipe"));
+    let hint = "is not a file: fmt takes files, or standard input as `-`";
+    for path in ["/dev/stdin", "/dev/null", "pipe"] {
+        for check in ["", "--check"] {
+            let refused = piped(&folder, &format!("fmt {path} {check}"), UNTIDY);
+            let errors = format!("error: {path} {hint}\n");
+            assert_eq!(refused, (2, String::new(), errors));
+        }
+    }
+    let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/figure_9_9.png");
+    fs::copy(&picture, folder.path("a.png")).unwrap();
+    let refused = "error: a.png is a picture; fmt takes the scene's text\n";
+    assert_eq!(folder.told("fmt a.png", 2), refused);
+    assert_eq!(fs::read(picture).unwrap(), folder.read("a.png"));
+    for line in ["fmt", "fmt - -", "fmt a.scn --set h=1"] {
+        folder.told(line, 2);
+    }
 }
 
 #[test]
 fn standard_input_goes_to_standard_output() {
-    let folder = folder(&[]);
-    assert_eq!(
-        fmt(folder.path(), UNTIDY, &["-"]),
-        (0, TIDY.to_owned(), String::new())
-    );
-    assert_eq!(
-        fmt(folder.path(), TIDY, &["-"]),
-        (0, TIDY.to_owned(), String::new())
-    );
-    assert_eq!(fmt(folder.path(), TIDY, &["-", "--check"]), silent(0));
-    let (status, output, errors) = fmt(folder.path(), UNTIDY, &["-", "--check"]);
-    assert_eq!((status, output.as_str()), (1, ""));
-    assert!(errors.starts_with("--- -\n+++ -, formatted\n"), "{errors}");
-    let (status, output, errors) = fmt(folder.path(), BROKEN, &["-"]);
-    assert_eq!((status, output.as_str()), (1, ""));
-    assert!(errors.contains("pinhole::needless_separator"), "{errors}");
-    let (status, _, errors) = fmt(folder.path(), "", &["-", "-"]);
-    assert_eq!(status, 2, "{errors}");
+    let folder = Folder::with([]);
+    let quiet = |output: &str| (0, output.to_owned(), String::new());
+    assert_eq!(piped(&folder, "fmt -", UNTIDY), quiet(TIDY));
+    assert_eq!(piped(&folder, "fmt -", TIDY), quiet(TIDY));
+    assert_eq!(piped(&folder, "fmt - --check", TIDY), quiet(""));
+    for (line, text, told) in [
+        ("fmt - --check", UNTIDY, "--- -\n+++ -, formatted\n"),
+        ("fmt -", BROKEN, "error[pinhole::needless_separator]"),
+    ] {
+        let (status, output, errors) = piped(&folder, line, text);
+        assert_eq!((status, output.as_str()), (1, ""));
+        assert!(errors.starts_with(told), "{errors}");
+    }
 }
 
 #[test]
 fn a_broken_file_stays_and_the_others_are_laid_out() {
-    let folder = folder(&[("a.scn", BROKEN), ("b.scn", UNTIDY), ("c.scn", UNTIDY)]);
-    let (status, output, errors) = fmt(folder.path(), "", &["a.scn", "b.scn"]);
-    assert_eq!((status, output.as_str()), (1, ""));
+    let folder = Folder::with([("a.scn", BROKEN), ("b.scn", UNTIDY), ("c.scn", UNTIDY)]);
+    let errors = folder.told("fmt a.scn b.scn", 1);
     assert!(errors.contains("pinhole::needless_separator") && errors.contains("\n1 error\n"));
-    assert_eq!(read(&folder, "a.scn"), BROKEN);
-    assert_eq!(read(&folder, "b.scn"), TIDY);
-    let (status, _, errors) = fmt(folder.path(), "", &["none.scn", "a.scn", "c.scn"]);
-    assert_eq!(status, 2);
+    let errors = folder.told("fmt none.scn a.scn c.scn", 2);
     assert!(errors.contains("cannot read none.scn"), "{errors}");
-    assert_eq!(read(&folder, "c.scn"), TIDY);
     // Errors of meaning do not hinder.
-    fs::write(folder.path().join("d.scn"), "sphere{radus b}").unwrap();
-    assert_eq!(fmt(folder.path(), "", &["d.scn"]), silent(0));
-    assert_eq!(read(&folder, "d.scn"), "sphere { radus b }\n");
-}
-
-#[test]
-fn pictures_are_refused() {
-    let folder = folder(&[("a.scn", "camera { eye (0, 1, 5) lookat (0, 1, 0) }")]);
-    let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/figure_9_9.png");
-    fs::copy(&picture, folder.path().join("a.png")).unwrap();
-    assert_eq!(
-        fmt(folder.path(), "", &["a.png"]),
-        (
-            2,
-            String::new(),
-            "error: a.png is a picture; fmt takes the scene's text\n".to_owned()
-        )
-    );
-    assert_eq!(
-        fs::read(picture).unwrap(),
-        fs::read(folder.path().join("a.png")).unwrap()
-    );
-    let (status, _, errors) = fmt(folder.path(), "", &["a.scn", "--set", "h=1"]);
-    assert_eq!(status, 2, "{errors}");
-    assert_eq!(fmt(folder.path(), "", &[]).0, 2);
+    folder.write("d.scn", "sphere{radus b}");
+    folder.done("fmt d.scn");
+    let texts = ["a.scn", "b.scn", "c.scn", "d.scn"].map(|name| folder.text(name));
+    assert_eq!(texts, [BROKEN, TIDY, TIDY, "sphere { radus b }\n"]);
 }
 
 #[cfg(unix)]
@@ -195,15 +131,15 @@ fn pictures_are_refused() {
 fn the_owner_stays_and_nothing_runs_as_him() {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 
-    let folder = folder(&[("a.scn", UNTIDY)]);
-    let file = folder.path().join("a.scn");
+    let folder = Folder::with([("a.scn", UNTIDY)]);
+    let file = folder.path("a.scn");
     // Only root may do that; to everybody else the file stays his own.
     let _ = chown(&file, Some(1234), Some(1234));
     fs::set_permissions(&file, fs::Permissions::from_mode(0o4755)).unwrap();
     let before = fs::metadata(&file).unwrap();
-    assert_eq!(fmt(folder.path(), "", &["a.scn"]), silent(0));
+    folder.done("fmt a.scn");
     let after = fs::metadata(&file).unwrap();
     assert_eq!((after.uid(), after.gid()), (before.uid(), before.gid()));
     assert_eq!(after.mode() & 0o7777, 0o755);
-    assert_eq!(read(&folder, "a.scn"), TIDY);
+    assert_eq!(folder.text("a.scn"), TIDY);
 }

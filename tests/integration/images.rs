@@ -38,22 +38,17 @@ fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")
 }
 
-/// The names of the files in `folder` that end in `.ending`, without it, sorted.
+/// The names of the files in `folder` that have such an ending, without it, sorted.
 fn names(folder: &Path, ending: &str) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let paths = entries.map(|entry| entry.unwrap().path());
-    let mut names: Vec<String> = paths
-        .filter(|path| path.extension().is_some_and(|found| found == ending))
-        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
-        .collect();
-    names.sort();
-    names
+    let names = crate::program::names(folder).into_iter();
+    let names = names.filter_map(|name| Some(name.strip_suffix(ending)?.to_owned()));
+    names.collect()
 }
 
 #[test]
 fn the_examples_look_as_they_did() {
     let bless = std::env::var_os("PINHOLE_BLESS").is_some();
-    let scenes = names(&examples(), "scn");
+    let scenes = names(&examples(), ".scn");
     for name in &scenes {
         let text = fs::read_to_string(examples().join(format!("{name}.scn"))).unwrap();
         assert!(
@@ -67,18 +62,12 @@ fn the_examples_look_as_they_did() {
         }
         let kept = image::open(&kept).unwrap_or_else(|error| panic!("{}: {error}", kept.display()));
         let kept = kept.into_rgb8();
-        let differing = picture
-            .pixels()
-            .zip(kept.pixels())
-            .filter(|(a, b)| a != b)
-            .count();
-        assert_eq!(
-            (picture.dimensions(), differing),
-            (kept.dimensions(), 0),
-            "{name}"
-        );
+        let pairs = picture.pixels().zip(kept.pixels());
+        let differing = pairs.filter(|(a, b)| a != b).count();
+        assert_eq!(picture.dimensions(), kept.dimensions(), "{name}");
+        assert_eq!(differing, 0, "{name}");
     }
-    let kept = names(&examples().join("pictures"), "png");
+    let kept = names(&examples().join("pictures"), ".png");
     assert_eq!(scenes, kept, "a picture for each example and no other");
 }
 
@@ -96,5 +85,5 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
         shown.push(name.to_owned());
     }
     shown.sort();
-    assert_eq!(shown, names(&examples(), "scn"));
+    assert_eq!(shown, names(&examples(), ".scn"));
 }

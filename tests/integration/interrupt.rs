@@ -1,28 +1,24 @@
 //! Ctrl-C as a terminal sends it, and the signal by which a system ends a program.
 
 use std::{
-    fs,
-    process::{Command, Output, Stdio},
+    process::{Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
-use crate::program::{command, names};
+use crate::program::{Folder, Said};
 
 /// A command that is interrupted after so many milliseconds: long enough to have begun, and far from long enough to be done. What it says then.
-pub fn interrupted(command: &mut Command, after: u64) -> Output {
-    let (output, time) = ended_by("INT", command, after);
+pub fn interrupted(command: &mut Command, after: u64) -> Said {
+    let (said, time) = ended_by("INT", command, after);
     assert!(time < Duration::from_secs(5));
-    output
+    said
 }
 
 /// The same by any signal, and how long it took to end.
-fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Output, Duration) {
-    let mut child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Said, Duration) {
+    let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
     thread::sleep(Duration::from_millis(after));
     assert!(
         child.try_wait().unwrap().is_none(),
@@ -30,19 +26,14 @@ fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Output, Duratio
     );
     let killed = Command::new("kill")
         .args([format!("-{signal}"), child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(killed.success());
+        .status();
+    assert!(killed.unwrap().success());
     let start = Instant::now();
     let output = child.wait_with_output().unwrap();
     let time = start.elapsed();
-    assert_eq!(
-        output.status.code(),
-        Some(130),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    (output, time)
+    let said = Said::from(output);
+    assert_eq!(said.status, 130, "{}", said.errors);
+    (said, time)
 }
 
 /// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes more than a minute.
@@ -59,28 +50,18 @@ pub fn long_pixel() -> String {
 
 #[test]
 fn one_signal_ends_it_within_a_pixel() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("long.scn"), long_pixel()).unwrap();
-    image::RgbImage::new(1, 1)
-        .save(folder.path().join("black.png"))
-        .unwrap();
-    let before = ["black.png", "long.scn"];
-    for arguments in [
-        &["render", "long.scn", "-o", "long.png"][..],
-        &["render", "long.scn", "-o", "long.exr"],
-        &["diff", "black.png", "long.scn", "-o", "heat.png"],
-        &["report", "long.scn"],
+    let folder = Folder::with([("long.scn", &*long_pixel())]);
+    let black = image::RgbImage::new(1, 1);
+    black.save(folder.path("black.png")).unwrap();
+    for (signal, line) in [
+        ("INT", "render long.scn -o long.png"),
+        ("TERM", "render long.scn -o long.exr"),
+        ("INT", "diff black.png long.scn -o heat.png"),
+        #[cfg(feature = "report")]
+        ("INT", "report long.scn"),
     ] {
-        if arguments[0] == "report" && !cfg!(feature = "report") {
-            continue;
-        }
-        for signal in ["INT", "TERM"] {
-            let (_, time) = ended_by(signal, &mut command(folder.path(), arguments), 500);
-            assert!(
-                time < Duration::from_millis(900),
-                "{arguments:?} took {time:?} to end"
-            );
-            assert_eq!(names(folder.path()), before, "{arguments:?}");
-        }
+        let (_, time) = ended_by(signal, &mut folder.command(line), 500);
+        assert!(time < Duration::from_millis(900), "{line}: {time:?}");
+        assert_eq!(folder.names(), ["black.png", "long.scn"], "{line}");
     }
 }

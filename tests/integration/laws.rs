@@ -2,14 +2,14 @@
 //!
 //! Coordinates are multiples of 1/128, so that moving and turning them is exact.
 
-use glam::{DVec3, dvec3};
+use glam::{DVec3, Vec3Swizzles, dvec3};
 use pinhole::{
     area::Area,
     math::{Angle, predicates},
     render::{Control, Exact, render_exact},
     scene::{
-        Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Lens, Method, Outline, Sampler,
-        Scene, Shape, Sphere, Triangle, View,
+        Camera, CenteredTriangle, Count, Lens, Method, Outline, Sampler, Scene, Shape, Triangle,
+        View,
     },
     tracer::World,
 };
@@ -93,11 +93,7 @@ fn stage() -> impl Strategy<Value = Stage> {
             Stage { camera, shapes }
         })
         .prop_filter("up is not along the view", |stage| {
-            let View::Lookat(at) = stage.camera.view else {
-                return false;
-            };
-            let view = at - stage.camera.eye;
-            view.x != 0.0 || view.z != 0.0
+            matches!(stage.camera.view, View::Lookat(at) if at.xz() != stage.camera.eye.xz())
         })
 }
 
@@ -109,49 +105,39 @@ impl Stage {
         direction: impl Fn(DVec3) -> DVec3,
         scale: f64,
     ) -> Self {
-        let mut camera = self.camera;
+        let mut stage = self.clone();
+        let camera = &mut stage.camera;
         camera.eye = place(camera.eye);
         if let View::Lookat(at) = camera.view {
             camera.view = View::Lookat(place(at));
         }
         camera.near *= scale;
         camera.far = camera.far.map(|far| far * scale);
-        let shapes = self.shapes.iter().map(|shape| match *shape {
-            Shape::Sphere(shape) => Shape::Sphere(Sphere {
-                center: place(shape.center),
-                radius: shape.radius * scale,
-                ..shape
-            }),
-            Shape::Triangle(shape) => Shape::Triangle(Triangle {
-                outline: match shape.outline {
-                    Outline::Centered(shape) => Outline::Centered(CenteredTriangle {
-                        centroid: place(shape.centroid),
-                        normal: direction(shape.normal),
-                        sides: shape.sides * scale,
-                        ..shape
-                    }),
-                    Outline::Vertices(vertices) => Outline::Vertices(vertices.map(&place)),
+        for shape in &mut stage.shapes {
+            match shape {
+                Shape::Sphere(sphere) => {
+                    sphere.center = place(sphere.center);
+                    sphere.radius *= scale;
+                }
+                Shape::Triangle(triangle) => match &mut triangle.outline {
+                    Outline::Centered(triangle) => {
+                        triangle.centroid = place(triangle.centroid);
+                        triangle.normal = direction(triangle.normal);
+                        triangle.sides *= scale;
+                    }
+                    Outline::Vertices(vertices) => *vertices = vertices.map(&place),
                 },
-                ..shape
-            }),
-            Shape::Box(shape) => {
-                let (a, b) = (place(shape.min), place(shape.max));
-                Shape::Box(Cuboid {
-                    min: a.min(b),
-                    max: a.max(b),
-                    ..shape
-                })
+                Shape::Box(cuboid) => {
+                    let (a, b) = (place(cuboid.min), place(cuboid.max));
+                    (cuboid.min, cuboid.max) = (a.min(b), a.max(b));
+                }
+                Shape::Checkerboard(board) => {
+                    board.y = place(DVec3::Y * board.y).y;
+                    board.square *= scale;
+                }
             }
-            Shape::Checkerboard(shape) => Shape::Checkerboard(Checkerboard {
-                y: place(DVec3::Y * shape.y).y,
-                square: shape.square * scale,
-                ..shape
-            }),
-        });
-        Self {
-            camera,
-            shapes: shapes.collect(),
         }
+        stage
     }
 
     /// The scene, with the board's colours swapped or not.
@@ -178,15 +164,10 @@ impl Stage {
 type Picture = Vec<Vec<[u64; 3]>>;
 
 fn picture(scene: &Scene) -> Picture {
-    let (width, height) = (scene.image.width, scene.image.height);
-    let film = sampled(scene, Area::whole(width, height));
-    let bits = |row| {
-        film.row(row)
-            .iter()
-            .map(|pixel| pixel.map(f64::to_bits))
-            .collect()
-    };
-    (0..height).map(bits).collect()
+    let film = sampled(scene, Area::whole(scene.image.width, scene.image.height));
+    let row = |row| film.row(row).iter();
+    let bits = |y| row(y).map(|pixel| pixel.map(f64::to_bits)).collect();
+    (0..film.height()).map(bits).collect()
 }
 
 /// The pictures of two stages are the same, with the board's colours swapped in the second or not: sampled to the bit, and exactly.

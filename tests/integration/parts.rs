@@ -17,6 +17,7 @@ use proptest::{prelude::*, sample::select};
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     scenes::scenes,
+    table::list,
 };
 
 /// Every scene that there is beside the source.
@@ -75,28 +76,30 @@ fn every_prefix_of_a_scene_of_everything(effort: Effort) {
 #[test]
 fn mistakes_at_the_end_of_a_part() {
     let camera = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
-    for text in [
-        "let a = { sphere { center (0, 1, 0) } }",
-        "sphere { center (0, 1, 0) /* } sphere {} */ }",
-        "sphere { center (0, 1, 0) /* } sphere {} ",
-        "sphere { center (0, 1, 0) } /* sphere {} ",
-        "sphere { center (0, 1, 0) // }\n} sphere { center (0, 0, 0) }",
-        "sphere { center \"}\" } sphere { center '}' }",
-        "sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }",
-        "sphere { center (0, 1, 0) { } } sphere { center (0, 1, 0) }",
-        "sphere { sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }",
-        "sphere { center (0, 1, 0) } } }",
-        "{ center (0, 1, 0) } { center (0, 1, 0) }",
-        "sphere { center (0, 1, 0) let a = 1 } sphere { center (0, a, 0) }",
-        "sphere A { center (0, b, 0) } let b = 1 sphere A { center (0, b, 0) }",
-        "sphere A { center A } sphere B { center (0, 1, 0) radius color }",
-        "sphere { center (0, 1, 0) radius radius } let radius = 1",
-        "sphere { center (0, 1, 0) radius 1e-400 } let radius = 1 sphere { centre (0, 1, 0) }",
-        "sphere { center (0, 1, 0) };\nsphere { center (0, 1, 0) },\n",
-        "let a = 2 pi\nsphere { center (0, 1, 0) }",
-        "let a =\nsphere { center (0, 1, 0) }",
-        "sphere { center (0, 1, 0) } let a = 2 pi\nsphere { center (0, a, 0) }",
-    ] {
+    for text in list(
+        r#"
+        let a = { sphere { center (0, 1, 0) } }
+        sphere { center (0, 1, 0) /* } sphere {} */ }
+        sphere { center (0, 1, 0) /* } sphere {}
+        sphere { center (0, 1, 0) } /* sphere {}
+        sphere { center (0, 1, 0) // }\n} sphere { center (0, 0, 0) }
+        sphere { center "}" } sphere { center '}' }
+        sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }
+        sphere { center (0, 1, 0) { } } sphere { center (0, 1, 0) }
+        sphere { sphere { center (0, 1, 0) } } sphere { center (0, 1, 0) }
+        sphere { center (0, 1, 0) } } }
+        { center (0, 1, 0) } { center (0, 1, 0) }
+        sphere { center (0, 1, 0) let a = 1 } sphere { center (0, a, 0) }
+        sphere A { center (0, b, 0) } let b = 1 sphere A { center (0, b, 0) }
+        sphere A { center A } sphere B { center (0, 1, 0) radius color }
+        sphere { center (0, 1, 0) radius radius } let radius = 1
+        sphere { center (0, 1, 0) radius 1e-400 } let radius = 1 sphere { centre (0, 1, 0) }
+        sphere { center (0, 1, 0) };\nsphere { center (0, 1, 0) },\n
+        let a = 2 pi\nsphere { center (0, 1, 0) }
+        let a =\nsphere { center (0, 1, 0) }
+        sphere { center (0, 1, 0) } let a = 2 pi\nsphere { center (0, a, 0) }
+    "#,
+    ) {
         for text in [
             text.to_owned(),
             format!("{camera}{text}"),
@@ -111,22 +114,24 @@ fn mistakes_at_the_end_of_a_part() {
 #[test]
 fn arguments() {
     let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) } sphere Ball { center (0, a, 0) } let b = 2 sphere { center (b, 1, 0) }";
-    for (set, value) in [
-        ("image.width", "64"),
-        ("camera.d", "b"),
-        ("camera.d", "Ball"),
-        ("camera.d", "c"),
-        ("camera.lens", "2"),
-        ("camera.direction", "(0, 0, -b)"),
-        ("a", "2"),
-        ("c", "2"),
-        ("Ball", "2"),
-        ("Ball.radius", "b"),
-        ("Bal.radius", "b"),
-        ("sphere.radius", "b"),
-        ("sampler.total", "100"),
-    ] {
-        assert!(check(text, 1, &[&format!("{set}={value}")]));
+    for set in list(
+        "
+        image.width=64
+        camera.d=b
+        camera.d=Ball
+        camera.d=c
+        camera.lens=2
+        camera.direction=(0, 0, -b)
+        a=2
+        c=2
+        Ball=2
+        Ball.radius=b
+        Bal.radius=b
+        sphere.radius=b
+        sampler.total=100
+    ",
+    ) {
+        assert!(check(text, 1, &[set]));
     }
     // Both of one block, be it in the text or not; and of the objects, the first one is read last.
     for sets in [
@@ -149,33 +154,8 @@ enum Change {
 }
 
 fn change() -> impl Strategy<Value = Change> {
-    let signs = vec![
-        "/*",
-        "*/",
-        "//",
-        "\"",
-        "'",
-        "{",
-        "}",
-        "}}",
-        "(",
-        ")",
-        "[",
-        "]",
-        ",",
-        ";",
-        "=",
-        "let ",
-        "let x = 1 ",
-        "let x = ",
-        "\n",
-        " x",
-        " 2",
-        " radius",
-        "sphere {",
-        "sphere A { ",
-        "\u{a0}",
-    ];
+    let signs = "/*|*/|//|\"|'|{|}|}}|(|)|[|]|,|;|=|let |let x = 1 |let x = |\n| x| 2| radius|sphere {|sphere A { |\u{a0}";
+    let signs: Vec<&str> = signs.split('|').collect();
     prop_oneof![
         6 => select(signs).prop_map(Change::PutIn),
         3 => (1..4_usize).prop_map(Change::TakeOut),

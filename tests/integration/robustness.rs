@@ -95,27 +95,16 @@ impl Garbage {
     }
 }
 
-#[test]
-fn empty_texts() {
-    assert!(!read(""));
-    assert!(!read("\n"));
-    assert!(!read("\u{feff}"));
-    assert!(!read("\0"));
-    assert!(!read("// nothing"));
-}
-
 sampled_and_exhaustive!(garbage);
 
 fn garbage(effort: Effort) {
     let length = effort.part_of(MEGABYTE);
     let mut garbage = Garbage::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
-    assert!(!read(garbage.of(length, &bytes)));
-    assert!(!read(
-        garbage.of(length, b" \n{}()+-*/,abcdef0123456789.#=\"let sphere")
-    ));
-    assert!(!read(garbage.of(length, b"(){}[] -,a1")));
-    assert!(!read(garbage.of(length, b" ")));
+    let signs = b" \n{}()+-*/,abcdef0123456789.#=\"let sphere";
+    for letters in [&bytes[..], signs, b"(){}[] -,a1", b" "] {
+        assert!(!read(garbage.of(length, letters)));
+    }
     let many: String = (0..length / 4)
         .filter_map(|_| char::from_u32((garbage.next() % 0x11_0000) as u32))
         .collect();
@@ -126,47 +115,13 @@ sampled_and_exhaustive!(one_thing_many_times);
 
 fn one_thing_many_times(effort: Effort) {
     let length = effort.part_of(MEGABYTE / 4);
-    for piece in [
-        "{",
-        "}",
-        "(",
-        ")",
-        "[",
-        "-",
-        "+",
-        "/",
-        "/*",
-        "*/",
-        "//",
-        "\"",
-        "'",
-        "a ",
-        "a\n",
-        "1 ",
-        "1,",
-        ".",
-        "#",
-        "=",
-        "let ",
-        "let a ",
-        "a = ",
-        "sphere ",
-        "sphere {",
-        "sphere {}",
-        "a{",
-        "a(",
-        "a (1\n",
-        "let a = (",
-        "°",
-        "\u{feff}",
-    ] {
+    let pieces = "{|}|(|)|[|-|+|/|/*|*/|//|\"|'|a |a\n|1 |1,|.|#|=|let |let a |a = |sphere |sphere {|sphere {}|a{|a(|a (1\n|let a = (|°|\u{feff}|\0|// nothing";
+    for piece in pieces.split('|') {
         assert!(!read(piece.repeat(length / piece.len())), "{piece:?}");
-        let within = format!(
-            "{CAMERA} sphere {{ center {}",
-            piece.repeat(length / 4 / piece.len())
-        );
-        read(within);
+        let within = piece.repeat(length / 4 / piece.len());
+        read(format!("{CAMERA} sphere {{ center {within}"));
     }
+    assert!(!read(""));
 }
 
 sampled_and_exhaustive!(definitions_in_the_wrong_order);
@@ -182,6 +137,7 @@ fn definitions_in_the_wrong_order(effort: Effort) {
 
 #[test]
 fn deep_values() {
+    let wrong = |value: String| assert!(!read(format!("{CAMERA} let a = {value}")));
     for (open, inner, close) in [
         ("(", "1", ")"),
         ("-", "1", ""),
@@ -189,32 +145,19 @@ fn deep_values() {
         ("(", "", ""),
         ("-(", "", ""),
     ] {
-        let value = format!("{}{inner}{}", open.repeat(100_000), close.repeat(100_000));
-        assert!(!read(format!("{CAMERA} let a = {value}")), "{open}");
+        let [open, close] = [open, close].map(|part| part.repeat(100_000));
+        wrong(format!("{open}{inner}{close}"));
     }
     // In quotes nothing is closed.
-    for (piece, count) in [
-        ("( \")\" ", 300),
-        ("( ')' ", 100_000),
-        ("( \"}\" ", 100_000),
-        ("[ ']' + (\n", 100_000),
-        ("(' \" ( ') \" ", 100_000),
-    ] {
-        assert!(
-            !read(format!("{CAMERA} let a = {}", piece.repeat(count))),
-            "{piece}"
-        );
+    wrong("( \")\" ".repeat(300));
+    for piece in ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "] {
+        wrong(piece.repeat(100_000));
     }
-    let long = vec!["1"; 100_000].join(" + ");
-    assert!(
-        read(format!("{CAMERA} let a = {long}")),
-        "a long sum is not deep"
-    );
-    let long = vec!["1"; 100_000].join(" * ");
-    assert!(
-        read(format!("{CAMERA} let a = {long}")),
-        "nor is a long product"
-    );
+    // A long sum is not deep, nor is a long product.
+    for sign in [" + ", " * "] {
+        let long = vec!["1"; 100_000].join(sign);
+        assert!(read(format!("{CAMERA} let a = {long}")), "{sign}");
+    }
 }
 
 sampled_and_exhaustive!(ten_megabytes_in_a_line);
@@ -238,13 +181,16 @@ fn many_mistakes_and_many_names(effort: Effort) {
         let lines: String = (0..effort.part_of(40_000)).map(line).collect();
         format!("{CAMERA}{lines}")
     };
-    assert!(!read(lines(&|i| format!("let a{i} = b{i}\n"))));
-    assert!(!read(lines(&|i| format!("let a = {i}\n"))));
-    assert!(!read(lines(
-        &|_| "sphere A { center (0, 1, 0) }\n".to_owned()
-    )));
-    assert!(!read(lines(&|_| CAMERA.to_owned())));
-    assert!(!read(lines(&|_| "sphere { center (0, 1, 0 }\n".to_owned())));
+    let wrong: [&dyn Fn(usize) -> String; 5] = [
+        &|i| format!("let a{i} = b{i}\n"),
+        &|i| format!("let a = {i}\n"),
+        &|_| "sphere A { center (0, 1, 0) }\n".to_owned(),
+        &|_| CAMERA.to_owned(),
+        &|_| "sphere { center (0, 1, 0 }\n".to_owned(),
+    ];
+    for wrong in wrong {
+        assert!(!read(lines(wrong)));
+    }
     assert!(read(
         lines(&|i| format!("let a{} = a{i} + 1\n", i + 1)).replacen("let a1 = a0", "let a1 = 0", 1)
     ));
@@ -253,27 +199,27 @@ fn many_mistakes_and_many_names(effort: Effort) {
 sampled_and_exhaustive!(many_overrides);
 
 fn many_overrides(effort: Effort) {
-    let count = effort.part_of(4_000);
-    let lines = |line: &dyn Fn(usize) -> String| -> String { (0..count).map(line).collect() };
-    let sets = |set: &dyn Fn(usize) -> String| -> Vec<String> { (0..count).map(set).collect() };
-    let lets = format!("{CAMERA}{}", lines(&|i| format!("let a{i} = {i}\n")));
-    assert!(read_with_sets(&*lets, &sets(&|i| format!("a{i}=2"))));
-    assert!(!read_with_sets(&*lets, &sets(&|i| format!("zz{i}=2"))));
-    let sphere = |i| format!("sphere S{i} {{ center (0, 1, 0) }}\n");
-    let spheres = format!("{CAMERA}{}", lines(&sphere));
-    assert!(read_with_sets(
-        &*spheres,
-        &sets(&|i| format!("S{i}.radius=2"))
-    ));
-    assert!(!read_with_sets(
-        &*spheres,
-        &sets(&|i| format!("T{i}.radius=2"))
-    ));
-    assert!(!read_with_sets(&*spheres, &sets(&|i| format!("S{i}=2"))));
-    assert!(!read_with_sets(
-        &*spheres,
-        &sets(&|_| "camera.e=2".to_owned())
-    ));
+    let lines = |line: &str| -> Vec<String> {
+        let lines = 0..effort.part_of(4_000);
+        lines.map(|i| line.replace('N', &i.to_string())).collect()
+    };
+    let lets = format!("{CAMERA}{}", lines("let aN = N\n").concat());
+    let spheres = lines("sphere SN { center (0, 1, 0) }\n").concat();
+    let spheres = format!("{CAMERA}{spheres}");
+    for (text, set, is_right) in [
+        (&lets, "aN=2", true),
+        (&lets, "zzN=2", false),
+        (&spheres, "SN.radius=2", true),
+        (&spheres, "TN.radius=2", false),
+        (&spheres, "SN=2", false),
+        (&spheres, "camera.e=2", false),
+    ] {
+        assert_eq!(
+            read_with_sets(text.as_str(), &lines(set)),
+            is_right,
+            "{set}"
+        );
+    }
 }
 
 #[test]

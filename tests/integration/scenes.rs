@@ -2,6 +2,7 @@
 
 use std::{
     fs,
+    num::NonZero,
     path::{Path, PathBuf},
 };
 
@@ -30,6 +31,14 @@ pub fn scenes(folder: &str) -> Vec<PathBuf> {
 pub fn examples() -> Vec<String> {
     let texts = scenes("examples").into_iter().map(fs::read_to_string);
     texts.map(|text| text.expect("a text")).collect()
+}
+
+/// How a picture is rendered by the calling thread alone.
+pub fn one_thread() -> Control<'static> {
+    Control {
+        threads: NonZero::new(1),
+        ..Control::default()
+    }
 }
 
 pub fn sources(text: &str) -> Sources {

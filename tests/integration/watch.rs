@@ -6,21 +6,14 @@
 use std::{
     fs,
     io::Read,
-    path::PathBuf,
-    process::{Child, Command, ExitStatus, Stdio},
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
     sync::{Arc, Mutex},
     thread,
     time::{Duration, Instant},
 };
 
-use tempfile::TempDir;
-
-use crate::{
-    cancel::spheres,
-    interrupt::long_pixel,
-    program::{command, names},
-    table::rows,
-};
+use crate::{cancel::spheres, interrupt::long_pixel, program::Folder, table::rows};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -34,27 +27,29 @@ fn scene(color: &str) -> String {
 
 const RED: [u8; 3] = [255, 0, 0];
 const BLUE: [u8; 3] = [0, 0, 255];
-const LIME: [u8; 3] = [0, 255, 0];
+
+fn rgb(color: &str) -> [u8; 3] {
+    pinhole::schema::css::color(color).unwrap().to_bytes()
+}
 
 /// A running `watch` of `a.scn` in a folder of its own.
 struct Watch {
-    folder: TempDir,
+    folder: Folder,
     child: Child,
     said: Arc<Mutex<String>>,
 }
 
 impl Watch {
-    fn start(text: &str, arguments: &[&str]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("a.scn"), text).unwrap();
-        Self::start_in(folder, "a.scn", arguments)
+    /// Of a picture of one colour, which is there.
+    fn of(color: &str) -> Self {
+        let watch = Self::start(Folder::with([("a.scn", scene(color).as_str())]), "a.scn");
+        watch.wait_for(rgb(color));
+        watch
     }
 
-    fn start_in(folder: TempDir, scene: &str, arguments: &[&str]) -> Self {
-        let mut child = command(folder.path(), &[&["watch", scene], arguments].concat())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+    fn start(folder: Folder, arguments: &str) -> Self {
+        let mut command = folder.command(&format!("watch {arguments}"));
+        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
         let mut errors = child.stderr.take().unwrap();
         let said = Arc::new(Mutex::new(String::new()));
         thread::spawn({
@@ -75,11 +70,24 @@ impl Watch {
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
+        self.folder.path(name)
+    }
+
+    /// Puts a file with such a text in the scene's place.
+    fn replace(&self, text: &str) {
+        self.folder.write("new", text);
+        fs::rename(self.path("new"), self.path("a.scn")).unwrap();
+    }
+
+    /// Saves a picture of one colour, and waits for it.
+    #[track_caller]
+    fn becomes(&self, color: &str) {
+        self.save(&scene(color));
+        self.wait_for(rgb(color));
     }
 
     fn save(&self, text: &str) {
-        fs::write(self.path("a.scn"), text).unwrap();
+        self.folder.write("a.scn", text);
     }
 
     fn said(&self) -> String {
@@ -115,24 +123,21 @@ impl Watch {
         Some(picture.to_rgb8().get_pixel(0, 0).0)
     }
 
-    fn end(&mut self) -> ExitStatus {
-        let sent = Command::new("kill")
-            .args(["-INT", &self.child.id().to_string()])
-            .status()
-            .unwrap();
-        assert!(sent.success());
+    /// Interrupts it: it ends as an interrupted program does, and leaves nothing but the picture.
+    fn end(&mut self) {
+        let mut kill = Command::new("kill");
+        let sent = kill.args(["-INT", &self.child.id().to_string()]).status();
+        assert!(sent.unwrap().success());
         let start = Instant::now();
-        loop {
+        let status = loop {
             if let Some(status) = self.child.try_wait().unwrap() {
-                return status;
+                break status;
             }
             assert!(start.elapsed() < PATIENCE, "it goes on:\n{}", self.said());
             thread::sleep(Duration::from_millis(5));
-        }
-    }
-
-    fn names(&self) -> Vec<String> {
-        names(self.folder.path())
+        };
+        assert_eq!(status.code(), Some(130));
+        assert_eq!(self.folder.names(), ["a.png", "a.scn"]);
     }
 }
 
@@ -145,14 +150,11 @@ impl Drop for Watch {
 
 #[test]
 fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
-    let mut watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
+    let mut watch = Watch::of("red");
     watch.wait("it says so", || watch.count("after the start") == 1);
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.wait("it says so", || watch.count("after the save") == 1);
-    assert_eq!(watch.end().code(), Some(130));
-    assert_eq!(watch.names(), ["a.png", "a.scn"]);
+    watch.end();
     let said = watch.said();
     let lines: Vec<&str> = said.lines().collect();
     assert_eq!(lines[0], "watching a.scn; Ctrl-C ends it");
@@ -163,129 +165,116 @@ fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
 
 #[test]
 fn editors_that_save_by_renaming_are_seen() {
-    let watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
+    let watch = Watch::of("red");
     // A new file is written and takes the place of the old one.
-    fs::write(watch.path(".a.scn.new"), scene("blue")).unwrap();
-    fs::rename(watch.path(".a.scn.new"), watch.path("a.scn")).unwrap();
+    watch.replace(&scene("blue"));
     watch.wait_for(BLUE);
     // The old file is renamed to a backup, and a new one is written.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
-    watch.save(&scene("lime"));
-    watch.wait_for(LIME);
+    watch.becomes("lime");
     // And once more, for what was watched may be the file that is the backup now.
-    watch.save(&scene("red"));
-    watch.wait_for(RED);
+    watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
 }
 
 #[test]
 fn a_file_or_folder_that_is_gone_may_come_back() {
-    let folder = tempfile::tempdir().unwrap();
-    let inner = folder.path().join("scenes");
-    let fill = |color: &str| {
-        fs::create_dir(&inner).unwrap();
-        fs::write(inner.join("a.scn"), scene(color)).unwrap();
-    };
-    fill("red");
-    let watch = Watch::start_in(folder, "scenes/a.scn", &["-o", "a.png"]);
+    let folder = Folder::with([("scenes/a.scn", scene("red").as_str())]);
+    let watch = Watch::start(folder, "scenes/a.scn -o a.png");
     watch.wait_for(RED);
-    fs::remove_file(inner.join("a.scn")).unwrap();
+    let becomes = |color: &str| {
+        watch.folder.write("scenes/a.scn", scene(color));
+        watch.wait_for(rgb(color));
+    };
+    fs::remove_file(watch.path("scenes/a.scn")).unwrap();
     watch.wait("it is missed", || watch.count("error: cannot read") == 1);
     assert_eq!(watch.color("a.png"), Some(RED));
-    fs::write(inner.join("a.scn"), scene("lime")).unwrap();
-    watch.wait_for(LIME);
-    fs::remove_dir_all(&inner).unwrap();
+    becomes("lime");
+    fs::remove_dir_all(watch.path("scenes")).unwrap();
     watch.wait("it is missed", || watch.count("error: cannot read") >= 2);
-    fill("blue");
-    watch.wait_for(BLUE);
-    fs::write(inner.join("a.scn"), scene("lime")).unwrap();
-    watch.wait_for(LIME);
+    becomes("blue");
+    becomes("lime");
+}
+
+/// A watch of a link to a red scene elsewhere, which lies beside a blue one.
+fn watch_link(link: impl Fn(&Path)) -> (Folder, Watch) {
+    let far = Folder::with([]);
+    for color in ["red", "blue"] {
+        far.write(color, scene(color));
+    }
+    link(&far.path("."));
+    let folder = Folder::with([]);
+    std::os::unix::fs::symlink(far.path("link"), folder.path("a.scn")).unwrap();
+    let watch = Watch::start(folder, "a.scn");
+    watch.wait_for(RED);
+    (far, watch)
 }
 
 #[test]
 fn a_link_and_the_file_at_its_end_are_watched() {
-    let folder = tempfile::tempdir().unwrap();
-    let far = tempfile::tempdir().unwrap();
-    let target = far.path().join("real.scn");
-    fs::write(&target, scene("red")).unwrap();
-    std::os::unix::fs::symlink(&target, folder.path().join("a.scn")).unwrap();
-    let watch = Watch::start_in(folder, "a.scn", &[]);
-    watch.wait_for(RED);
-    fs::write(&target, scene("blue")).unwrap();
+    let (far, watch) = watch_link(|far| {
+        fs::rename(far.join("red"), far.join("link")).unwrap();
+    });
+    far.write("link", scene("blue"));
     watch.wait_for(BLUE);
     fs::remove_file(watch.path("a.scn")).unwrap();
-    fs::write(watch.path("a.scn"), scene("lime")).unwrap();
-    watch.wait_for(LIME);
+    watch.becomes("lime");
 }
 
 #[test]
 fn what_no_event_tells_is_seen_however_much_else_happens() {
     use std::os::unix::fs::symlink;
-    let [folder, middle, far] = [(); 3].map(|()| tempfile::tempdir().unwrap());
-    for color in ["red", "blue"] {
-        fs::write(far.path().join(color), scene(color)).unwrap();
-    }
-    let link = middle.path().join("middle");
-    symlink(far.path().join("red"), &link).unwrap();
-    symlink(&link, folder.path().join("a.scn")).unwrap();
-    let watch = Watch::start_in(folder, "a.scn", &[]);
-    watch.wait_for(RED);
+    let middle = Folder::with([]);
+    let (far, watch) = watch_link(|far| {
+        symlink(far.join("red"), middle.path("middle")).unwrap();
+        symlink(middle.path("middle"), far.join("link")).unwrap();
+    });
     // Nobody watches the folder of the link in the middle.
-    let other = middle.path().join("other");
-    symlink(far.path().join("blue"), &other).unwrap();
-    fs::rename(&other, &link).unwrap();
+    symlink(far.path("blue"), middle.path("other")).unwrap();
+    fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {
-        fs::write(watch.path("noise"), "").unwrap();
+        watch.folder.write("noise", "");
         watch.color("a.png") == Some(BLUE)
     });
 }
 
 #[test]
 fn a_pipe_in_the_files_place_is_waited_out() {
-    let watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
+    let watch = Watch::of("red");
     let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
     assert!(made.unwrap().success());
     fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
     watch.wait("it says so", || watch.count("it is not a file") > 0);
-    fs::write(watch.path("new"), scene("blue")).unwrap();
-    fs::rename(watch.path("new"), watch.path("a.scn")).unwrap();
+    watch.replace(&scene("blue"));
     watch.wait_for(BLUE);
 }
 
 #[test]
 fn broken_text_is_reported_and_the_last_picture_stays() {
-    let watch = Watch::start("sphere {", &[]);
+    let watch = Watch::start(Folder::with([("a.scn", "sphere {")]), "a.scn");
     watch.wait("it is reported", || watch.count("2 errors\n") == 1);
     assert_eq!(watch.color("a.png"), None);
-    watch.save(&scene("red"));
-    watch.wait_for(RED);
+    watch.becomes("red");
     let good = fs::read(watch.path("a.png")).unwrap();
     watch.save(&scene("blue").replace("width", "widht"));
     let report = "error[pinhole::unknown_field]: an image has no field `widht`";
     watch.wait("the mistake is reported", || watch.count(report) == 1);
     watch.wait("the report is whole", || watch.count("1 error\n") == 1);
     assert!(fs::read(watch.path("a.png")).unwrap() == good);
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.wait("it says so", || watch.count("after the save") == 2);
 }
 
 #[test]
 fn a_burst_of_saves_ends_with_the_last_ones_picture() {
-    let watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
+    let watch = Watch::of("red");
     for round in 0..100 {
-        let color = ["navy", "teal", "gold", "plum"][round % 4];
-        watch.save(&scene(color));
+        watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
-    watch.save(&scene("lime"));
-    watch.wait_for(LIME);
+    watch.becomes("lime");
     // Nothing older comes after it.
     let said = watch.count("wrote");
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
     assert_eq!(watch.color("a.png"), Some(BLUE));
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
@@ -293,79 +282,65 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
 
 #[test]
 fn what_is_superseded_is_cancelled_within_a_pixel() {
-    let mut watch = Watch::start(&scene("red"), &["--threads", "1"]);
+    let folder = Folder::with([("a.scn", scene("red").as_str())]);
+    let mut watch = Watch::start(folder, "a.scn --threads 1");
     watch.wait_for(RED);
     watch.save(&long_pixel());
     thread::sleep(Duration::from_millis(500));
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.save(&long_pixel());
     thread::sleep(Duration::from_millis(500));
     let start = Instant::now();
-    assert_eq!(watch.end().code(), Some(130));
+    watch.end();
     assert!(start.elapsed() < Duration::from_millis(900));
-    assert_eq!(watch.names(), ["a.png", "a.scn"]);
-}
-
-/// A text that takes seconds to read, and of which something is said then.
-fn long_text() -> String {
-    format!("{}sphere {{ radus 2 }}", spheres(400_000))
 }
 
 #[test]
 fn what_is_superseded_is_not_read_to_its_end_nor_what_ctrl_c_ends() {
-    let mut watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
-    watch.save(&long_text());
+    // It takes seconds to read, and something is said of it then.
+    let long = format!("{}sphere {{ radus 2 }}", spheres(400_000));
+    let mut watch = Watch::of("red");
+    watch.save(&long);
     thread::sleep(Duration::from_millis(300));
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.wait("it says so", || watch.count("after the save") == 1);
-    watch.save(&long_text());
+    watch.save(&long);
     thread::sleep(Duration::from_millis(300));
-    assert_eq!(watch.end().code(), Some(130));
+    watch.end();
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
-    assert_eq!(watch.names(), ["a.png", "a.scn"]);
 }
 
 #[test]
 fn what_is_no_save_makes_no_picture() {
-    let watch = Watch::start(&scene("red"), &[]);
-    watch.wait_for(RED);
+    let watch = Watch::of("red");
     watch.wait("it says so", || watch.count("wrote") == 1);
-    fs::write(watch.path("other.txt"), "not a scene").unwrap();
+    watch.folder.write("other.txt", "not a scene");
     // As editors do behind a save, and whoever reads the file.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     fs::read(watch.path("a.scn")).unwrap();
     // Longer than the quiet that ends a burst.
     thread::sleep(Duration::from_millis(100));
-    watch.save(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
     assert_eq!(watch.count("wrote"), 2, "{}", watch.said());
 }
 
 #[test]
 fn a_save_of_the_text_that_was_there_is_a_save() {
-    let watch = Watch::start(&scene("red"), &[]);
+    let watch = Watch::of("red");
     watch.wait("it is written", || watch.count("after the start") == 1);
     fs::remove_file(watch.path("a.png")).unwrap();
-    watch.save(&scene("red"));
-    watch.wait_for(RED);
+    watch.becomes("red");
     watch.wait("it says so", || watch.count("after the save") == 1);
     // By another file in its place.
     fs::remove_file(watch.path("a.png")).unwrap();
-    fs::write(watch.path("new"), scene("red")).unwrap();
-    fs::rename(watch.path("new"), watch.path("a.scn")).unwrap();
+    watch.replace(&scene("red"));
     watch.wait_for(RED);
     watch.wait("it says so", || watch.count("after the save") == 2);
-    let broken = scene("red").replace("width", "widht");
     for times in 1..=2 {
-        watch.save(&broken);
-        watch.wait("the mistake is reported", || {
-            watch.count("1 error\n") == times
-        });
+        watch.save(&scene("red").replace("width", "widht"));
+        watch.wait("it is reported", || watch.count("1 error\n") == times);
     }
     // Each save is one rendering, in however many events it comes.
     assert_eq!(watch.count("wrote"), 3, "{}", watch.said());
@@ -373,48 +348,38 @@ fn a_save_of_the_text_that_was_there_is_a_save() {
 
 #[test]
 fn the_picture_is_that_of_render() {
-    let arguments = ["--set", "image.width=32", "--threads", "2"];
-    let exr = [&arguments[..], &["-o", "b.exr"]].concat();
-    for (name, arguments) in [("a.png", &arguments[..]), ("b.exr", &exr)] {
-        let watch = Watch::start(&scene("red"), arguments);
+    let arguments = "a.scn --set image.width=32 --threads 2";
+    for name in ["a.png", "b.exr"] {
+        let folder = Folder::with([("a.scn", scene("red").as_str())]);
+        let watch = Watch::start(folder, &format!("{arguments} -o {name}"));
         watch.wait("it is written", || watch.count("wrote") == 1);
-        let picture = fs::read(watch.path(name)).unwrap();
-        let render = [&["render", "a.scn"], arguments].concat();
-        fs::remove_file(watch.path(name)).unwrap();
-        let status = command(watch.folder.path(), &render).status().unwrap();
-        assert!(status.success());
-        assert!(fs::read(watch.path(name)).unwrap() == picture, "{name}");
+        let picture = watch.folder.read(name);
+        watch
+            .folder
+            .done(&format!("render {arguments} -o c.{name}"));
+        assert!(watch.folder.read(&format!("c.{name}")) == picture, "{name}");
     }
 }
 
 #[test]
 fn a_picture_that_cannot_be_written_is_no_end() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), scene("red")).unwrap();
-    let out = folder.path().join("out");
-    fs::create_dir(&out).unwrap();
-    let watch = Watch::start_in(folder, "a.scn", &["-o", "out/a.png"]);
+    let folder = Folder::with([("a.scn", scene("red").as_str()), ("out/kept", "")]);
+    let watch = Watch::start(folder, "a.scn -o out/a.png");
     watch.wait("it is written", || watch.count("wrote") == 1);
-    fs::remove_dir_all(&out).unwrap();
+    fs::remove_dir_all(watch.path("out")).unwrap();
     watch.save(&scene("blue"));
-    watch.wait("it is told", || {
-        watch.count("error: cannot write to out/a.png: ") == 1
-    });
-    fs::create_dir(&out).unwrap();
+    let error = "error: cannot write to out/a.png: ";
+    watch.wait("it is told", || watch.count(error) == 1);
+    fs::create_dir(watch.path("out")).unwrap();
     watch.save(&scene("lime"));
-    watch.wait("it is written again", || {
-        watch.color("out/a.png") == Some(LIME)
-    });
+    let is_there = || watch.color("out/a.png") == Some(rgb("lime"));
+    watch.wait("it is written again", is_there);
 }
 
 #[test]
 fn what_cannot_be_watched_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), scene("red")).unwrap();
-    let status = command(folder.path(), &["render", "a.scn"])
-        .status()
-        .unwrap();
-    assert!(status.success());
+    let folder = Folder::with([("a.scn", scene("red").as_str())]);
+    folder.done("render a.scn");
     let table = "
         - -> standard input cannot be watched
         a.scn -o - -> standard output holds one picture
@@ -426,12 +391,8 @@ fn what_cannot_be_watched_is_refused() {
         a.scn --show -> `--show` draws in a terminal
     ";
     for [arguments, says] in rows(table) {
-        let arguments: Vec<&str> = ["watch"].into_iter().chain(arguments.split(' ')).collect();
-        let output = command(folder.path(), &arguments).output().unwrap();
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-        assert!(errors.starts_with(&format!("error: {says}")), "{errors}");
-        assert_eq!(errors.lines().count(), 1, "{errors}");
-        assert_eq!(output.stdout, b"");
+        let told = folder.told(&format!("watch {arguments}"), 2);
+        assert!(told.starts_with(&format!("error: {says}")), "{told}");
+        assert_eq!(told.lines().count(), 1, "{told}");
     }
 }

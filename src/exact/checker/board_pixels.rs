@@ -109,23 +109,21 @@ mod tests {
     use crate::{
         area::Area,
         exact::{budget::Budget, clip::PIXEL, region::Checkered},
-        scene,
-        source::{Source, Sources},
+        math::Angle,
+        report::numerics::scenes::{board, camera, scene},
+        scene::{Camera, Lens},
         tracer::{Part, Quartering, SubPixel, World},
     };
+    use glam::dvec3;
     use proptest::prelude::*;
     use std::{ops::ControlFlow, sync::atomic::AtomicBool};
 
     const SIZE: [u32; 2] = [24, 18];
 
-    fn world(camera: &str, square: f64) -> World {
-        let [width, height] = SIZE;
-        let text = format!(
-            "image {{ width {width} height {height} background black }}\ncamera {{ {camera} }}\n\
-             checkerboard {{ y 0.25 square {square} colors (gray, white) }}"
-        );
-        let sources = Sources::new(Source::from_text("a.scn", &text));
-        World::new(&scene::read(&sources).scene.expect("a scene"))
+    fn world(camera: Camera, square: f64) -> World {
+        let mut scene = scene(camera, &[board(0.25, square)]);
+        [scene.image.width, scene.image.height] = SIZE;
+        World::new(&scene)
     }
 
     /// The sums of all pixels of which the squares of the corners are known.
@@ -155,7 +153,11 @@ mod tests {
 
     #[test]
     fn most_pixels_of_few_lines_are_known() {
-        let world = world("eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75", 0.7);
+        let camera = Camera {
+            lens: Lens::Distance(2.75),
+            ..camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0))
+        };
+        let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
         // Of 18 rows of 24 pixels more than half lie below the horizon.
@@ -179,13 +181,14 @@ mod tests {
         ) {
             let [x, z] = place;
             let (yaw, down) = (yaw.to_radians(), down.to_radians());
-            let (x, y, z) = (x + offset, 0.25 + libm::pow(10.0, height), z);
-            let ahead = [libm::cos(yaw), -libm::tan(down), libm::sin(yaw)].map(|step| 1e3 * step);
-            let camera = format!(
-                "eye ({x}, {y}, {z}) lookat ({}, {}, {}) roll {roll}deg fov {fov}deg",
-                x + ahead[0], y + ahead[1], z + ahead[2]
-            );
-            let world = world(&camera, libm::pow(10.0, square));
+            let eye = dvec3(x + offset, 0.25 + libm::pow(10.0, height), z);
+            let ahead = 1e3 * dvec3(libm::cos(yaw), -libm::tan(down), libm::sin(yaw));
+            let camera = Camera {
+                roll: Angle::from_degrees(roll),
+                lens: Lens::Fov(Angle::from_degrees(fov)),
+                ..camera(eye, eye + ahead)
+            };
+            let world = world(camera, libm::pow(10.0, square));
             let (sums, mut compared) = (sums(&world), 0);
             let are_all_flat = sums.is_empty();
             for (BoardPixel { x, y, .. }, sum) in sums {
@@ -199,10 +202,10 @@ mod tests {
                 let other = seen.board.over(&PIXEL, &budget);
                 let value = if seen.odd { -other.value } else { other.value };
                 let off = (sum.value - value).abs();
-                prop_assert!(off <= sum.bound + other.bound, "{camera} at {x}, {y}: {sum:?} and {other:?}");
+                prop_assert!(off <= sum.bound + other.bound, "{camera:?} at {x}, {y}: {sum:?} and {other:?}");
                 compared += 1;
             }
-            prop_assert!(compared > 0 || are_all_flat || fov < 1.0 || square < 0.0, "{camera}");
+            prop_assert!(compared > 0 || are_all_flat || fov < 1.0 || square < 0.0, "{camera:?}");
         }
     }
 }

@@ -2,61 +2,60 @@
 
 use std::ops::ControlFlow;
 
+use glam::{DVec3, dvec3};
+
 use super::{Part, Quartering, Scratch, candidates};
 use crate::{
     area::Area,
-    scene::{self, Scene},
-    source::{Source, Sources},
+    report::numerics::scenes::{SIZE, along, board, cuboid, scene, sphere, triangle},
+    scene::Shape,
     tracer::World,
 };
 
-const SIZE: u32 = 64;
-
-fn read(objects: &str) -> Scene {
-    let text = format!(
-        "image {{ width {SIZE} height {SIZE} }} camera {{ eye (0, 0, 0) direction (0, 0, -1) d 2 }} {objects}"
-    );
-    let sources = Sources::new(Source::from_text("a.scn", text));
-    scene::read(&sources).scene.unwrap()
+fn world(shapes: &[Shape]) -> World {
+    World::new(&scene(along(DVec3::ZERO, DVec3::NEG_Z), shapes))
 }
 
 /// A thousand spheres of a depth all over the picture.
-fn thousand_spheres(depth: f64) -> String {
+fn thousand_spheres(depth: f64) -> Vec<Shape> {
     let sphere = |index: i32| {
         let x = (f64::from(index % 40) - 19.5) * 0.02 * depth;
         let y = (f64::from(index / 40) - 12.0) * 0.02 * depth;
-        let radius = depth * 0.004;
-        format!("sphere {{ center ({x}, {y}, -{depth}) radius {radius} }} ")
+        sphere(dvec3(x, y, -depth), depth * 0.004)
     };
     (0..1000).map(sphere).collect()
 }
 
 /// Large triangles in planes behind each other, in any order, before the first of which nothing lies.
-fn triangles_in_layers(count: usize) -> String {
-    let triangle = |index: usize| {
+fn triangles_in_layers(count: usize) -> World {
+    let layer = |index: usize| {
         let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
-        format!(
-            "triangle {{ centroid (0, 0, -{depth}) normal (0.3, 0.2, 1) sides (400, 400, 400) }} "
-        )
+        let normal = dvec3(0.3, 0.2, 1.0);
+        triangle(dvec3(0.0, 0.0, -depth), normal, DVec3::splat(400.0))
     };
-    (0..count).map(triangle).collect()
+    world(&(0..count).map(layer).collect::<Vec<_>>())
 }
 
 /// Boards below each other and above each other, of one colour each, in any order; the horizon lies in the picture.
-fn boards_in_layers(count: usize) -> String {
-    let board = |index: usize| {
+fn boards_in_layers(count: usize) -> World {
+    let layer = |index: usize| {
         let height = 1.0 + (index * 37 % count) as f64 / 64.0;
-        let sign = ["", "-"][index % 2];
-        format!("checkerboard {{ y {sign}{height} colors (teal, teal) }} ")
+        board([height, -height][index % 2], 1.0)
     };
-    (0..count).map(board).collect()
+    let layers: Vec<_> = (0..count).map(layer).collect();
+    let mut scene = scene(along(DVec3::ZERO, DVec3::NEG_Z), &layers);
+    for object in &mut scene.objects {
+        if let Shape::Checkerboard(board) = &mut object.shape {
+            board.colors[1] = board.colors[0];
+        }
+    }
+    World::new(&scene)
 }
 
 #[test]
 fn of_layers_only_those_that_are_seen_are_candidates() {
     for count in [9, 33, 101, 1001] {
-        for layers in [triangles_in_layers(count), boards_in_layers(count)] {
-            let world = World::new(&read(&layers));
+        for world in [triangles_in_layers(count), boards_in_layers(count)] {
             let parts = Quartering::new(&world);
             let flow = parts.parts(
                 Area::whole(SIZE, SIZE),
@@ -80,10 +79,12 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
 
 #[test]
 fn what_a_wall_hides_is_not_found() {
-    let wall = "box { min (-9, -9, -5) max (9, 9, -4) }";
+    let wall = cuboid(dvec3(-9.0, -9.0, -5.0), dvec3(9.0, 9.0, -4.0));
     let mut found = Vec::new();
     for (depth, behind) in [(8.0, true), (3.0, false)] {
-        let world = World::new(&read(&format!("{} {wall}", thousand_spheres(depth))));
+        let mut shapes = thousand_spheres(depth);
+        shapes.push(wall);
+        let world = world(&shapes);
         let whole = Area::whole(SIZE, SIZE);
         assert_eq!(candidates::within(&world, whole, 1, &mut found), behind);
         assert!(candidates::within(&world, whole, usize::MAX, &mut found));

@@ -1,12 +1,8 @@
 //! What reaches a terminal of texts that come from elsewhere.
 
-use std::fs;
-
 use pinhole::film::{self, Film, Recipe};
 
-use super::{SCENE, errors, folder, pinhole, pinhole_reading, status};
-#[cfg(unix)]
-use crate::program::command;
+use super::{SCENE, folder};
 
 /// It would set the window's title, colour the text, and turn it round.
 const EVIL: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
@@ -21,88 +17,63 @@ fn assert_tame(errors: &str, what: &str) {
 #[test]
 fn nothing_acts_on_it() {
     let folder = folder();
-    let path = |name: &str| folder.path().join(name);
-    fs::write(
-        path("text.scn"),
-        format!("let a = \"{EVIL}\"\n/* {EVIL} */ sphere {{ radius {EVIL} }}\n"),
-    )
-    .unwrap();
-    fs::write(
-        path("spaced.scn"),
-        format!("sphere  {{ center (0, 1, 0) }} // {EVIL}\n"),
-    )
-    .unwrap();
-    let set = format!("Ball.radius={EVIL}");
-    let crop = format!("--crop={EVIL}");
-    let name = format!("{}.scn", EVIL.replace('/', ""));
-    let to = format!("{EVIL}.png/x.png");
-    for arguments in [
-        vec!["check", "text.scn"],
-        vec!["fmt", "--check", "text.scn"],
-        vec!["fmt", "--check", "spaced.scn"],
-        vec!["check", "a.scn", "--set", &set],
-        vec!["render", "a.scn", &crop],
-        vec!["render", &name],
-        vec!["render", "a.scn", "-o", &to],
-        vec!["diff", &name, "a.scn"],
-        vec!["explain", &name],
+    let text = format!("let a = \"{EVIL}\"\n/* {EVIL} */ sphere {{ radius {EVIL} }}\n");
+    folder.write("text.scn", text);
+    let spaced = format!("sphere  {{ center (0, 1, 0) }} // {EVIL}\n");
+    folder.write("spaced.scn", spaced);
+    let name = format!("'{}.scn'", EVIL.replace('/', ""));
+    for line in [
+        "check text.scn",
+        "fmt --check text.scn",
+        "fmt --check spaced.scn",
+        &format!("check a.scn --set 'Ball.radius={EVIL}'"),
+        &format!("render a.scn '--crop={EVIL}'"),
+        &format!("render {name}"),
+        &format!("render a.scn -o '{EVIL}.png/x.png'"),
+        &format!("diff {name} a.scn"),
+        &format!("explain {name}"),
     ] {
-        let output = pinhole(&folder, &arguments);
-        assert_ne!(status(&output), 0, "{arguments:?}");
-        assert_tame(&errors(&output), &format!("{arguments:?}"));
+        let said = folder.run(line);
+        assert_ne!(said.status, 0, "{line:?}");
+        assert_tame(&said.errors, line);
     }
     // Of what a picture carries, too.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
-        overrides: vec![set],
+        overrides: vec![format!("Ball.radius={EVIL}")],
         crop: None,
     };
     let film = Film::<[u8; 3]>::new(1, 1).unwrap();
     let mut picture = Vec::new();
     film::write_png(&film, Some(&recipe), &mut picture).unwrap();
-    let output = pinhole_reading(&folder, &picture, &["check", "-"]);
-    assert_ne!(status(&output), 0);
-    assert_tame(&errors(&output), "a picture");
+    let said = folder.run_reading("check -", picture);
+    assert_ne!(said.status, 0);
+    assert_tame(&said.errors, "a picture");
 }
 
 #[cfg(unix)]
 #[test]
 fn output_that_nobody_can_take_is_said_and_one_that_nobody_wants_is_not() {
     let folder = folder();
-    for arguments in [["--help", ""], ["--version", ""], ["explain", "bare_angle"]] {
-        let arguments: Vec<&str> = arguments
-            .into_iter()
-            .filter(|word| !word.is_empty())
-            .collect();
-        let full = fs::OpenOptions::new()
-            .write(true)
-            .open("/dev/full")
-            .unwrap();
-        let output = command(folder.path(), &arguments)
-            .stdout(full)
-            .output()
-            .unwrap();
-        assert_eq!(status(&output), 2, "{arguments:?}");
-        assert!(errors(&output).contains("cannot write to standard output"));
+    for line in [
+        "--help",
+        "--version",
+        "man",
+        "explain bare_angle",
+        "render a.scn -o -",
+    ] {
+        let to = |output: std::process::Stdio| {
+            let output = folder.command(line).stdout(output).output().unwrap();
+            let errors = String::from_utf8(output.stderr).unwrap();
+            (output.status.code(), errors)
+        };
+        let full = std::fs::File::options().write(true).open("/dev/full");
+        let (status, errors) = to(full.unwrap().into());
+        assert_eq!(status, Some(2), "{line}");
+        assert!(errors.contains("cannot write to standard output"));
         // As `head` does.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
-        let output = command(folder.path(), &arguments)
-            .stdout(writer)
-            .output()
-            .unwrap();
-        assert_eq!(
-            (status(&output), errors(&output)),
-            (0, String::new()),
-            "{arguments:?}"
-        );
+        assert_eq!(to(writer.into()), (Some(0), String::new()), "{line}");
     }
-    let (reader, writer) = std::io::pipe().unwrap();
-    drop(reader);
-    let arguments = ["render", "a.scn", "-o", "-"];
-    let output = command(folder.path(), &arguments)
-        .stdout(writer)
-        .output()
-        .unwrap();
-    assert_eq!((status(&output), errors(&output)), (0, String::new()));
 }

@@ -5,6 +5,7 @@ mod light;
 
 use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
 
+use image::ImageFormat;
 use pinhole::{
     area::Area,
     color::srgb_to_linear,
@@ -13,6 +14,8 @@ use pinhole::{
         check_writable, read_picture, read_recipe, write_exr, write_png, write_whole,
     },
 };
+
+use crate::program::names;
 
 /// A film of colours from dark to light, some out of the ordinary.
 fn film(width: u32, height: u32) -> Film {
@@ -27,6 +30,22 @@ fn film(width: u32, height: u32) -> Film {
         .collect();
     film.put(area, &pixels);
     film
+}
+
+/// The file of an EXR.
+fn exr_bytes(film: &Film, part: Area, whole: Area) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    write_exr(film, part, whole, &mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// What sRGB makes of the light of a channel, by its definition.
+fn encoded(light: f64) -> f64 {
+    if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+    }
 }
 
 fn recipe() -> Recipe {
@@ -74,12 +93,7 @@ fn png_is_true_colour_and_nothing_but() {
     };
     for (x, y, pixel) in read.enumerate_pixels() {
         for (light, byte) in film.pixel(x, y).into_iter().zip(pixel.0) {
-            let encoded = if light <= 0.003_130_8 {
-                12.92 * light
-            } else {
-                1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
-            };
-            assert!((255.0 * encoded - f64::from(byte)).abs() < 0.5001);
+            assert!((255.0 * encoded(light) - f64::from(byte)).abs() < 0.5001);
         }
     }
 }
@@ -95,13 +109,11 @@ fn png_carries_its_recipe_to_the_letter() {
         ..recipe()
     };
     assert_eq!(read_recipe(&png_bytes(&film(3, 2), &plain)).unwrap(), plain);
-    let texts: Vec<_> = chunks(&png)
-        .into_iter()
-        .filter(|(kind, _)| kind == "iTXt")
-        .map(|(_, content)| content)
-        .collect();
-    assert!(texts[0].starts_with(b"Software\0\x01\0"));
-    assert!(texts[1].starts_with(b"pinhole:scene\0\x01\0"));
+    let chunks = chunks(&png).into_iter();
+    let mut texts = chunks.filter(|(kind, _)| kind == "iTXt");
+    for start in [&b"Software\0\x01\0"[..], b"pinhole:scene\0\x01\0"] {
+        assert!(texts.next().unwrap().1.starts_with(start));
+    }
 }
 
 #[test]
@@ -125,7 +137,7 @@ fn a_long_recipe_is_left_out() {
 fn pictures_of_others_are_told_from_ours() {
     let mut foreign = Vec::new();
     image::DynamicImage::new_rgb8(4, 4)
-        .write_to(&mut Cursor::new(&mut foreign), image::ImageFormat::Png)
+        .write_to(&mut Cursor::new(&mut foreign), ImageFormat::Png)
         .unwrap();
     assert!(matches!(read_recipe(&foreign), Err(NotOurs::NoScene)));
     let png = png_bytes(&film(3, 2), &recipe());
@@ -170,13 +182,20 @@ fn what_is_wrong_with_a_text_is_told() {
         read_recipe(&carrying([scene].into_iter().chain([set].repeat(count))))
     };
     assert_eq!(with(OVERRIDES_LIMIT, b"h=1").unwrap().overrides.len(), 1000);
-    let refused = with(100_000, b"h=1").unwrap_err().to_string();
-    assert_eq!(refused, "the picture carries more than 1000 overrides");
-    let refused = with(1, b"h=\xff").unwrap_err().to_string();
-    assert_eq!(
-        refused,
-        "the picture carries a scene or an override that is not UTF-8 text"
-    );
+    for (count, text, told) in [
+        (
+            100_000,
+            &b"h=1"[..],
+            "the picture carries more than 1000 overrides",
+        ),
+        (
+            1,
+            b"h=\xff",
+            "the picture carries a scene or an override that is not UTF-8 text",
+        ),
+    ] {
+        assert_eq!(with(count, text).unwrap_err().to_string(), told);
+    }
     let many = Recipe {
         overrides: vec![String::new(); 1001],
         ..recipe()
@@ -191,15 +210,16 @@ fn what_is_wrong_with_a_text_is_told() {
 fn pictures_in_all_formats_are_read() {
     let picture =
         image::RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8 * 60, y as u8 * 100, 40]));
-    let expected = png_bytes(&read_of(&picture, image::ImageFormat::Png).film, &recipe());
+    let picture = picture.into();
+    let expected = png_bytes(&read_of(&picture, ImageFormat::Png).film, &recipe());
     for (format, coding) in [
-        (image::ImageFormat::Png, Coding::Exact),
-        (image::ImageFormat::Pnm, Coding::Exact),
-        (image::ImageFormat::Bmp, Coding::Exact),
-        (image::ImageFormat::Tiff, Coding::Exact),
-        (image::ImageFormat::WebP, Coding::Exact),
-        (image::ImageFormat::Gif, Coding::Palette),
-        (image::ImageFormat::Jpeg, Coding::Lossy),
+        (ImageFormat::Png, Coding::Exact),
+        (ImageFormat::Pnm, Coding::Exact),
+        (ImageFormat::Bmp, Coding::Exact),
+        (ImageFormat::Tiff, Coding::Exact),
+        (ImageFormat::WebP, Coding::Exact),
+        (ImageFormat::Gif, Coding::Palette),
+        (ImageFormat::Jpeg, Coding::Lossy),
     ] {
         let read = read_of(&picture, format);
         assert_eq!((read.rounding, read.coding), (Rounding::Byte, coding));
@@ -217,7 +237,7 @@ fn pictures_in_all_formats_are_read() {
     assert!(read_picture(b"P2let = 1").is_err());
 }
 
-fn read_of(picture: &image::RgbImage, format: image::ImageFormat) -> pinhole::film::Picture {
+fn read_of(picture: &image::DynamicImage, format: ImageFormat) -> pinhole::film::Picture {
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, format).unwrap();
     read_picture(bytes.get_ref()).unwrap()
@@ -227,15 +247,8 @@ fn read_of(picture: &image::RgbImage, format: image::ImageFormat) -> pinhole::fi
 fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
     let bytes = image::GrayImage::from_fn(256, 1, |x, _| image::Luma([x as u8]));
     let words = image::ImageBuffer::from_fn(256, 256, |x, y| image::Luma([(y << 8 | x) as u16]));
-    for (picture, last) in [
-        (image::DynamicImage::from(bytes), 255.0),
-        (image::DynamicImage::from(words), 65535.0),
-    ] {
-        let mut file = Cursor::new(Vec::new());
-        picture
-            .write_to(&mut file, image::ImageFormat::Png)
-            .unwrap();
-        let film = read_picture(file.get_ref()).unwrap().film;
+    for (picture, last) in [(bytes.into(), 255.0), (words.into(), 65535.0)] {
+        let film = read_of(&picture, ImageFormat::Png).film;
         for (k, pixel) in (0..).zip(film.pixels()) {
             assert_eq!(*pixel, [srgb_to_linear(f64::from(k) / last); 3]);
         }
@@ -247,18 +260,18 @@ fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
 fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
     use exr::prelude::{Image, SpecificChannels, WritableImage, f16};
 
-    let rounding = |bytes: &[u8]| read_picture(bytes).unwrap().rounding;
     let half = f16::from_f32(0.5);
-    let mut file = Cursor::new(Vec::new());
+    let mut float = Cursor::new(Vec::new());
     let channels = SpecificChannels::rgba(|_| (0.1_f32, 0.2_f32, 0.3_f32, half));
     let image = Image::from_channels((2, 1), channels);
-    image.write().to_buffered(&mut file).unwrap();
-    assert_eq!(rounding(file.get_ref()), Rounding::Float);
-    let mut file = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut float).unwrap();
+    let mut mixed = Cursor::new(Vec::new());
     let channels = SpecificChannels::rgb(|_| (0.1_f32, half, 0.3_f32));
     let image = Image::from_channels((2, 1), channels);
-    image.write().to_buffered(&mut file).unwrap();
-    assert_eq!(rounding(file.get_ref()), Rounding::Half);
+    image.write().to_buffered(&mut mixed).unwrap();
+    for (file, rounding) in [(float, Rounding::Float), (mixed, Rounding::Half)] {
+        assert_eq!(read_picture(file.get_ref()).unwrap().rounding, rounding);
+    }
 }
 
 #[test]
@@ -311,17 +324,15 @@ fn a_text_that_unpacks_without_end_is_refused() {
 fn exr_holds_the_means_as_floats() {
     use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 
-    let film = film(33, 70);
-    let mut bytes = Cursor::new(Vec::new());
-    let whole = Area::whole(33, 70);
-    write_exr(&film, whole, whole, &mut bytes).unwrap();
+    let (film, whole) = (film(33, 70), Area::whole(33, 70));
+    let bytes = exr_bytes(&film, whole, whole);
     let channels = read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .first_valid_layer()
         .all_attributes()
-        .from_buffered(Cursor::new(bytes.get_ref()))
+        .from_buffered(Cursor::new(&bytes))
         .unwrap()
         .layer_data
         .channel_data
@@ -335,36 +346,25 @@ fn exr_holds_the_means_as_floats() {
         assert!(light.eq(samples.iter().copied()));
     }
     assert_eq!(channels.len(), 3);
-    let mut again = Cursor::new(Vec::new());
-    write_exr(&film, whole, whole, &mut again).unwrap();
-    assert_eq!(bytes, again);
-    assert_eq!(read_picture(bytes.get_ref()).unwrap().crop, None);
+    assert!(bytes == exr_bytes(&film, whole, whole));
+    assert_eq!(read_picture(&bytes).unwrap().crop, None);
 }
 
 #[test]
 fn a_crop_as_exr_has_a_data_and_a_display_window() {
-    let part = Area {
-        x: 7,
-        y: 5,
-        width: 33,
-        height: 70,
-    };
-    let mut bytes = Cursor::new(Vec::new());
-    write_exr(&film(33, 70), part, Area::whole(64, 90), &mut bytes).unwrap();
-    let meta = exr::meta::MetaData::read_from_buffered(&bytes.get_ref()[..], true).unwrap();
+    let part: Area = "7,5,33,70".parse().unwrap();
+    let bytes = exr_bytes(&film(33, 70), part, Area::whole(64, 90));
+    let meta = exr::meta::MetaData::read_from_buffered(&bytes[..], true).unwrap();
     let header = &meta.headers[0];
     let display = header.shared_attributes.display_window;
-    assert_eq!(
-        (display.position, display.size),
-        ((0, 0).into(), (64, 90).into())
-    );
+    assert_eq!(display.position, (0, 0).into());
+    assert_eq!(display.size, (64, 90).into());
     assert_eq!(header.own_attributes.layer_position, (7, 5).into());
     assert_eq!(header.layer_size, (33, 70).into());
-    let read = read_picture(bytes.get_ref()).unwrap();
+    let read = read_picture(&bytes).unwrap();
     assert_eq!(read.crop, Some(part));
-    let light = film(33, 70)
-        .pixel(3, 60)
-        .map(|light| f64::from(light as f32));
+    let light = film(33, 70).pixel(3, 60);
+    let light = light.map(|light| f64::from(light as f32));
     assert_eq!(read.film.pixel(3, 60), light);
 }
 
@@ -390,11 +390,7 @@ fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
     assert_eq!(fs::read(&path).unwrap(), b"new");
     check_writable(&path).unwrap();
     check_writable(&folder.path().join("b.png")).unwrap();
-    let names: Vec<_> = fs::read_dir(folder.path())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name())
-        .collect();
-    assert_eq!(names, ["a.png"], "something was left behind");
+    assert_eq!(names(folder.path()), ["a.png"], "something was left behind");
 }
 
 #[test]
@@ -412,7 +408,7 @@ fn a_temporary_file_that_is_being_written_is_left_alone() {
     assert_eq!(fs::read(&path).unwrap(), b"outer");
     let long = folder.path().join("ä".repeat(125) + ".png");
     write(&long, b"long").unwrap();
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert_eq!(names(folder.path()).len(), 2);
 }
 
 #[test]

@@ -124,10 +124,10 @@ fn a_file_of_another_program_is_one_mistake() {
     }
 }
 
-/// Forty thousand commas in a block are one mistake.
+/// Ten thousand commas in a block are one mistake.
 #[test]
 fn a_slip_that_goes_through_a_block_is_reported_once() {
-    let fields = "radius 1,\n".repeat(40_000);
+    let fields = "radius 1,\n".repeat(10_000);
     let found = diagnostics(&sources(
         &of_scene(&format!("sphere {{ center (0, 1, 0),\n{fields} }}")),
         &[],

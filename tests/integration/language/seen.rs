@@ -72,7 +72,7 @@ fn what_is_hardly_seen_is_not_warned_of() {
 fn a_warning_is_never_false_and_comes_often_enough() {
     let mut random = Random::new(3);
     let (mut warned, mut black) = (0, 0);
-    for round in 0..500 {
+    for round in 0..250 {
         let mut number = |low: f64, high: f64| random.within(low, high);
         let mut vector = |size: f64| {
             let [x, y, z] = [(); 3].map(|()| number(-size, size));
@@ -108,5 +108,5 @@ fn a_warning_is_never_false_and_comes_often_enough() {
         black += u32::from(is_black);
     }
     // Bounds are larger than what they bound, and what is left of the window may be below the pixels' own.
-    assert!(black > 150 && warned * 2 > black, "{warned} of {black}");
+    assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }

@@ -131,6 +131,14 @@ impl Client {
         )
     }
 
+    /// Tells of a change that makes a version of the text.
+    pub fn change(&mut self, version: usize, range: Value, text: &str) {
+        let document = json!({ "uri": URI, "version": version });
+        let changes = json!([{ "range": range, "text": text }]);
+        let params = json!({ "textDocument": document, "contentChanges": changes });
+        self.tell("textDocument/didChange", params);
+    }
+
     /// What is wrong with a version of the text, as soon as it is said.
     pub fn diagnostics(&mut self, version: usize) -> Value {
         while self.told["version"] != version {

@@ -3,8 +3,8 @@
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
 
-use super::picture_requests::{Talk, URI};
-use crate::program::command;
+use super::talk::{Talk, URI};
+use crate::{program::Folder, table::rows};
 
 const SCENE: &str = "\
 image { width 83  height 61 }
@@ -17,6 +17,11 @@ checkerboard {}
 
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
+
+/// The code of the error that a request has got.
+fn code(talk: &Talk, request: i32) -> &Value {
+    &talk.said(request).expect("an answer")["error"]["code"]
+}
 
 /// The bytes of a picture with its size.
 fn pixels(png: &[u8]) -> (u32, u32, Vec<u8>) {
@@ -35,75 +40,52 @@ fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
     found
 }
 
-/// What `pinhole render` makes of a scene.
-fn rendered(text: &str, sets: &[&str]) -> (u32, u32, Vec<u8>) {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("a.scn"), text).expect("it is written");
-    let mut arguments = vec!["render", "a.scn", "-o", "a.png"];
-    arguments.extend(sets.iter().flat_map(|set| ["--set", set]));
-    let output = command(folder.path(), &arguments)
-        .output()
-        .expect("it runs");
-    assert!(output.status.success(), "{output:?}");
-    pixels(&std::fs::read(folder.path().join("a.png")).expect("it is there"))
+/// What `pinhole render` makes of a scene, with so many `--set`.
+fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
+    let folder = Folder::with([("a.scn", text)]);
+    let sets = sets.split_whitespace().map(|set| format!(" --set {set}"));
+    folder.told(&format!("render a.scn{}", sets.collect::<String>()), 0);
+    pixels(&folder.read("a.png"))
 }
 
 #[test]
 fn a_frame_has_the_pixels_of_a_render() {
     let exact = SCENE.replace("multi_jittered", "exact");
     let scattered = SCENE.replace("multi_jittered", "scatter");
-    let many = SCENE.replace("per_pixel 9", "per_pixel 9000");
+    // So many that a slice is a small part of the picture.
+    let many = SCENE.replace("per_pixel 9", "per_pixel 2000");
     let wide = SCENE.replace("width 83  height 61", "width 100_000  height 2");
-    for (text, params, sets) in [
-        (SCENE, json!({}), &[][..]),
-        (SCENE, json!({ "scale": 1, "samples": null }), &[]),
-        (
-            SCENE,
-            json!({ "scale": 4 }),
-            &["image.width=21", "image.height=16"],
-        ),
-        (
-            SCENE,
-            json!({ "scale": 1000 }),
-            &["image.width=1", "image.height=1"],
-        ),
-        (
-            SCENE,
-            json!({ "samples": 4 }),
-            &["sampler.method=regular", "sampler.per_pixel=4"],
-        ),
-        (
-            SCENE,
-            json!({ "scale": 8, "samples": 1 }),
-            &[
-                "image.width=11",
-                "image.height=8",
-                "sampler.method=regular",
-                "sampler.per_pixel=1",
-            ],
-        ),
-        (&exact, json!({}), &[]),
-        (
-            &exact,
-            json!({ "scale": 3 }),
-            &["image.width=28", "image.height=21"],
-        ),
-        (&scattered, json!({}), &[]),
-        // So many that a slice is a small part of the picture.
-        (
-            &many,
-            json!({ "scale": 2 }),
-            &["image.width=42", "image.height=31"],
-        ),
-        (&wide, json!({}), &[]),
-    ] {
-        let mut talk = Talk::new(text);
-        let frame = talk.ask("pinhole/frame", params.clone());
-        assert!(shown(&frame) == rendered(text, sets), "{params} {sets:?}");
+    let table = r#"
+        scene -> {} ->
+        scene -> { "scale": 1, "samples": null } ->
+        scene -> { "scale": 4 } -> image.width=21 image.height=16
+        scene -> { "scale": 1000 } -> image.width=1 image.height=1
+        scene -> { "samples": 4 } -> sampler.method=regular sampler.per_pixel=4
+        scene -> { "scale": 8, "samples": 1 } -> image.width=11 image.height=8 sampler.method=regular sampler.per_pixel=1
+        exact -> {} ->
+        exact -> { "scale": 3 } -> image.width=28 image.height=21
+        scattered -> {} ->
+        many -> { "scale": 2 } -> image.width=42 image.height=31
+        wide -> {} ->
+    "#;
+    for [name, params, sets] in rows(table) {
+        let text = match name {
+            "exact" => &exact,
+            "scattered" => &scattered,
+            "many" => &many,
+            "wide" => &wide,
+            _ => SCENE,
+        };
+        let params: Value = serde_json::from_str(params).expect("JSON");
+        let frame = Talk::new(text).ask("pinhole/frame", params);
+        assert!(shown(&frame) == rendered(text, sets), "{name} {sets}");
         assert_eq!(frame["version"], 0);
-        if text != wide {
-            assert_eq!(frame["size"], json!([83, 61]));
-        }
+        let size = if name == "wide" {
+            [100_000, 2]
+        } else {
+            [83, 61]
+        };
+        assert_eq!(frame["size"], json!(size));
     }
 }
 
@@ -119,7 +101,7 @@ fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
     assert_eq!(talk.response(old)["error"]["code"], CONTENT_MODIFIED);
     let frame = talk.response(new)["result"].clone();
     assert_eq!(frame["version"], 1);
-    assert!(shown(&frame) == rendered(&changed, &[]));
+    assert!(shown(&frame) == rendered(&changed, ""));
 
     talk.tell(
         "textDocument/didClose",
@@ -150,34 +132,26 @@ fn a_frame_that_is_cancelled_ends_at_once() {
         .replace("per_pixel 9", "per_pixel 10_000");
     let mut talk = Talk::new(&text);
     let frame = talk.post("pinhole/frame", json!({}));
-    let hover = talk.post(
-        "textDocument/hover",
-        json!({ "position": { "line": 0, "character": 1 } }),
-    );
+    let hover = |talk: &mut Talk| {
+        let position = json!({ "line": 0, "character": 1 });
+        talk.post("textDocument/hover", json!({ "position": position }))
+    };
+    let early = hover(&mut talk);
     for _ in 0..4 {
         assert!(talk.step());
     }
     // What comes later is answered in between.
-    assert!(talk.said(hover).is_some() && talk.said(frame).is_none());
-    let later = talk.post(
-        "textDocument/hover",
-        json!({ "position": { "line": 0, "character": 1 } }),
-    );
+    assert!(talk.said(early).is_some() && talk.said(frame).is_none());
+    let later = hover(&mut talk);
     assert!(talk.step() && talk.said(later).is_some());
     talk.tell("$/cancelRequest", json!({ "id": frame }));
-    assert_eq!(
-        talk.said(frame).expect("an answer")["error"]["code"],
-        CANCELLED
-    );
+    assert_eq!(code(&talk, frame), CANCELLED);
     assert!(!talk.step());
 
     let frame = talk.post("pinhole/frame", json!({}));
     talk.step();
     let shutdown = talk.post("shutdown", json!({}));
-    assert_eq!(
-        talk.said(frame).expect("an answer")["error"]["code"],
-        CANCELLED
-    );
+    assert_eq!(code(&talk, frame), CANCELLED);
     assert!(talk.said(shutdown).is_some());
 }
 
@@ -215,15 +189,13 @@ fn what_is_too_much_for_a_frame_is_refused() {
         talk.refused("pinhole/frame", json!({})),
         "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`"
     );
-    for (params, name) in [
-        (json!({ "scale": 0 }), "scale"),
-        (json!({ "scale": 0.5 }), "scale"),
-        (json!({ "scale": -1 }), "scale"),
-        (json!({ "scale": 1e300 }), "scale"),
-        (json!({ "samples": 0 }), "samples"),
-        (json!({ "samples": "4" }), "samples"),
+    for (name, wrong) in [
+        ("scale", json!([0, 0.5, -1, 1e300])),
+        ("samples", json!([0, "4"])),
     ] {
-        let message = talk.refused("pinhole/frame", params);
-        assert!(message.starts_with(&format!("`{name}`")), "{message}");
+        for value in wrong.as_array().expect("a list") {
+            let message = talk.refused("pinhole/frame", json!({ name: value }));
+            assert!(message.starts_with(&format!("`{name}`")), "{message}");
+        }
     }
 }

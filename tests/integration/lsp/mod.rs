@@ -3,5 +3,7 @@
 mod client;
 mod frames;
 mod neovim;
+mod order;
 mod picture_requests;
 mod session;
+mod talk;

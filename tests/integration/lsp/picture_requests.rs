@@ -1,102 +1,9 @@
-//! The requests about a text's picture, asked of a server in this process, so that it is known what it has done by when.
+//! The requests about a text's picture.
 
-use lsp_server::{Message, Notification, Request};
-use pinhole::lsp::Server;
 use serde_json::{Value, json};
 
-pub const URI: &str = "file:///a.scn";
-
-/// A conversation with one text open.
-pub struct Talk {
-    server: Server,
-    requests: i32,
-    version: i32,
-    /// What was said and not read yet.
-    said: Vec<Value>,
-}
-
-impl Talk {
-    pub fn new(text: &str) -> Self {
-        let mut talk = Self {
-            server: Server::new(|message| panic!("{message}")),
-            requests: 0,
-            version: 0,
-            said: Vec::new(),
-        };
-        talk.post("initialize", json!({ "capabilities": {} }));
-        talk.said.clear();
-        let document = json!({ "uri": URI, "languageId": "scn", "version": 0, "text": text });
-        talk.tell("textDocument/didOpen", json!({ "textDocument": document }));
-        talk
-    }
-
-    fn take(&mut self, message: Message) {
-        let said = self.server.handle(message);
-        self.hear(&said);
-    }
-
-    fn hear(&mut self, said: &[Message]) {
-        let said = said
-            .iter()
-            .map(|message| serde_json::to_value(message).expect("JSON"));
-        self.said.extend(said);
-    }
-
-    pub fn tell(&mut self, method: &str, params: Value) {
-        self.take(Notification::new(method.to_owned(), params).into());
-    }
-
-    /// Asks something, and returns its id.
-    pub fn post(&mut self, method: &str, mut params: Value) -> i32 {
-        params["textDocument"] = json!({ "uri": URI });
-        self.requests += 1;
-        self.take(Request::new(self.requests.into(), method.to_owned(), params).into());
-        self.requests
-    }
-
-    pub fn change(&mut self, text: &str) {
-        self.version += 1;
-        let document = json!({ "uri": URI, "version": self.version });
-        self.tell(
-            "textDocument/didChange",
-            json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
-        );
-    }
-
-    /// One piece of work. Says whether there was any.
-    pub fn step(&mut self) -> bool {
-        let is_busy = self.server.is_busy();
-        let said = self.server.advance();
-        self.hear(&said);
-        is_busy
-    }
-
-    /// The response to a request, if it was said.
-    pub fn said(&self, id: i32) -> Option<&Value> {
-        self.said.iter().find(|message| message["id"] == id)
-    }
-
-    /// The response to a request, after all work.
-    pub fn response(&mut self, id: i32) -> Value {
-        while self.step() {}
-        self.said(id).expect("it is answered").clone()
-    }
-
-    /// The result of a request.
-    pub fn ask(&mut self, method: &str, params: Value) -> Value {
-        let id = self.post(method, params);
-        let response = self.response(id);
-        assert!(response.get("error").is_none(), "{response}");
-        response["result"].clone()
-    }
-
-    /// The message of the error that a request gets.
-    pub fn refused(&mut self, method: &str, params: Value) -> String {
-        let id = self.post(method, params);
-        let message = &self.response(id)["error"]["message"];
-        message.as_str().expect("it is refused").to_owned()
-    }
-}
+use super::talk::Talk;
+use crate::table::rows;
 
 const SCENE: &str = "\
 let ball = (0, 0, 0)
@@ -138,13 +45,8 @@ fn what_is_seen_at_a_point_is_told_with_its_place_in_the_text() {
             nothing(Value::Null)
         );
     }
-    for wrong in [
-        json!({}),
-        json!({ "point": [1] }),
-        json!({ "point": [null, 1] }),
-        json!({ "point": "1" }),
-    ] {
-        let message = talk.refused("pinhole/pick", wrong);
+    for wrong in [json!(null), json!([1]), json!([null, 1]), json!("1")] {
+        let message = talk.refused("pinhole/pick", json!({ "point": wrong }));
         assert!(message.starts_with("`point`"), "{message}");
     }
     talk.change("sphere {");
@@ -245,28 +147,16 @@ fn a_drag_is_answered_with_edits_of_the_text() {
         json!({ "object": null, "handle": "view_distance", "from": [100, 50], "to": [100, 100] });
     let dragged = talk.ask("pinhole/drag", params);
     assert_eq!(dragged["values"], json!(["camera.d = 4"]));
-    for (params, message) in [
-        (
-            json!({ "object": 7, "handle": "center", "to": [1, 1] }),
-            "there is no object 7",
-        ),
-        (
-            json!({ "object": 0, "handle": "corner", "to": [1, 1] }),
-            "a sphere of this form has no handle `corner`",
-        ),
-        (
-            json!({ "object": 0, "handle": "center", "to": [1, 1], "along": "w" }),
-            "`along` is x, y, z or floor, and not `w`",
-        ),
-        (
-            json!({ "object": 0, "handle": "center", "to": null }),
-            "`to` is a point of the picture, as [x, y]",
-        ),
-        (
-            json!({ "handle": "pan", "to": [1, 1] }),
-            "`from` is a point of the picture, as [x, y]",
-        ),
-    ] {
+    for [params, message] in rows(
+        r#"
+        { "object": 7, "handle": "center", "to": [1, 1] } -> there is no object 7
+        { "object": 0, "handle": "corner", "to": [1, 1] } -> a sphere of this form has no handle `corner`
+        { "object": 0, "handle": "center", "to": [1, 1], "along": "w" } -> `along` is x, y, z or floor, and not `w`
+        { "object": 0, "handle": "center", "to": null } -> `to` is a point of the picture, as [x, y]
+        { "handle": "pan", "to": [1, 1] } -> `from` is a point of the picture, as [x, y]
+    "#,
+    ) {
+        let params = serde_json::from_str(params).expect("JSON");
         assert_eq!(talk.refused("pinhole/drag", params), message);
     }
 }
@@ -277,16 +167,10 @@ fn the_samples_of_a_pixel_are_those_of_its_frame() {
     let found = talk.ask("pinhole/samples", json!({ "pixel": [139, 49] }));
     let points = json!([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]);
     assert_eq!(found["points"], points);
-    assert_eq!(
-        found["colors"],
-        json!(["#808000", "#808000", "#808000", "#808000"])
-    );
+    assert_eq!(found["colors"], Value::from(vec!["#808000"; 4]));
     assert_eq!(found["color"], "#808000");
     let found = talk.ask("pinhole/samples", json!({ "pixel": [141, 49] }));
-    assert_eq!(
-        found["colors"],
-        json!(["#000000", "#000000", "#000000", "#000000"])
-    );
+    assert_eq!(found["colors"], Value::from(vec!["#000000"; 4]));
     talk.change(&SCENE.replace("method regular", "method exact"));
     let found = talk.ask("pinhole/samples", json!({ "pixel": [140, 49] }));
     assert_eq!(

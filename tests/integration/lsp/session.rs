@@ -27,91 +27,73 @@ fn range(line: u32, start: u32, end: u32) -> Value {
     json!({ "start": { "line": line, "character": start }, "end": { "line": line, "character": end } })
 }
 
+/// A request's parameters about a place in the document, besides others.
+fn at(line: u32, character: u32, others: Value) -> Value {
+    let mut params = others;
+    params["position"] = json!({ "line": line, "character": character });
+    params["textDocument"] = json!({ "uri": URI });
+    params
+}
+
+/// The texts that the elements of a list have under a key.
+fn each<'v>(list: &'v Value, key: &str) -> Vec<&'v str> {
+    let list = list.as_array().expect("a list").iter();
+    list.map(|one| one[key].as_str().expect("a text")).collect()
+}
+
 #[test]
 fn a_scene_is_written_with_every_answer() {
     let (mut client, diagnostics) = Client::open(editor(), SCENE);
-    assert_eq!(
-        diagnostics,
-        json!({ "uri": URI, "version": 1, "diagnostics": [] })
-    );
+    let none = json!({ "uri": URI, "version": 1, "diagnostics": [] });
+    assert_eq!(diagnostics, none);
 
     let definition = json!({ "uri": URI, "range": range(0, 4, 8) });
     assert_eq!(client.at("definition", 1, 32), definition);
-    let references = client.about(
-        "references",
-        json!({ "position": { "line": 0, "character": 5 }, "context": { "includeDeclaration": false } }),
-    );
+    let context = json!({ "context": { "includeDeclaration": false } });
+    let references = client.about("references", at(0, 5, context));
     let uses = [range(1, 31, 35), range(2, 21, 25)];
-    assert_eq!(
-        references,
-        json!(
-            uses.clone()
-                .map(|range| json!({ "uri": URI, "range": range }))
-        )
-    );
+    let places = uses
+        .clone()
+        .map(|range| json!({ "uri": URI, "range": range }));
+    assert_eq!(references, json!(places));
     let highlights = client.at("documentHighlight", 1, 31);
     assert_eq!(highlights[0], json!({ "range": range(0, 4, 8), "kind": 3 }));
     assert_eq!(highlights[1], json!({ "range": uses[0], "kind": 2 }));
 
     let hover = client.at("hover", 2, 34);
     let markdown = hover["contents"]["value"].as_str().expect("markdown");
-    assert!(
-        markdown.ends_with("in linear light (0.215861, 0.215861, 0)"),
-        "{markdown}"
-    );
+    let end = "in linear light (0.215861, 0.215861, 0)";
+    assert!(markdown.ends_with(end), "{markdown}");
     assert_eq!(hover["range"], range(2, 33, 38));
 
-    let prepared = client.at("prepareRename", 0, 8);
-    assert_eq!(
-        prepared,
-        json!({ "range": range(0, 4, 8), "placeholder": "ball" })
-    );
-    let renamed = client.about(
-        "rename",
-        json!({ "position": { "line": 0, "character": 4 }, "newName": "middle" }),
-    );
+    let prepared = json!({ "range": range(0, 4, 8), "placeholder": "ball" });
+    assert_eq!(client.at("prepareRename", 0, 8), prepared);
+    let renamed = client.about("rename", at(0, 4, json!({ "newName": "middle" })));
     let change = &renamed["documentChanges"][0];
     assert_eq!(change["textDocument"], json!({ "uri": URI, "version": 1 }));
-    assert_eq!(
-        change["edits"][2],
-        json!({ "range": uses[1], "newText": "middle" })
-    );
-    let refused = client.respond(
-        "textDocument/rename",
-        json!({ "textDocument": { "uri": URI }, "position": { "line": 0, "character": 4 }, "newName": "olive" }),
-    );
-    assert_eq!(
-        refused["error"],
-        json!({ "code": -32803, "message": "`olive` is a colour of the language" })
-    );
+    let edit = json!({ "range": uses[1], "newText": "middle" });
+    assert_eq!(change["edits"][2], edit);
+    let name = at(0, 4, json!({ "newName": "olive" }));
+    let refused = client.respond("textDocument/rename", name);
+    let reason = json!({ "code": -32803, "message": "`olive` is a colour of the language" });
+    assert_eq!(refused["error"], reason);
 
     let symbols = client.about("documentSymbol", json!({}));
     assert_eq!(symbols[2]["name"], "Ball");
     assert_eq!(symbols[2]["children"][1]["name"], "color");
-    let folds = client.about("foldingRange", json!({}));
-    assert_eq!(folds, json!([]));
+    assert_eq!(client.about("foldingRange", json!({})), json!([]));
     let hints = client.about("inlayHint", json!({ "range": range(1, 0, 99) }));
-    let hints: Vec<&Value> = hints
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|hint| &hint["label"])
-        .collect();
-    assert_eq!(hints, ["= (0, 1, 0)", "fov 90deg"]);
+    assert_eq!(each(&hints, "label"), ["= (0, 1, 0)", "fov 90deg"]);
 
     let options = json!({ "options": { "tabSize": 2, "insertSpaces": true } });
     assert_eq!(client.about("formatting", options), json!([]));
     let colors = client.about("documentColor", json!({}));
     assert_eq!(colors[0]["range"], range(2, 33, 38));
     let teal = json!({ "red": 0.0, "green": 0.5, "blue": 0.5, "alpha": 1.0 });
-    let presentations = client.about(
-        "colorPresentation",
-        json!({ "color": teal, "range": range(2, 33, 38) }),
-    );
-    assert_eq!(
-        presentations[0]["textEdit"],
-        json!({ "range": range(2, 33, 38), "newText": "teal" })
-    );
+    let color = json!({ "color": teal, "range": range(2, 33, 38) });
+    let presentations = client.about("colorPresentation", color);
+    let edit = json!({ "range": range(2, 33, 38), "newText": "teal" });
+    assert_eq!(presentations[0]["textEdit"], edit);
 
     let tokens = client.about("semanticTokens/full", json!({}));
     // let ball = ( 0: a keyword, a variable that is defined, an operator, a number.
@@ -127,24 +109,13 @@ fn a_scene_is_written_with_every_answer() {
 fn texts_change_while_one_types() {
     let (mut client, _) = Client::open(editor(), SCENE);
     // A mistyped field is put in behind the colour, where the text has a character of four bytes before it.
-    let changes = json!([
-        { "range": range(2, 38, 38), "text": "  /* 🎱 */ radus 2  co" },
-    ]);
-    let document = json!({ "uri": URI, "version": 2 });
-    client.tell(
-        "textDocument/didChange",
-        json!({ "textDocument": document, "contentChanges": changes }),
-    );
+    client.change(2, range(2, 38, 38), "  /* 🎱 */ radus 2  co");
     let told = client.read();
     assert_eq!(told["params"]["version"], 2);
-    let diagnostics = told["params"]["diagnostics"]
-        .as_array()
-        .expect("a list")
-        .clone();
-    let radus = diagnostics
-        .iter()
-        .find(|found| found["code"] == "unknown_field")
-        .expect("it is wrong");
+    let found = told["params"]["diagnostics"].as_array().expect("a list");
+    let mut found = found.iter();
+    let radus = found.find(|found| found["code"] == "unknown_field");
+    let radus = radus.expect("it is wrong");
     // Columns are bytes here.
     assert_eq!(radus["range"], range(2, 51, 56));
     assert_eq!(radus["severity"], 1);
@@ -154,75 +125,51 @@ fn texts_change_while_one_types() {
         "a sphere has no field `radus`\nhelp: did you mean `radius`? A sphere takes center, radius and color."
     );
 
-    let actions = client.about(
-        "codeAction",
-        json!({ "range": range(2, 53, 53), "context": { "diagnostics": [] } }),
-    );
-    assert_eq!(actions[0]["title"], "write `radius`");
-    assert_eq!(actions[0]["isPreferred"], true);
-    assert_eq!(actions[0]["diagnostics"][0]["code"], "unknown_field");
-    let edit = &actions[0]["edit"]["documentChanges"][0];
+    let mut actions = |range: Value, only: Value| {
+        let mut context = json!({ "diagnostics": [] });
+        if only != Value::Null {
+            context["only"] = only;
+        }
+        client.about("codeAction", json!({ "range": range, "context": context }))
+    };
+    let offered = actions(range(2, 53, 53), Value::Null);
+    assert_eq!(offered[0]["title"], "write `radius`");
+    assert_eq!(offered[0]["isPreferred"], true);
+    assert_eq!(offered[0]["diagnostics"][0]["code"], "unknown_field");
+    let edit = &offered[0]["edit"]["documentChanges"][0];
     assert_eq!(edit["textDocument"]["version"], 2);
-    assert_eq!(
-        edit["edits"],
-        json!([{ "range": range(2, 51, 56), "newText": "radius" }])
-    );
-    let others = client.about(
-        "codeAction",
-        json!({ "range": range(2, 53, 53), "context": { "diagnostics": [], "only": ["refactor"] } }),
-    );
+    let expected = json!([{ "range": range(2, 51, 56), "newText": "radius" }]);
+    assert_eq!(edit["edits"], expected);
+    let others = actions(range(2, 53, 53), json!(["refactor"]));
     assert_eq!(others, json!([]));
-
-    let all = client.about(
-        "codeAction",
-        json!({ "range": range(0, 0, 0), "context": { "diagnostics": [], "only": ["source.fixAll"] } }),
-    );
+    let all = actions(range(0, 0, 0), json!(["source.fixAll"]));
     assert_eq!(all[0]["kind"], "source.fixAll");
     let edit = &all[0]["edit"]["documentChanges"][0]["edits"];
-    assert_eq!(
-        edit,
-        &json!([{ "range": range(2, 54, 54), "newText": "i" }])
-    );
+    let expected = json!([{ "range": range(2, 54, 54), "newText": "i" }]);
+    assert_eq!(*edit, expected);
 
     let completions = client.at("completion", 2, 50 + 11);
-    let labels: Vec<&str> = completions
-        .as_array()
-        .expect("a list")
-        .iter()
-        .filter_map(|item| item["label"].as_str())
-        .collect();
-    assert_eq!(labels, ["radius"]);
+    assert_eq!(each(&completions, "label"), ["radius"]);
     assert_eq!(completions[0]["textEdit"]["newText"], "radius ${1:1}");
     assert_eq!(completions[0]["insertTextFormat"], 2);
 
     let close = json!({ "textDocument": { "uri": URI } });
     client.tell("textDocument/didClose", close);
-    assert_eq!(
-        client.read()["params"],
-        json!({ "uri": URI, "diagnostics": [] })
-    );
-    let gone = client.respond(
-        "textDocument/hover",
-        json!({ "textDocument": { "uri": URI }, "position": { "line": 0, "character": 0 } }),
-    );
+    let none = json!({ "uri": URI, "diagnostics": [] });
+    assert_eq!(client.read()["params"], none);
+    let gone = client.respond("textDocument/hover", at(0, 0, json!({})));
     assert_eq!(gone["error"]["code"], -32602);
     client.leave();
 }
 
 /// Letter by letter, with what an editor asks after each.
 #[test]
-fn an_example_is_typed_letter_by_letter() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/figure_9_9.scn");
-    let example = std::fs::read_to_string(path).expect("the example is there");
+fn a_scene_is_typed_letter_by_letter() {
     let (mut client, _) = Client::open(editor(), "");
     let (mut line, mut character) = (0, 0);
-    for (index, letter) in example.chars().enumerate() {
-        let document = json!({ "uri": URI, "version": index + 2 });
-        let change = json!({ "range": { "start": { "line": line, "character": character }, "end": { "line": line, "character": character } }, "text": letter.to_string() });
-        client.tell(
-            "textDocument/didChange",
-            json!({ "textDocument": document, "contentChanges": [change] }),
-        );
+    for (index, letter) in SCENE.chars().enumerate() {
+        let place = range(line, character, character);
+        client.change(index + 2, place, &letter.to_string());
         match letter {
             '\n' => (line, character) = (line + 1, 0),
             _ => character += 1,
@@ -230,7 +177,7 @@ fn an_example_is_typed_letter_by_letter() {
         client.at("completion", line, character);
         client.about("semanticTokens/full", json!({}));
     }
-    assert_eq!(client.diagnostics(example.chars().count() + 1), json!([]));
+    assert_eq!(client.diagnostics(SCENE.chars().count() + 1), json!([]));
     client.leave();
 }
 
@@ -240,11 +187,9 @@ fn a_client_of_few_words_gets_plain_answers() {
         json!({}),
         "/* 🎱 */ sphere { radius 1  radius 2  center (0, 0, 0) }",
     );
-    let twice = diagnostics["diagnostics"]
-        .as_array()
-        .expect("a list")
-        .iter()
-        .find(|found| found["code"] == "duplicate_field");
+    let found = diagnostics["diagnostics"].as_array().expect("a list");
+    let mut found = found.iter();
+    let twice = found.find(|found| found["code"] == "duplicate_field");
     let twice = twice.expect("it is given twice");
     // Columns are units of UTF-16.
     assert_eq!(twice["range"], range(0, 28, 34));
@@ -255,58 +200,42 @@ fn a_client_of_few_words_gets_plain_answers() {
     assert_eq!(completions[0]["label"], "color");
     assert_eq!(completions[0]["textEdit"]["newText"], "color olive");
     assert_eq!(completions[0]["insertTextFormat"], 1);
-    let renamed = client.respond("textDocument/rename", json!({ "textDocument": { "uri": URI }, "position": { "line": 0, "character": 19 }, "newName": "x" }));
-    assert_eq!(
-        renamed["error"]["message"],
-        "`radius` is a word of the language"
-    );
+    let name = at(0, 19, json!({ "newName": "x" }));
+    let refused = client.respond("textDocument/rename", name);
+    let reason = "`radius` is a word of the language";
+    assert_eq!(refused["error"]["message"], reason);
     client.leave();
 }
 
 #[test]
 fn a_conversation_begins_and_ends_as_it_should() {
     let mut client = Client::start();
-    let early = client.respond("textDocument/hover", json!({}));
-    assert_eq!(early["error"]["code"], -32002);
+    let refused = |client: &mut Client, method: &str, params: Value| {
+        client.respond(method, params)["error"]["code"].clone()
+    };
+    let hover = "textDocument/hover";
+    assert_eq!(refused(&mut client, hover, json!({})), -32002);
     client.tell("textDocument/didOpen", json!({ "nonsense": true }));
     let hello = client.ask("initialize", json!({ "capabilities": {} }));
     assert_eq!(hello["serverInfo"]["name"], "pinhole");
-    assert_eq!(hello["capabilities"]["positionEncoding"], "utf-16");
-    assert_eq!(
-        hello["capabilities"]["experimental"],
-        json!({ "pinhole": 1 })
-    );
-    let legend = &hello["capabilities"]["semanticTokensProvider"]["legend"];
-    assert_eq!(
-        legend["tokenTypes"],
-        json!([
-            "keyword",
-            "property",
-            "variable",
-            "class",
-            "function",
-            "enumMember",
-            "number",
-            "operator",
-            "comment"
-        ])
-    );
-    let again = client.respond("initialize", json!({ "capabilities": {} }));
-    assert_eq!(again["error"]["code"], -32600);
-    let unknown = client.respond("workspace/symbol", json!({ "query": "" }));
-    assert_eq!(unknown["error"]["code"], -32601);
-    let wrong = client.respond(
-        "textDocument/hover",
-        json!({ "textDocument": { "uri": URI } }),
-    );
-    assert_eq!(wrong["error"]["code"], -32602);
+    let capabilities = &hello["capabilities"];
+    assert_eq!(capabilities["positionEncoding"], "utf-16");
+    assert_eq!(capabilities["experimental"], json!({ "pinhole": 1 }));
+    let legend = &capabilities["semanticTokensProvider"]["legend"];
+    let kinds =
+        "keyword property variable class function enumMember number operator comment".split(' ');
+    assert_eq!(legend["tokenTypes"], json!(kinds.collect::<Vec<_>>()));
+    let document = json!({ "textDocument": { "uri": URI } });
+    for (method, params, code) in [
+        ("initialize", json!({ "capabilities": {} }), -32600),
+        ("workspace/symbol", json!({ "query": "" }), -32601),
+        (hover, document.clone(), -32602),
+    ] {
+        assert_eq!(refused(&mut client, method, params), code);
+    }
     client.tell("$/setTrace", json!({ "value": "off" }));
     assert_eq!(client.ask("shutdown", Value::Null), Value::Null);
-    let late = client.respond(
-        "textDocument/hover",
-        json!({ "textDocument": { "uri": URI } }),
-    );
-    assert_eq!(late["error"]["code"], -32600);
+    assert_eq!(refused(&mut client, hover, document), -32600);
     client.tell("exit", Value::Null);
     assert_eq!(client.end(), (Some(0), String::new()));
 }
@@ -359,30 +288,21 @@ fn what_is_no_request_is_refused() {
         (json!([]), Value::Null),
         (json!([shutdown]), Value::Null),
         (json!({ "jsonrpc": "2.0", "id": 8 }), json!(8)),
-        (
-            json!({ "jsonrpc": "2.0", "id": "a", "method": 5 }),
-            json!("a"),
-        ),
-        (
-            json!({ "jsonrpc": "2.0", "id": 1.5, "method": "shutdown" }),
-            json!(1.5),
-        ),
-        // Beyond the protocol's whole numbers.
-        (
-            json!({ "jsonrpc": "2.0", "id": 99_999_999_999_u64, "method": "shutdown" }),
-            json!(99_999_999_999_u64),
-        ),
-        (
-            json!({ "jsonrpc": "2.0", "id": -2_147_483_649_i64, "method": "shutdown" }),
-            json!(-2_147_483_649_i64),
-        ),
-        (
-            json!({ "jsonrpc": "2.0", "id": {}, "method": [] }),
-            Value::Null,
-        ),
     ] {
         client.send(&message);
         assert_eq!(refused(client.read()), (id, json!(-32600)), "{message}");
+    }
+    for [id, method] in [
+        [json!("a"), json!(5)],
+        [json!(1.5), json!("shutdown")],
+        // Beyond the protocol's whole numbers.
+        [json!(99_999_999_999_u64), json!("shutdown")],
+        [json!(-2_147_483_649_i64), json!("shutdown")],
+        [json!({}), json!([])],
+    ] {
+        client.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method }));
+        let id = if id.is_object() { Value::Null } else { id };
+        assert_eq!(refused(client.read()), (id, json!(-32600)), "{method}");
     }
     client.ask("initialize", json!({ "capabilities": {} }));
     client.leave();

@@ -1,16 +1,15 @@
 //! The files of a report: charts, tables, and a page that stands alone.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use image::DynamicImage;
 use pinhole::scene::Method;
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 use serde_json::Value;
 
-use super::{SCENE, folder, parsed, read, report, words};
-#[cfg(unix)]
-use crate::program;
+use super::{SCENE, folder, parsed};
+use crate::program::{self, Folder};
 
 const XHTML: &str = "http://www.w3.org/1999/xhtml";
 
@@ -21,39 +20,40 @@ fn picture(element: Node) -> DynamicImage {
     image::load_from_memory(&BASE64_STANDARD.decode(png).unwrap()).unwrap()
 }
 
+/// The elements of a document that are called so.
+fn elements<'d>(
+    document: &'d Document,
+    name: &'static str,
+) -> impl Iterator<Item = Node<'d, 'd>> + Clone {
+    let all = document.descendants();
+    all.filter(move |node| node.tag_name().name() == name)
+}
+
+/// The texts of a chart, each with the height at which it stands.
+fn labels(chart: &str) -> Vec<(String, i32)> {
+    let document = parsed(chart);
+    let root = document.root_element();
+    assert!(root.has_tag_name(("http://www.w3.org/2000/svg", "svg")));
+    let label = |node: Node| {
+        let height = node.attribute("y")?.parse().ok()?;
+        Some((node.text()?.trim().to_owned(), height))
+    };
+    elements(&document, "text").filter_map(label).collect()
+}
+
 #[test]
 fn a_folder_gets_whole_files() {
     let folder = folder();
-    let arguments = [
-        "a.scn",
-        "-o",
-        "new/speed",
-        "--samples",
-        "1,4,16",
-        "--runs",
-        "2",
-        "--methods",
-        "sobol,random,exact",
-        "--set",
-        "Ball.radius=1.2",
-    ];
-    let output = report(&folder, &arguments);
-    assert!(output.status.success(), "{}", words(&output.stderr));
-    let mut names: Vec<_> = fs::read_dir(folder.path().join("new/speed"))
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    let all = [
-        "error-against-samples.svg",
-        "error-against-time.svg",
-        "index.html",
-        "report.csv",
-        "report.json",
-    ];
-    assert_eq!(names, all);
+    folder.told(
+        "report a.scn -o new/speed --samples 1,4,16 --runs 2 --methods sobol,random,exact --set Ball.radius=1.2",
+        0,
+    );
+    let read = |name: &str| folder.text(&format!("new/speed/{name}"));
+    let all = "error-against-samples.svg error-against-time.svg index.html report.csv report.json";
+    let names = program::names(&folder.path("new/speed"));
+    assert_eq!(names.join(" "), all);
 
-    let csv = read(&folder, "new/speed/report.csv");
+    let csv = read("report.csv");
     let lines: Vec<Vec<_>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), 1 + 2 * 3 + 1);
     assert!(lines.iter().all(|line| line.len() == lines[0].len()));
@@ -71,61 +71,35 @@ fn a_folder_gets_whole_files() {
     assert!(exact[at("bound")].parse::<f64>().unwrap() < 1e-8);
     assert_eq!(first[at("bound")], "");
 
-    let json: Value = serde_json::from_str(&read(&folder, "new/speed/report.json")).unwrap();
+    let json: Value = serde_json::from_str(&read("report.json")).unwrap();
     assert_eq!(json["overrides"], serde_json::json!(["Ball.radius=1.2"]));
 
-    for name in ["error-against-samples.svg", "error-against-time.svg"] {
-        let svg = read(&folder, &format!("new/speed/{name}"));
-        let document = parsed(&svg);
-        assert!(
-            document
-                .root_element()
-                .has_tag_name(("http://www.w3.org/2000/svg", "svg"))
-        );
-        let text: Vec<_> = document
-            .descendants()
-            .filter(|node| node.has_tag_name("text"))
-            .collect();
-        let labelled = |word: &str| {
-            text.iter().any(|node| {
-                node.text()
-                    .is_some_and(|text| text.trim().starts_with(word))
-            })
-        };
-        assert!(
-            labelled("sobol") && labelled("random") && labelled("1/256"),
-            "{name}"
-        );
-        assert_eq!(labelled("exact"), name.contains("time"));
+    for (of, has_exact) in [("samples", false), ("time", true)] {
+        let labels = labels(&read(&format!("error-against-{of}.svg")));
+        let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
+        assert!(has("sobol") && has("random") && has("1/256"), "{of}");
+        assert_eq!(has("exact"), has_exact);
     }
 
-    let page = read(&folder, "new/speed/index.html");
+    let page = read("index.html");
     let document = parsed(&page);
-    let elements = |name: &'static str| {
-        document
-            .descendants()
-            .filter(move |node| node.tag_name().name() == name)
-    };
-    assert_eq!(elements("script").count(), 0);
-    assert_eq!(elements("table").count(), 1);
+    let count = |name| elements(&document, name).count();
     // The exact picture twice, as a whole and beside the others, and those of the sampled methods.
-    assert_eq!(elements("img").count(), 4);
+    assert_eq!([count("script"), count("table"), count("img")], [0, 1, 4]);
     // First what to do, then the charts, the table, the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
-    for image in elements("img") {
+    for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());
         let picture = picture(image);
         assert_eq!((picture.width(), picture.height()), (48, 32));
     }
     // Nothing is fetched from elsewhere.
     for node in document.descendants() {
-        for attribute in node
-            .attributes()
-            .filter(|attribute| ["src", "href"].contains(&attribute.name()))
-        {
-            assert!(attribute.value().starts_with("data:"));
+        for name in ["src", "href"] {
+            let target = node.attribute(name).unwrap_or("data:");
+            assert!(target.starts_with("data:"), "{target}");
         }
     }
 }
@@ -133,28 +107,14 @@ fn a_folder_gets_whole_files() {
 #[test]
 fn a_large_picture_is_shown_whole_and_small() {
     let folder = folder();
-    let arguments = [
-        "a.scn",
-        "-o",
-        "out",
-        "--methods",
-        "sobol",
-        "--samples",
-        "1",
-        "--runs",
-        "1",
-        "--set",
-        "image.width=1300",
-        "--set",
-        "image.height=700",
-    ];
-    assert!(report(&folder, &arguments).status.success());
-    let page = read(&folder, "out/index.html");
+    folder.told(
+        "report a.scn -o out --methods sobol --samples 1 --runs 1 --set image.width=1300 --set image.height=700",
+        0,
+    );
+    let page = folder.text("out/index.html");
     let document = parsed(&page);
-    let whole = document
-        .descendants()
-        .find(|node| node.attribute("alt") == Some("the exact picture as a whole"));
-    let picture = picture(whole.unwrap());
+    let is_whole = |node: &Node| node.attribute("alt") == Some("the exact picture as a whole");
+    let picture = picture(document.descendants().find(is_whole).unwrap());
     assert_eq!((picture.width(), picture.height()), (434, 234));
     assert!(page.contains("reduced to 434 × 234 pixels"));
     assert!(page.len() < 500_000, "{}", page.len());
@@ -168,30 +128,19 @@ fn a_large_picture_is_shown_whole_and_small() {
 #[test]
 fn labels_of_a_chart_do_not_lie_upon_each_other() {
     let folder = folder();
-    let output = report(
-        &folder,
-        &["a.scn", "-o", "out", "--samples", "1,4", "--runs", "1"],
-    );
-    assert!(output.status.success());
-    for name in ["samples", "time"] {
-        let svg = read(&folder, &format!("out/error-against-{name}.svg"));
-        let document = parsed(&svg);
-        let mut heights: Vec<i32> = document
-            .descendants()
-            .filter(|node| {
-                let text = node.text().unwrap_or_default().trim();
-                let first = text.split(' ').next().unwrap();
-                node.has_tag_name("text")
-                    && Method::SAMPLED.iter().any(|method| method.name() == first)
-            })
-            .map(|node| node.attribute("y").unwrap().parse().unwrap())
-            .collect();
-        assert_eq!(heights.len(), 9);
+    folder.told("report a.scn -o out --samples 1,4 --runs 1", 0);
+    for of in ["samples", "time"] {
+        let labels = labels(&folder.text(&format!("out/error-against-{of}.svg")));
+        let is_method = |label: &str| {
+            let first = label.split(' ').next();
+            Method::SAMPLED.iter().any(|m| Some(m.name()) == first)
+        };
+        let labels = labels.into_iter().filter(|(label, _)| is_method(label));
+        let mut heights: Vec<i32> = labels.map(|(_, height)| height).collect();
         heights.sort_unstable();
-        assert!(
-            heights.windows(2).all(|pair| pair[1] - pair[0] >= 15),
-            "{heights:?}"
-        );
+        assert_eq!(heights.len(), 9);
+        let is_apart = |pair: &[i32]| pair[1] - pair[0] >= 15;
+        assert!(heights.windows(2).all(is_apart), "{heights:?}");
         assert!(heights[0] > 0 && heights[8] < 440);
     }
 }
@@ -199,33 +148,18 @@ fn labels_of_a_chart_do_not_lie_upon_each_other() {
 #[test]
 fn several_scenes_have_a_folder_each_and_one_page() {
     let folder = folder();
-    fs::create_dir(folder.path().join("sub")).unwrap();
-    fs::write(folder.path().join("sub/a.scn"), SCENE).unwrap();
-    let arguments = [
-        "a.scn",
-        "sub/a.scn",
-        "-o",
-        "out",
-        "--samples",
-        "1",
-        "--runs",
-        "1",
-        "--methods",
-        "halton",
-    ];
-    assert!(report(&folder, &arguments).status.success());
-    for name in [
-        "out/a/report.csv",
-        "out/a-2/report.json",
-        "out/a-2/index.html",
-    ] {
-        read(&folder, name);
+    folder.write("sub/a.scn", SCENE);
+    folder.told(
+        "report a.scn sub/a.scn -o out --samples 1 --runs 1 --methods halton",
+        0,
+    );
+    for name in ["a/report.csv", "a-2/report.json", "a-2/index.html"] {
+        folder.text(&format!("out/{name}"));
     }
-    let page = read(&folder, "out/index.html");
+    let page = folder.text("out/index.html");
     let document = parsed(&page);
-    let titles = document
-        .descendants()
-        .filter(|node| node.has_tag_name((XHTML, "h2")));
+    let titles = elements(&document, "h2");
+    assert!(titles.clone().all(|node| node.has_tag_name((XHTML, "h2"))));
     let titles: Vec<_> = titles.filter_map(|node| node.text()).collect();
     assert_eq!(titles, ["a.scn", "sub/a.scn", "How this was measured"]);
 }
@@ -233,7 +167,7 @@ fn several_scenes_have_a_folder_each_and_one_page() {
 #[cfg(unix)]
 #[test]
 fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
-    let folder = folder();
+    let folder = Folder::with([]);
     let names = [
         "...scn",
         "index.html.scn",
@@ -242,41 +176,32 @@ fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
         "a/../a.scn",
         ".scn",
     ];
-    let work = folder.path().join("work");
+    let work = folder.path("work");
     fs::create_dir_all(work.join("a")).unwrap();
-    let text = format!("{SCENE}// \u{1b}\n");
     for name in names {
-        fs::write(work.join(name), &text).unwrap();
+        fs::write(work.join(name), format!("{SCENE}// \u{1b}\n")).unwrap();
     }
-    let mut arguments = names.to_vec();
+    let mut arguments = vec!["report"];
+    arguments.extend(names);
     arguments.extend("-o out --samples 1 --runs 1 --methods sobol".split(' '));
-    let arguments = [&["report"], arguments.as_slice()].concat();
     let output = program::command(&work, &arguments).output().unwrap();
-    assert!(output.status.success(), "{}", words(&output.stderr));
-    assert!(!output.stderr.contains(&0x1b));
-    let entries = |path: &Path| {
-        let names = fs::read_dir(path)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name());
-        let mut names: Vec<_> = names.map(|name| name.into_string().unwrap()).collect();
-        names.sort();
-        names
-    };
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{errors}");
+    assert!(!errors.contains('\u{1b}'));
     // Beside the folder of the scenes there is nothing new, and within it the report's alone.
-    assert_eq!(entries(folder.path()), ["a.scn", "work"]);
-    assert_eq!(entries(&work).len(), names.len() + ["a", "out"].len());
-    let made = entries(&work.join("out"));
+    assert_eq!(folder.names(), ["work"]);
+    let entries = |name: &str| program::names(&folder.path(name));
+    assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());
+    let made = entries("work/out");
     assert_eq!(made.len(), names.len() + 1, "{made:?}");
     for name in made {
-        let path = work.join("out").join(&name);
-        let page = if path.is_dir() {
-            path.join("index.html")
+        let made = format!("work/out/{name}");
+        if folder.path(&made).is_dir() {
+            for file in ["index.html", "error-against-time.svg"] {
+                parsed(&folder.text(&format!("{made}/{file}")));
+            }
         } else {
-            path.clone()
-        };
-        parsed(&fs::read_to_string(page).unwrap());
-        if path.is_dir() {
-            parsed(&fs::read_to_string(path.join("error-against-time.svg")).unwrap());
+            parsed(&folder.text(&made));
         }
     }
 }

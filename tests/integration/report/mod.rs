@@ -5,57 +5,34 @@ mod files;
 mod interrupted;
 mod statistics;
 
-use std::{
-    fs,
-    process::{Command, Output},
-};
-
 use pinhole::scene::Method;
-use serde_json::Value;
-use tempfile::TempDir;
+use serde_json::{Value, json};
 
-use crate::program;
+use crate::{
+    program::Folder,
+    table::{list, rows},
+};
 
 const SCENE: &str =
     "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
 sampler { method sobol per_pixel 4 seed 7 } sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// A fresh folder with the scene in `a.scn`.
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
-    folder
+/// A folder with the scene in `a.scn`.
+fn folder() -> Folder {
+    Folder::with([("a.scn", SCENE)])
 }
 
-fn command(folder: &TempDir, arguments: &[&str]) -> Command {
-    let arguments = [&["report"], arguments].concat();
-    program::command(folder.path(), &arguments)
+/// What people are told of the scene.
+fn table(arguments: &str) -> String {
+    folder().told(&format!("report a.scn {arguments}"), 0)
 }
 
-fn report(folder: &TempDir, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-fn words(bytes: &[u8]) -> &str {
-    std::str::from_utf8(bytes).unwrap()
-}
-
-fn fails(folder: &TempDir, arguments: &[&str], status: i32) -> String {
-    let output = report(folder, arguments);
-    let errors = words(&output.stderr).to_owned();
-    assert_eq!(
-        output.status.code(),
-        Some(status),
-        "{arguments:?}: {errors}"
-    );
-    assert_eq!(output.stdout, b"", "{arguments:?}");
-    errors
-}
-
-fn read(folder: &TempDir, name: &str) -> String {
-    let path = folder.path().join(name);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
+/// The report of the scene for programs, and whether it is complete.
+fn report(arguments: &str) -> Value {
+    let answer = folder().done(&format!("report a.scn --format json {arguments}"));
+    assert_eq!(answer.json()["complete"], true);
+    answer.json()["reports"][0].clone()
 }
 
 /// Parses XML, or HTML that is written as XML.
@@ -69,80 +46,57 @@ fn parsed(text: &str) -> roxmltree::Document<'_> {
 
 #[test]
 fn people_get_a_table_and_an_answer() {
-    let folder = folder();
-    let output = report(&folder, &["a.scn", "--samples", "1,2,4,16", "--runs", "2"]);
-    let text = words(&output.stderr);
-    assert!(
-        output.status.success() && output.stdout.is_empty(),
-        "{text}"
-    );
-    assert!(
-        text.starts_with("a.scn: 48 × 32 pixels, 2 runs, "),
-        "{text}"
-    );
+    let text = table("--samples 1,2,4,16 --runs 2");
+    let start = "a.scn: 48 × 32 pixels, 2 runs, ";
+    assert!(text.starts_with(start), "{text}");
+    let row = |name: &str| -> Vec<&str> {
+        let mut rows = text.lines().map(|line| line.split_whitespace().collect());
+        rows.find(|row: &Vec<&str>| row.first() == Some(&name))
+            .unwrap()
+    };
     for method in Method::SAMPLED {
-        let mut rows = text.lines().map(str::split_whitespace);
-        let row = rows.find_map(|mut row| (row.next() == Some(method.name())).then_some(row));
-        let row: Vec<_> = row.unwrap().collect();
+        let row = row(method.name());
         // Slope, ±, its error, samples, two times with their units.
-        assert_eq!((row.len(), row[1]), (8, "±"), "{row:?}");
-        assert!(row[0].starts_with('−'), "{row:?}");
+        assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
+        assert!(row[1].starts_with('−'), "{row:?}");
         // So few samples do not come to 1/256.
         assert!(
-            row[3].starts_with('~') && row[4].starts_with('~'),
+            row[4].starts_with('~') && row[5].starts_with('~'),
             "{row:?}"
         );
     }
-    let exact = text
-        .lines()
-        .find(|line| line.trim_start().starts_with("exact "));
-    assert!(!exact.unwrap().contains('~'), "{text}");
-    assert!(
-        text.contains("samples") && text.contains("for 1/256"),
-        "{text}"
-    );
-    assert!(text.contains("~ extrapolated; – not known"), "{text}");
-    let answer = text.lines().filter(|line| line.starts_with("Use "));
-    assert_eq!(answer.count(), 1, "{text}");
-    for line in text.lines() {
-        assert!(line.chars().count() <= 100, "{line}");
+    assert!(!row("exact").concat().contains('~'), "{text}");
+    for words in ["samples", "for 1/256", "~ extrapolated; – not known"] {
+        assert!(text.contains(words), "{text}");
     }
+    let answers = text.lines().filter(|line| line.starts_with("Use "));
+    assert_eq!(answers.count(), 1, "{text}");
+    assert!(is_narrow(&text), "{text}");
+}
+
+fn is_narrow(text: &str) -> bool {
+    text.lines().all(|line| line.chars().count() <= 100)
 }
 
 #[test]
 fn each_error_has_a_table_that_fits_a_terminal() {
-    let folder = folder();
-    let arguments = "a.scn --samples 1,4 --runs 1 --error 0.0101 --error 0.0104";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    let text = words(&output.stderr);
+    let text = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
     for error in ["1/256", "0.0101", "0.0104"] {
-        assert_eq!(
-            text.matches(&format!("use exact for an error of {error}: "))
-                .count(),
-            1,
-            "{text}"
-        );
-        assert_eq!(
-            text.matches(&format!(" for {error}\n")).count(),
-            1,
-            "{text}"
-        );
+        for words in [
+            format!("use exact for an error of {error}: "),
+            format!(" for {error}\n"),
+        ] {
+            assert_eq!(text.matches(&words).count(), 1, "{text}");
+        }
     }
-    assert!(
-        text.lines().all(|line| line.chars().count() <= 100),
-        "{text}"
-    );
+    assert!(is_narrow(&text), "{text}");
     // A slope through two points has no standard error.
     assert!(!text.contains('±'), "{text}");
 }
 
 #[test]
 fn the_answer_is_the_method_with_the_least_time() {
-    let folder = folder();
-    let arguments = "a.scn --format json --samples 1,16,256 --runs 3 --error 0.02";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let report = &answer["reports"][0];
+    let report = report("--samples 1,16,256 --runs 3 --error 0.02");
     for at in 0..2 {
         let mut times = vec![(report["exact"]["time"].as_f64().unwrap(), "exact")];
         for method in report["methods"].as_array().unwrap() {
@@ -154,12 +108,9 @@ fn the_answer_is_the_method_with_the_least_time() {
                 times.push((time, method["method"].as_str().unwrap()));
             }
         }
-        let (_, fastest) = times
-            .into_iter()
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .unwrap();
+        let fastest = times.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let verdict = report["verdicts"][at].as_str().unwrap();
-        let start = format!("Use {fastest}");
+        let start = format!("Use {}", fastest.unwrap().1);
         let rest = verdict.strip_prefix(&start).expect(verdict);
         assert!(rest.starts_with([',', ' ']), "{verdict}");
     }
@@ -167,25 +118,17 @@ fn the_answer_is_the_method_with_the_least_time() {
 
 #[test]
 fn programs_get_json_and_errors_fall() {
-    let folder = folder();
-    let arguments =
-        "a.scn --format json --samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --threads 1";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    assert_eq!((output.status.code(), words(&output.stderr)), (Some(0), ""));
-    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(answer["complete"], true);
-    let report = &answer["reports"][0];
-    assert_eq!(report["scene"], "a.scn");
-    assert_eq!(
-        report["image"],
-        serde_json::json!({"width": 48, "height": 32})
-    );
-    assert_eq!(
-        (&report["seed"], &report["threads"]),
-        (&7.into(), &1.into())
-    );
-    assert_eq!(report["per_pixel"], serde_json::json!([1, 4, 16, 64]));
-    assert_eq!(report["runs"], 3);
+    let report = report("--samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --threads 1");
+    for (key, value) in [
+        ("scene", json!("a.scn")),
+        ("image", json!({ "width": 48, "height": 32 })),
+        ("seed", json!(7)),
+        ("threads", json!(1)),
+        ("per_pixel", json!([1, 4, 16, 64])),
+        ("runs", json!(3)),
+    ] {
+        assert_eq!(report[key], value, "{key}");
+    }
     assert!(report["exact"]["bound"].as_f64().unwrap() < 1e-8);
     assert!(report["machine"]["processors"].as_u64().unwrap() >= 1);
     let methods = report["methods"].as_array().unwrap();
@@ -217,16 +160,13 @@ fn programs_get_json_and_errors_fall() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
-        let needed = method["needed"].as_array().unwrap();
         // That of which everybody is told, and those that were asked for.
-        let errors: Vec<_> = needed
-            .iter()
-            .map(|needed| needed["error"].as_f64())
-            .collect();
+        let needed = [0, 1, 2].map(|at| &method["needed"][at]);
+        let errors = needed.map(|needed| needed["error"].as_f64());
         assert_eq!(errors, [1.0 / 256.0, 0.5, 1e-6].map(Some));
-        let found = (&needed[1]["per_pixel"], &needed[1]["extrapolated"]);
-        assert_eq!(found, (&1.0.into(), &false.into()), "{name}");
-        assert_eq!(needed[2]["extrapolated"], true, "{name}");
+        assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
+        let extrapolated = [1, 2].map(|at| needed[at]["extrapolated"].as_bool());
+        assert_eq!(extrapolated, [Some(false), Some(true)], "{name}");
     }
     // Each run draws its own seed's samples, and the errors of the seeds differ.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
@@ -236,11 +176,9 @@ fn programs_get_json_and_errors_fall() {
 
 #[test]
 fn samples_go_on_until_the_error_is_reached() {
-    let folder = folder();
-    let arguments = "a.scn --format json --methods random,sobol --runs 1 --budget 600 --error 0.05";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let report = &answer["reports"][0];
+    let report = report(
+        "--methods random,sobol --runs 1 --budget 600 --error 0.05 --set image.width=24 --set image.height=16",
+    );
     for method in report["methods"].as_array().unwrap() {
         assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
     }
@@ -255,17 +193,10 @@ fn samples_go_on_until_the_error_is_reached() {
 
 #[test]
 fn no_method_comes_nearer_than_the_reference_is_known() {
-    let folder = folder();
     // Where the bound is, and below what any number of samples is worth.
-    let arguments =
-        "a.scn --format json --methods exact,sobol --samples 1,4 --runs 1 --error 1e-17";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    let answer: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let report = &answer["reports"][0];
-    let bound = report["reference"]["root_mean_square_bound"]
-        .as_f64()
-        .unwrap();
-    let largest = report["exact"]["bound"].as_f64().unwrap();
+    let report = report("--methods exact,sobol --samples 1,4 --runs 1 --error 1e-17");
+    let bound = report["reference"]["root_mean_square_bound"].as_f64();
+    let (bound, largest) = (bound.unwrap(), report["exact"]["bound"].as_f64().unwrap());
     assert!(1e-17 < bound && bound <= largest, "{bound} {largest}");
     let needed = &report["methods"][0]["needed"];
     assert!(needed[0]["per_pixel"].is_number() && needed[1]["per_pixel"].is_null());
@@ -277,106 +208,81 @@ fn no_method_comes_nearer_than_the_reference_is_known() {
 
 #[test]
 fn a_picture_of_one_colour_has_no_error() {
-    let folder = folder();
     let empty =
         "image { width 4 height 4 } camera { eye (0, 1, 0) direction (0, 1, 0) up (0, 0, 1) }";
-    fs::write(folder.path().join("empty.scn"), empty).unwrap();
-    let output = report(&folder, &["empty.scn", "-o", "out"]);
-    let text = words(&output.stderr);
-    assert!(output.status.success(), "{text}");
-    let sobol = text
-        .lines()
-        .find(|line| line.trim_start().starts_with("sobol"));
-    let cells: Vec<_> = sobol.unwrap().split_whitespace().collect();
-    assert_eq!(cells[1..3], ["–", "1"], "{text}");
-    parsed(&read(&folder, "out/index.html"));
-    parsed(&read(&folder, "out/error-against-time.svg"));
+    let folder = Folder::with([("empty.scn", empty)]);
+    let text = folder.told("report empty.scn -o out", 0);
+    let mut lines = text.lines().map(str::split_whitespace);
+    let sobol = lines.find_map(|mut line| (line.next() == Some("sobol")).then_some(line));
+    assert!(sobol.unwrap().take(2).eq(["–", "1"]), "{text}");
+    parsed(&folder.text("out/index.html"));
+    parsed(&folder.text("out/error-against-time.svg"));
 }
 
 #[test]
 fn exact_alone_has_a_time_and_no_samples() {
     let folder = folder();
-    let output = report(
-        &folder,
-        &["a.scn", "--methods", "exact", "-o", "out", "--runs", "2"],
-    );
-    let text = words(&output.stderr);
-    assert!(output.status.success(), "{text}");
-    let json: Value = serde_json::from_str(&read(&folder, "out/report.json")).unwrap();
-    assert_eq!(json["per_pixel"], serde_json::json!([]));
+    folder.told("report a.scn --methods exact -o out --runs 2", 0);
+    let json: Value = serde_json::from_str(&folder.text("out/report.json")).unwrap();
+    assert_eq!(json["per_pixel"], json!([]));
     assert_eq!(json["exact"]["runs"]["time"].as_array().unwrap().len(), 2);
-    let page = read(&folder, "out/index.html");
+    let page = folder.text("out/index.html");
     parsed(&page);
     for absent in ["<svg", "dashed line", "samples per pixel", "The slope"] {
         assert!(!page.contains(absent), "{absent}");
     }
-    parsed(&read(&folder, "out/error-against-samples.svg"));
+    parsed(&folder.text("out/error-against-samples.svg"));
 }
 
 #[test]
 fn wrong_arguments_are_told() {
     let folder = folder();
-    fs::write(folder.path().join("file"), "kept").unwrap();
-    fs::write(folder.path().join("bad.scn"), "sphere { radus 2 }").unwrap();
-    let errors = fails(&folder, &["a.scn", "--methods", "sobol,jitered"], 2);
-    assert!(
-        errors.contains("jitered") && errors.contains("'jittered'"),
-        "{errors}"
-    );
-    for arguments in [
-        &["a.scn", "--samples", "0"][..],
-        &["a.scn", "--samples", "1,x"],
-        &["a.scn", "--runs", "0"],
-        &["a.scn", "--error", "0"],
-        &["a.scn", "--error", "1/0"],
-        &["a.scn", "--error", "nan"],
-        &["a.scn", "--error", "2"],
-        &["a.scn", "--budget", "0"],
-        &["a.scn", "--numerics"],
-        &["--numerics", "--runs", "3"],
-        &["none.scn"],
-        &["-", "-"],
-    ] {
-        fails(&folder, arguments, 2);
-    }
-    let errors = fails(
-        &folder,
-        &["a.scn", "--methods", "exact", "--samples", "4", "-o", "new"],
-        2,
-    );
-    assert!(
-        errors.starts_with("error: `--samples` is for methods that take samples"),
-        "{errors}"
-    );
-    assert!(!folder.path().join("new").exists());
-    let errors = fails(&folder, &["a.scn", "-o", "file"], 2);
-    assert_eq!(
-        errors,
-        "error: file is a file, and the report is a folder of files\n"
-    );
-    assert_eq!(read(&folder, "file"), "kept");
-    let errors = fails(&folder, &["a.scn", "--samples", "9007199254740992"], 2);
-    assert!(errors.contains("more than 2^53"), "{errors}");
-    let errors = fails(&folder, &["a.scn", "bad.scn", "--samples", "1"], 1);
-    assert!(errors.contains("pinhole::unknown_field"), "{errors}");
+    folder.write("file", "kept");
+    folder.write("bad.scn", "sphere { radus 2 }");
     // A report never writes over a scene.
-    fs::copy(
-        folder.path().join("a.scn"),
-        folder.path().join("index.html"),
-    )
-    .unwrap();
-    let kept = read(&folder, "index.html");
-    let errors = fails(&folder, &["index.html", "--samples", "1", "-o", "."], 2);
-    assert!(errors.contains("would write over the scene"), "{errors}");
-    assert_eq!(read(&folder, "index.html"), kept);
+    folder.write("index.html", SCENE);
+    for line in list(
+        "
+        a.scn --samples 0
+        a.scn --samples 1,x
+        a.scn --runs 0
+        a.scn --error 0
+        a.scn --error 1/0
+        a.scn --error nan
+        a.scn --error 2
+        a.scn --budget 0
+        a.scn --numerics
+        --numerics --runs 3
+        none.scn
+        - -
+    ",
+    ) {
+        folder.told(&format!("report {line}"), 2);
+    }
+    for [line, status, words] in rows("
+        a.scn --methods sobol,jitered -> 2 -> 'jittered'
+        a.scn --methods exact --samples 4 -o new -> 2 -> error: `--samples` is for methods that take samples
+        a.scn -o file -> 2 -> error: file is a file, and the report is a folder of files\n
+        a.scn --samples 9007199254740992 -> 2 -> more than 2^53
+        a.scn bad.scn --samples 1 -> 1 -> pinhole::unknown_field
+        index.html --samples 1 -o . -> 2 -> would write over the scene
+    ") {
+        let told = folder.told(&format!("report {line}"), status.parse().unwrap());
+        assert!(told.contains(words), "{told}");
+    }
+    assert_eq!(folder.names(), ["a.scn", "bad.scn", "file", "index.html"]);
+    assert_eq!(folder.text("file"), "kept");
+    assert_eq!(folder.text("index.html"), SCENE);
 }
 
 /// Links that are there already lead nowhere: neither a file nor a scene's folder is written through one.
 #[cfg(unix)]
 #[test]
 fn no_link_leads_out_of_the_folder() {
-    use std::os::unix::fs::symlink;
+    use std::{fs, os::unix::fs::symlink};
 
+    let line =
+        |scenes: &str| format!("report {scenes} -o out --samples 1 --runs 1 --methods sobol");
     for (scenes, link) in [
         ("a.scn", "index.html"),
         ("a.scn", "report.csv"),
@@ -384,24 +290,20 @@ fn no_link_leads_out_of_the_folder() {
         ("a.scn a.scn", "index.html"),
     ] {
         let folder = folder();
-        let path = |name: &str| folder.path().join(name);
-        fs::create_dir_all(path("outside/deep")).unwrap();
-        fs::create_dir(path("out")).unwrap();
-        symlink(path("outside/deep"), path("out").join(link)).unwrap();
-        let arguments = format!("{scenes} -o out --samples 1 --runs 1 --methods sobol");
-        let errors = fails(&folder, &arguments.split(' ').collect::<Vec<_>>(), 2);
+        fs::create_dir_all(folder.path("outside/deep")).unwrap();
+        fs::create_dir(folder.path("out")).unwrap();
+        symlink(folder.path("outside/deep"), folder.path("out").join(link)).unwrap();
         let expected = format!(
             "error: out/{link} is a symbolic link, and a report writes nothing outside of its folder\n"
         );
-        assert_eq!(errors, expected);
-        assert_eq!(fs::read_dir(path("outside/deep")).unwrap().count(), 0);
+        assert_eq!(folder.told(&line(scenes), 2), expected);
+        let mut written = fs::read_dir(folder.path("outside/deep")).unwrap();
+        assert!(written.next().is_none());
     }
     // What the user names may be a link.
     let folder = folder();
-    fs::create_dir(folder.path().join("real")).unwrap();
-    symlink("real", folder.path().join("out")).unwrap();
-    let arguments = "a.scn -o out --samples 1 --runs 1 --methods sobol";
-    let output = report(&folder, &arguments.split(' ').collect::<Vec<_>>());
-    assert!(output.status.success(), "{}", words(&output.stderr));
-    read(&folder, "real/index.html");
+    fs::create_dir(folder.path("real")).unwrap();
+    symlink("real", folder.path("out")).unwrap();
+    folder.told(&line("a.scn"), 0);
+    folder.text("real/index.html");
 }

@@ -73,9 +73,10 @@ fn estimate(points: &[(u64, f64, f64)], error: f64) -> Option<Estimate> {
     series(points).estimate(error)
 }
 
-/// Samples, CPU time, and whether they are extrapolated.
-fn is(estimate: Option<Estimate>, samples: f64, cpu: f64, is_extrapolated: bool) {
-    let estimate = estimate.unwrap();
+/// Checks samples, CPU time, and whether they are extrapolated.
+#[track_caller]
+fn is(points: &[(u64, f64, f64)], error: f64, samples: f64, cpu: f64, is_extrapolated: bool) {
+    let estimate = estimate(points, error).unwrap();
     let found = (estimate.per_pixel, estimate.is_extrapolated);
     assert_eq!(found, (Some(samples), is_extrapolated), "{estimate:?}");
     assert!((estimate.cpu - cpu).abs() < 1e-9, "{estimate:?}");
@@ -87,60 +88,43 @@ fn is(estimate: Option<Estimate>, samples: f64, cpu: f64, is_extrapolated: bool)
 fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
     let straight = [(1, 0.5, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)];
     // Half-way in logarithms, and a third of the way in time.
-    is(
-        estimate(&straight, 0.02f64.sqrt() + 1e-9),
-        8.0,
-        5.0 / 3.0,
-        false,
-    );
-    is(estimate(&straight, 0.2), 4.0, 1.0, false);
+    let half = 0.02f64.sqrt() + 1e-9;
+    is(&straight, half, 8.0, 5.0 / 3.0, false);
+    is(&straight, 0.2, 4.0, 1.0, false);
     // Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
-    is(
-        estimate(&straight, 0.05 + 1e-9),
-        64.0,
-        0.5 + 63.0 / 6.0,
-        true,
-    );
+    let beyond = 0.05 + 1e-9;
+    is(&straight, beyond, 64.0, 0.5 + 63.0 / 6.0, true);
     // That slope is the one of the last three points: with logarithms to base 4 it is that of x = −1, 0, 1.
-    let bent = [
-        (1, 1.0, 0.4),
-        (4, 4.0, 0.2),
-        (16, 16.0, 0.1),
-        (64, 64.0, 0.09),
-    ];
+    let bent = [(1, 0.4), (4, 0.2), (16, 0.1), (64, 0.09)];
+    let bent = bent.map(|(n, error)| (n, n as f64, error));
     let slope = libm::log(0.09 / 0.2) / 2.0 / libm::log(4.0);
     let samples = (64.0 * libm::exp2(-1.0 / slope)).ceil();
-    is(estimate(&bent, 0.045), samples, samples, true);
+    is(&bent, 0.045, samples, samples, true);
     // Times that fall by chance do not fall on.
     let falling = [(1, 1.2, 0.4), (4, 1.1, 0.2), (16, 1.0, 0.1)];
-    is(estimate(&falling, 0.05 + 1e-9), 64.0, 1.0, true);
+    is(&falling, beyond, 64.0, 1.0, true);
     // The first number is enough, alone or not, whatever the others do.
-    is(estimate(&[(64, 1.0, 0.2)], 0.4), 64.0, 1.0, false);
+    is(&[(64, 1.0, 0.2)], 0.4, 64.0, 1.0, false);
+    is(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4, 4.0, 1.0, false);
     is(
-        estimate(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4),
+        &[(4, 1.0, 0.2), (16, 3.0, 0.1)],
+        0.4 - 1e-9,
         4.0,
         1.0,
         false,
     );
-    let few = [(4, 1.0, 0.2), (16, 3.0, 0.1)];
-    is(estimate(&few, 0.4 - 1e-9), 4.0, 1.0, false);
-    is(estimate(&straight, 0.9), 1.0, 0.5, false);
+    is(&straight, 0.9, 1.0, 0.5, false);
+    // No error at all is one that is small enough.
+    is(&[(1, 1.0, 0.4), (4, 2.0, 0.0)], 0.1, 4.0, 2.0, false);
 }
 
 #[test]
 fn an_error_that_comes_back_was_not_reached() {
     // A grid that falls into step with the picture.
-    let wave = [
-        (1, 1.0, 0.4),
-        (4, 4.0, 0.05),
-        (16, 16.0, 0.2),
-        (64, 64.0, 0.05),
-    ];
-    let found = estimate(&wave, 0.1).unwrap();
-    assert!(
-        (16.0..64.0).contains(&found.per_pixel.unwrap()),
-        "{found:?}"
-    );
+    let wave = [(1, 0.4), (4, 0.05), (16, 0.2), (64, 0.05)];
+    let found = estimate(&wave.map(|(n, error)| (n, n as f64, error)), 0.1).unwrap();
+    let samples = found.per_pixel.unwrap();
+    assert!((16.0..64.0).contains(&samples), "{found:?}");
 }
 
 #[test]
@@ -148,28 +132,13 @@ fn nothing_is_known_where_more_samples_do_not_help() {
     assert_eq!(estimate(&[(1, 1.0, 0.4), (4, 1.0, 0.4)], 0.1), None);
     assert_eq!(estimate(&[(1, 1.0, 0.1), (4, 1.0, 0.4)], 0.01), None);
     assert_eq!(estimate(&[(4, 1.0, 0.4)], 0.1), None);
-    // No error at all is one that is small enough.
-    is(
-        estimate(&[(1, 1.0, 0.4), (4, 2.0, 0.0)], 0.1),
-        4.0,
-        2.0,
-        false,
-    );
 }
 
 #[test]
 fn a_time_has_its_samples() {
     let series = series(&[(1, 1.0, 0.4), (4, 2.0, 0.2), (16, 6.0, 0.1)]);
-    for (cpu, samples) in [
-        (0.5, 1),
-        (1.0, 1),
-        (2.0, 4),
-        (4.0, 10),
-        (6.0, 16),
-        (100.0, 16),
-    ] {
-        assert_eq!(series.samples_in(cpu), Some(samples), "{cpu}");
-    }
+    let times = [0.5, 1.0, 2.0, 4.0, 6.0, 100.0].map(|cpu| series.samples_in(cpu));
+    assert_eq!(times, [1, 1, 4, 10, 16, 16].map(Some));
 }
 
 #[test]
@@ -179,18 +148,21 @@ fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
         method: Method::MultiJittered,
         ..series(&points)
     };
-    for (samples, grid) in [(401, 420), (400, 400), (419, 420), (421, 441), (1020, 1024)] {
+    for (samples, grid) in [
+        (401, 420.0),
+        (400, 400.0),
+        (419, 420.0),
+        (421, 441.0),
+        (1020, 1024.0),
+        // The last number.
+        (1024, 1024.0),
+    ] {
         let error = 1.0 / f64::from(samples).sqrt() + 1e-12;
-        is(grids.estimate(error), grid.into(), grid.into(), false);
-        is(
-            series(&points).estimate(error),
-            samples.into(),
-            samples.into(),
-            false,
-        );
+        let found = grids.estimate(error).unwrap();
+        assert_eq!(found.per_pixel, Some(grid));
+        assert!((found.cpu - grid).abs() < 1e-9, "{found:?}");
+        is(&points, error, samples.into(), samples.into(), false);
     }
-    // At the last number, and beyond.
-    is(grids.estimate(1.0 / 32.0), 1024.0, 1024.0, false);
 }
 
 fn subject() -> Subject {

@@ -57,14 +57,17 @@ fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     (0..).zip(edges).map(error).collect()
 }
 
-/// The mean of some numbers and its standard error.
-fn mean(numbers: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let count = numbers.clone().count() as f64;
-    let mean = numbers.clone().sum::<f64>() / count;
-    let squares: f64 = numbers
-        .map(|number| (number - mean) * (number - mean))
-        .sum();
-    (mean, (squares / (count - 1.0) / count).sqrt())
+/// The mean of the squares of some errors less what they should be, and its standard error.
+fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
+    let excess = errors
+        .iter()
+        .zip(expected)
+        .map(|(error, e)| error * error - e);
+    let excess: Vec<f64> = excess.collect();
+    let count = excess.len() as f64;
+    let mean = excess.iter().sum::<f64>() / count;
+    let squares = excess.iter().map(|one| (one - mean) * (one - mean));
+    (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
 /// The area of the part of the pixel where normal · p < distance, by clipping.
@@ -160,13 +163,8 @@ fn squared_errors_are_what_theory_says() {
     ];
     for (method, edges, variance) in cases {
         for n in COUNTS {
-            let squares = errors(method, n, edges)
-                .into_iter()
-                .map(|error| error * error);
-            let excess = squares
-                .zip(edges)
-                .map(|(square, &edge)| square - variance(n, edge));
-            let (excess, error) = mean(excess.collect::<Vec<_>>().into_iter());
+            let expected = edges.iter().map(|&edge| variance(n, edge));
+            let (excess, error) = excess(errors(method, n, edges), expected);
             assert!(
                 excess.abs() < 4.0 * error,
                 "{method:?}, {n}: {excess} ± {error}"
@@ -180,15 +178,8 @@ fn errors_are_within_their_bounds() {
     let [slanted, parallel] = [false, true].map(edges);
     for n in COUNTS {
         // A Latin hypercube is no worse than one point less of independent ones (Owen 1997, "Monte Carlo variance of scrambled net quadrature").
-        let squares = errors(Method::NRooks, n, &slanted)
-            .into_iter()
-            .map(|error| error * error);
         let bounds = slanted.iter().map(|&edge| independent(n - 1, edge));
-        let excess: Vec<_> = squares
-            .zip(bounds)
-            .map(|(square, bound)| square - bound)
-            .collect();
-        let (excess, error) = mean(excess.into_iter());
+        let (excess, error) = excess(errors(Method::NRooks, n, &slanted), bounds);
         assert!(excess < 4.0 * error, "{n}: {excess} ± {error}");
         // The n points of a sequence in base 3 are as many evenly spaced sets as n has ones in that base, a two counted twice, and each is less
         // than a point off.
@@ -216,10 +207,8 @@ fn errors_fall_as_fast_as_they_should() {
         // The slope of the least squares line through five equidistant logarithms, and its standard error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
-            let squares = errors(method, n, &edges)
-                .into_iter()
-                .map(|error| error * error);
-            let (square, error) = mean(squares.collect::<Vec<_>>().into_iter());
+            let nothing = std::iter::repeat(0.0);
+            let (square, error) = excess(errors(method, n, &edges), nothing);
             let weight = weight / libm::log(4.0);
             slope += weight * libm::log(square) / 2.0;
             variance += (weight * error / square / 2.0) * (weight * error / square / 2.0);

@@ -31,6 +31,17 @@ fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
     Sampling::new(&sampler, 64, 64)
 }
 
+/// The samples of a picture, so many in all.
+fn shared(method: Method, total: u64, seed: u64, [width, height]: [u32; 2]) -> Sampling {
+    let count = Count::Total(total);
+    let sampler = Sampler {
+        method,
+        count,
+        seed,
+    };
+    Sampling::new(&sampler, width, height)
+}
+
 /// The points of a pixel with these indices.
 pub fn placed(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
@@ -73,16 +84,10 @@ fn seeds_and_pixels_have_points_of_their_own() {
         };
         let base = of(1, [3, 4]);
         assert_eq!(base, of(1, [3, 4]));
-        for other in [
-            of(2, [3, 4]),
-            of(1, [4, 3]),
-            of(1, [3, 5]),
-            of(1 << 52, [3, 4]),
-        ] {
-            assert!(
-                base.iter().all(|point| !other.contains(point)),
-                "{method:?}"
-            );
+        for (seed, pixel) in [(2, [3, 4]), (1, [4, 3]), (1, [3, 5]), (1 << 52, [3, 4])] {
+            let other = of(seed, pixel);
+            let is_own = base.iter().all(|point| !other.contains(point));
+            assert!(is_own, "{method:?}");
         }
     }
 }
@@ -102,12 +107,7 @@ fn points_stay_where_they_are() {
         DVec2::new(0.49924405020095936, -0.3561122876778888),
     ];
     for (method, point) in Method::SAMPLED.into_iter().zip(expected) {
-        let sampler = Sampler {
-            method,
-            count: Count::Total(64 * 64 * 16 + 1000),
-            seed: 5,
-        };
-        let sampling = Sampling::new(&sampler, 64, 64);
+        let sampling = shared(method, 64 * 64 * 16 + 1000, 5, [64, 64]);
         let count = sampling.count(20, 30);
         let points = placed(&sampling, [20, 30], 0..count);
         let expected = match method {

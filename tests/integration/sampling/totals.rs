@@ -7,24 +7,9 @@ fn a_total_is_shared_out_to_the_last_sample() {
     for (width, height) in [(1, 1), (7, 3), (16, 16), (30, 17), (64, 1)] {
         let pixels = u64::from(width) * u64::from(height);
         for method in Method::SAMPLED {
-            for total in [
-                1,
-                2,
-                pixels - 1,
-                pixels,
-                pixels + 1,
-                5 * pixels / 2,
-                1000 * pixels + 7,
-            ] {
-                if total == 0 {
-                    continue;
-                }
-                let sampler = Sampler {
-                    method,
-                    count: Count::Total(total),
-                    seed: 2,
-                };
-                let sampling = Sampling::new(&sampler, width, height);
+            let around = [pixels.max(2) - 1, pixels, pixels + 1, 5 * pixels / 2];
+            for total in [1, 2, 1000 * pixels + 7].into_iter().chain(around) {
+                let sampling = shared(method, total, 2, [width, height]);
                 let counts = sampling.counts(Area::whole(width, height));
                 assert_eq!(counts.iter().sum::<u64>(), total, "{method:?}");
                 assert_eq!(sampling.total(), total);
@@ -56,12 +41,7 @@ fn a_total_is_shared_out_to_the_last_sample() {
 fn the_extra_samples_are_spread_evenly_in_both_directions() {
     let (width, height) = (100, 60);
     for extra in [1, 37, 600, 1500, 3000, 4321, 5999] {
-        let sampler = Sampler {
-            method: Method::Random,
-            count: Count::Total(6000 * 4 + extra),
-            seed: 0,
-        };
-        let sampling = Sampling::new(&sampler, width, height);
+        let sampling = shared(Method::Random, 6000 * 4 + extra, 0, [width, height]);
         let density = extra as f64 / 6000.0;
         for side in [2, 4, 8, 16, 32] {
             for tile in Area::whole(width, height).tiles(side) {
@@ -89,12 +69,7 @@ fn the_largest_picture_has_a_last_pixel() {
 
 #[test]
 fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
-    let sampler = Sampler {
-        method: Method::Random,
-        count: Count::Total(64 * 64 / 2),
-        seed: 0,
-    };
-    let sampling = Sampling::new(&sampler, 64, 64);
+    let sampling = shared(Method::Random, 64 * 64 / 2, 0, [64, 64]);
     let first = sampling.count(0, 0);
     for (x, y) in Area::whole(64, 64).iter() {
         assert_eq!(sampling.count(x, y), first ^ u64::from((x + y) % 2));
@@ -107,14 +82,7 @@ fn scattered_points_fall_like_rain() {
     let area = Area::whole(40, 25);
     let mut empty = 0;
     for seed in 0..20 {
-        let of = |total| {
-            let sampler = Sampler {
-                method: Method::Scatter,
-                count: Count::Total(total),
-                seed,
-            };
-            Sampling::new(&sampler, 40, 25).counts(area)
-        };
+        let of = |total| shared(Method::Scatter, total, seed, [40, 25]).counts(area);
         let chi2: f64 = of(20_000)
             .iter()
             .map(|&n| (n as f64 - 20.0) * (n as f64 - 20.0) / 20.0)
@@ -132,12 +100,7 @@ fn scattered_points_fall_like_rain() {
 #[test]
 fn the_largest_scatter_sums_up() {
     let side = 1 << 20;
-    let sampler = Sampler {
-        method: Method::Scatter,
-        count: Count::Total(1 << 53),
-        seed: 0,
-    };
-    let sampling = Sampling::new(&sampler, side, side);
+    let sampling = shared(Method::Scatter, 1 << 53, 0, [side, side]);
     let corner = Area {
         x: side - 30,
         y: side - 20,
