@@ -13,7 +13,7 @@ use super::{
 use crate::{
     editor::{
         Analysis,
-        viewport::{self, Along, Drag},
+        viewport::{self, Along, Drag, Vanishing},
     },
     source::Span,
 };
@@ -73,15 +73,12 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) ->
     let further: Option<usize> = optional(params, "object")?;
     let overlays = viewport::overlays(&version.scene, further);
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
-    let vanishing = vanishing.map(|(axis, vanishing)| {
-        let lines = vanishing.lines.iter().map(|line| written_line(line));
-        let lines: Vec<Value> = lines.collect();
-        json!({ "axis": axis, "point": vanishing.point.map(written_point), "lines": lines })
+    let vanishing = vanishing.map(|(axis, Vanishing { point, lines })| {
+        json!({ "axis": axis, "point": point.map(written_point), "lines": written_lines(lines) })
     });
     let objects = overlays.objects.iter().map(|outline| {
         let mut object = object(outline.object, converter, version);
-        let lines = outline.lines.iter().map(|line| written_line(line));
-        object["outline"] = lines.collect();
+        object["outline"] = written_lines(&outline.lines);
         let handles = outline.handles.iter().map(|(name, at)| {
             let label = name.replace('_', " ");
             json!({ "handle": name, "at": at.map(written_point), "label": label })
@@ -89,15 +86,13 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) ->
         object["handles"] = handles.collect();
         object
     });
-    let lines = |lines: &[[DVec2; 2]]| lines.iter().map(|line| written_line(line)).collect();
-    let [near, far]: [Value; 2] = [lines(&overlays.near), lines(&overlays.far)];
     Ok(json!({
         "size": overlays.size,
         "axis": written_point(overlays.axis),
         "horizon": overlays.horizon.map(|line| written_line(&line)),
         "vanishing": vanishing.collect::<Vec<_>>(),
-        "near": near,
-        "far": far,
+        "near": written_lines(&overlays.near),
+        "far": written_lines(&overlays.far),
         "objects": objects.collect::<Vec<_>>(),
     }))
 }
@@ -170,4 +165,9 @@ fn written_point(point: DVec2) -> Value {
 
 fn written_line(line: &[DVec2]) -> Value {
     line.iter().copied().map(written_point).collect()
+}
+
+fn written_lines(lines: &[impl AsRef<[DVec2]>]) -> Value {
+    let lines = lines.iter().map(AsRef::as_ref);
+    lines.map(written_line).collect()
 }

@@ -57,8 +57,11 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
-    let (block, name) = block(analysis, scene, drag)?;
-    let current = part(scene, drag)?;
+    let dragged = part(scene, drag).zip(block(analysis, scene, drag));
+    let (current, (block, name)) = dragged.ok_or_else(|| match drag.object {
+        Some(index) => format!("there is no object {index}"),
+        None => "the text has no camera".to_owned(),
+    })?;
     let view = Viewpoint {
         scene,
         projection: Projection::new(&scene.camera, &scene.image),
@@ -89,10 +92,9 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         .find(is_near)
         .or_else(|| edits(first + DIGITS))
         .ok_or_else(tied)?;
-    let found = part(&read(analysis, &edits)?, drag)?;
-    if !view.agree(ideal, found) {
-        return Err(tied());
-    }
+    let found = part(&read(analysis, &edits)?, drag);
+    let found = found.filter(|found| view.agree(ideal, *found));
+    let found = found.ok_or_else(tied)?;
     let values = fields.into_iter().filter_map(|(field, before)| {
         let after = found.value(field).filter(|after| *after != before)?;
         Some(format!("{name}.{field} = {after}"))
@@ -103,37 +105,29 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     })
 }
 
+/// What is dragged: the camera or an object; none if there is no such object.
+fn part(scene: &Scene, drag: &Drag<'_>) -> Option<Part> {
+    Some(match drag.object {
+        None => Part::Camera(scene.camera),
+        Some(index) => Part::Shape(scene.objects.get(index)?.shape),
+    })
+}
+
 /// The block of the text that is to change, and what it is called.
 fn block<'a, 's>(
     analysis: &'a Analysis<'s>,
     scene: &Scene,
     drag: &Drag<'_>,
-) -> Result<(&'a Block<'s>, String), String> {
+) -> Option<(&'a Block<'s>, String)> {
     let mut blocks = analysis.blocks();
-    let (block, name) = match drag.object {
-        None => {
-            let is_camera = |block: &&Block<'_>| block.kind.is_some_and(|it| it.text == "camera");
-            (blocks.find(is_camera), "camera".to_owned())
-        }
-        Some(index) => {
-            let object = scene.objects.get(index);
-            let object = object.ok_or_else(|| format!("there is no object {index}"))?;
-            let name = object.name.clone();
-            let name = name.unwrap_or_else(|| object.shape.kind().to_owned());
-            (blocks.find(|block| block.span == object.span), name)
-        }
-    };
-    let block = block.ok_or_else(|| format!("the text has no block for the {name}"))?;
-    Ok((block, name))
-}
-
-fn part(scene: &Scene, drag: &Drag<'_>) -> Result<Part, String> {
     let Some(index) = drag.object else {
-        return Ok(Part::Camera(scene.camera));
+        let is_camera = |block: &&Block<'_>| block.kind.is_some_and(|it| it.text == "camera");
+        return Some((blocks.find(is_camera)?, "camera".to_owned()));
     };
-    let object = scene.objects.get(index);
-    let object = object.ok_or_else(|| format!("there is no object {index}"))?;
-    Ok(Part::Shape(object.shape))
+    let object = scene.objects.get(index)?;
+    let name = object.name.as_deref().unwrap_or(object.shape.kind());
+    let block = blocks.find(|block| block.span == object.span)?;
+    Some((block, name.to_owned()))
 }
 
 /// The scene that a text means after some edits.
