@@ -6,7 +6,11 @@ use thiserror::Error;
 
 /// A picture for which there is no memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("a picture of {width} × {height} pixels needs {} of memory, {}", size(*.needed), have(*.available))]
+#[error(
+    "a picture of {width} × {height} pixels needs {} of memory, {}",
+    size(*.needed),
+    .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
+)]
 pub struct TooLarge {
     /// Columns of pixels.
     pub width: u32,
@@ -49,11 +53,8 @@ fn available() -> Option<u64> {
 
 fn machine() -> Option<u64> {
     let table = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = table
-        .lines()
-        .find(|line| line.starts_with("MemAvailable:"))?;
-    let kibibytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kibibytes * 1024)
+    // In KiB.
+    Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
 /// What is left of the limits of this process's control group and of the groups around it.
@@ -75,30 +76,21 @@ fn left(group: &Path) -> Option<u64> {
     // Without a limit there is a word here.
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;
     let usage: u64 = read("memory.current")?.trim().parse().ok()?;
-    let table = read("memory.stat").unwrap_or_default();
-    let cache = table
-        .lines()
-        .find_map(|line| line.strip_prefix("inactive_file "));
-    let cache: u64 = cache.and_then(|cache| cache.parse().ok()).unwrap_or(0);
+    let cache = entry(&read("memory.stat").unwrap_or_default(), "inactive_file ").unwrap_or(0);
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
+}
+
+/// The number behind a name in a table.
+fn entry(table: &str, name: &str) -> Option<u64> {
+    let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
+    entry.split_whitespace().next()?.parse().ok()
 }
 
 /// A number of bytes for people.
 fn size(bytes: u64) -> String {
-    const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
-    let mut scaled = bytes as f64;
-    let mut unit = 0;
-    while scaled >= 1024.0 && unit + 1 < UNITS.len() {
-        scaled /= 1024.0;
-        unit += 1;
-    }
-    let digits = usize::from(unit > 0);
-    format!("{scaled:.digits$} {}", UNITS[unit])
-}
-
-fn have(available: Option<u64>) -> String {
-    match available {
-        Some(available) => format!("and {} are available", size(available)),
-        None => "more than there is".to_owned(),
-    }
+    const UNITS: [&str; 7] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    let power = bytes.max(1).ilog2() / 10;
+    let scaled = bytes as f64 / (1_u64 << (10 * power)) as f64;
+    let digits = usize::from(power > 0);
+    format!("{scaled:.digits$} {}", UNITS[power as usize])
 }

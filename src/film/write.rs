@@ -27,7 +27,7 @@ pub fn write_whole(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     match place(path)? {
-        Place::File(path, found) => {
+        Some((path, found)) => {
             let temporary = temporary(&path, found.as_ref())?;
             // Not the temporary file itself, whose errors would name it.
             let sink = temporary.as_file();
@@ -41,7 +41,7 @@ pub fn write_whole(
             temporary.persist(path).map_err(|error| error.error)?;
             Ok(())
         }
-        Place::Device(path) => {
+        None => {
             let sink = Cursor::new(Vec::new());
             let mut content = Checked { sink, cancel };
             write(&mut content)?;
@@ -66,33 +66,26 @@ pub fn write_stream(
 /// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to learn it after a long render.
 pub fn check_writable(path: &Path) -> io::Result<()> {
     match place(path)? {
-        Place::File(path, found) => temporary(&path, found.as_ref())?.close(),
-        Place::Device(_) => Ok(()),
+        Some((path, found)) => temporary(&path, found.as_ref())?.close(),
+        None => Ok(()),
     }
 }
 
-/// Where the content goes.
-enum Place {
-    /// A file; what there is to know about the one that exists already.
-    File(PathBuf, Option<Metadata>),
-    /// Something that must not be replaced.
-    Device(PathBuf),
-}
-
-fn place(path: &Path) -> io::Result<Place> {
+/// The file that the content is for, and what there is to know about the one that exists already; none if it is something that must not be replaced.
+fn place(path: &Path) -> io::Result<Option<(PathBuf, Option<Metadata>)>> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
         Ok(found) if found.is_file() => {
             // Replacing a file only takes the right to write to its folder; not to touch a file that is write-protected is
             // what its owner expects.
             OpenOptions::new().write(true).open(path)?;
-            Ok(Place::File(fs::canonicalize(path)?, Some(found)))
+            Ok(Some((fs::canonicalize(path)?, Some(found))))
         }
-        Ok(_) => Ok(Place::Device(path.to_owned())),
+        Ok(_) => Ok(None),
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
             // A link to nothing: the file that it would create. Links in a circle are another error.
             Ok(target) => place(&folder(path).join(target)),
-            Err(_) => Ok(Place::File(path.to_owned(), None)),
+            Err(_) => Ok(Some((path.to_owned(), None))),
         },
         Err(error) => Err(error),
     }

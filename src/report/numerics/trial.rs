@@ -56,15 +56,12 @@ pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
     let ours = [&basis.u, &basis.v, &basis.w].map(|v| v.each_ref().map(Real::to_f64));
     let theirs = textbook::axes(camera).map(|v| v.to_array());
     let errors = [theirs, ours].map(|axes| {
-        let mut greatest = 0.0_f64;
-        for (x, truth) in axes.iter().flatten().zip(oracle.axes.iter().flatten()) {
-            if !x.is_finite() {
-                return f64::INFINITY;
-            }
-            let error = (oracle.number.exact(*x) - truth).to_f64().value().abs();
-            greatest = greatest.max(error / (f64::EPSILON / 2.0));
-        }
-        greatest
+        let pairs = axes.iter().flatten().zip(oracle.axes.iter().flatten());
+        let errors = pairs.map(|(x, truth)| match x.is_finite() {
+            true => (oracle.number.exact(*x) - truth).to_f64().value().abs(),
+            false => f64::INFINITY,
+        });
+        errors.fold(0.0, f64::max) / (f64::EPSILON / 2.0)
     });
     tally.inputs += 1;
     tally.errors(errors.map(Some));

@@ -107,12 +107,11 @@ fn cost((method, estimate): &(Method, Estimate)) -> String {
 }
 
 fn per_pixel(estimate: &Estimate) -> String {
-    let one = if estimate.per_pixel == Some(1.0) {
-        ""
-    } else {
-        "s"
-    };
-    format!("{} sample{one} per pixel", samples(estimate))
+    let samples = samples(estimate);
+    match estimate.per_pixel == Some(1.0) {
+        true => format!("{samples} sample per pixel"),
+        false => format!("{samples} samples per pixel"),
+    }
 }
 
 /// For each method its slope, and for each of some errors the samples, the CPU time and the wall time that it takes.

@@ -22,10 +22,7 @@ pub fn text(measured: &Measurement) -> String {
         let verdict = filled(&verdict(measured, error));
         text += &format!("\n{}\n\n{verdict}", table(measured, error));
     }
-    text += &notes(measured)
-        .iter()
-        .map(|note| filled(note))
-        .collect::<String>();
+    text.extend(notes(measured).iter().map(|note| filled(note)));
     text
 }
 
