@@ -6,12 +6,12 @@
 use std::collections::{HashMap, VecDeque};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use gen_lsp_types as lsp;
 use lsp_server::RequestId;
 use serde_json::{Value, json};
 
 use super::{
     params::{Refusal, optional},
+    protocol::Uri,
     scene_version::SceneVersion,
 };
 use crate::{
@@ -40,7 +40,7 @@ pub struct Frames(VecDeque<Frame>);
 #[derive(Debug)]
 struct Frame {
     id: RequestId,
-    uri: lsp::Uri,
+    uri: Uri,
     wanted: Wanted,
     begun: Option<Begun>,
 }
@@ -91,7 +91,7 @@ impl Wanted {
 
 impl Frames {
     /// Takes a frame in. Returns the request that it supersedes.
-    pub fn push(&mut self, id: RequestId, uri: lsp::Uri, wanted: Wanted) -> Option<RequestId> {
+    pub fn push(&mut self, id: RequestId, uri: Uri, wanted: Wanted) -> Option<RequestId> {
         let is_same = |frame: &Frame| frame.uri == uri && frame.wanted == wanted;
         let place = self.0.iter().position(is_same);
         let superseded = place.and_then(|place| self.0.remove(place));
@@ -117,7 +117,7 @@ impl Frames {
     }
 
     /// Drops the frames of a text, or of all if it is none. Returns who asked for them.
-    pub fn drop_of(&mut self, uri: Option<&lsp::Uri>) -> Vec<RequestId> {
+    pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
         let mut dropped = Vec::new();
         self.0.retain(|frame| {
             let is_kept = uri.is_some_and(|uri| frame.uri != *uri);
@@ -137,7 +137,7 @@ impl Frames {
     /// Makes a slice of the oldest one. Returns its answer once it is done.
     pub fn advance(
         &mut self,
-        scenes: &mut HashMap<lsp::Uri, Option<SceneVersion>>,
+        scenes: &mut HashMap<Uri, Option<SceneVersion>>,
     ) -> Result<Option<Value>, Refusal> {
         let Some(frame) = self.0.front_mut() else {
             return Ok(None);

@@ -33,15 +33,10 @@ impl Refusal {
 /// What is answered, as JSON.
 pub type Answer = Result<Value, Refusal>;
 
-/// What was asked, in the protocol's types.
-pub fn parsed<T: serde::de::DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params).map_err(Refusal::invalid)
-}
-
-/// What is answered, as JSON.
-pub fn written(result: &impl serde::Serialize) -> Answer {
-    serde_json::to_value(result)
-        .map_err(|error| Refusal(ErrorCode::InternalError, error.to_string()))
+/// What stands at a place in the parameters.
+pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
+    let found = params.pointer(path).cloned().unwrap_or_default();
+    serde_json::from_value(found).map_err(Refusal::invalid)
 }
 
 /// A field of the parameters; none where it is left out or null.

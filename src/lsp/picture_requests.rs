@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{
     convert::Converter,
-    params::{Answer, Refusal, optional, parsed},
+    params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
 };
 use crate::{
@@ -104,7 +104,7 @@ fn drag(
     version: &SceneVersion,
 ) -> Answer {
     let object: Option<usize> = optional(params, "object")?;
-    let handle: String = parsed(params.get("handle").cloned().unwrap_or_default())?;
+    let handle: String = at(params, "/handle")?;
     let along: Option<String> = optional(params, "along")?;
     let to = point(params, "to")?;
     let from = match object {
@@ -130,12 +130,12 @@ fn drag(
         along,
     };
     let dragged = viewport::drag(analysis, &version.scene, &drag).map_err(Refusal::failed)?;
-    let edits: Vec<_> = converter.text_edits(dragged.edits).collect();
+    let edits = converter.text_edits(dragged.edits);
     Ok(json!({ "edits": edits, "values": dragged.values }))
 }
 
 fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
-    let pixel: [u32; 2] = parsed(params.get("pixel").cloned().unwrap_or_default())?;
+    let pixel: [u32; 2] = at(params, "/pixel")?;
     let image = version.scene.image;
     if pixel[0] >= image.width || pixel[1] >= image.height {
         return Err(Refusal::invalid("`pixel` is no pixel of the picture"));

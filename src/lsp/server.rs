@@ -11,7 +11,6 @@ use std::{
     panic::{self, AssertUnwindSafe},
 };
 
-use gen_lsp_types as lsp;
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 
@@ -19,8 +18,9 @@ use super::{
     convert::{self, Client, Converter},
     documents::Document,
     frames::{Frames, Wanted},
-    params::{Refusal, parsed, response, written},
+    params::{Refusal, at, response},
     picture_requests,
+    protocol::Uri,
     scene_version::SceneVersion,
     text_requests::{answer, diagnostics, not_open},
 };
@@ -43,13 +43,13 @@ enum Phase {
 #[derive(Debug)]
 pub struct Server {
     phase: Phase,
-    documents: HashMap<lsp::Uri, Document>,
+    documents: HashMap<Uri, Document>,
     /// The requests that have no answer yet.
     waiting: VecDeque<Request>,
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
     /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
-    scenes: HashMap<lsp::Uri, Option<SceneVersion>>,
+    scenes: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
@@ -104,7 +104,7 @@ impl Server {
     /// with it; or, where nothing else is left, a slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
-        let changed = || self.changed.first().map(|uri| Some(lsp::Uri(uri.clone())));
+        let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
         let Some(next) = asked.or_else(changed) else {
             return self.advance_frame().into_iter().collect();
         };
@@ -113,7 +113,7 @@ impl Server {
     }
 
     /// Answers what waits about such texts.
-    fn answer_all(&mut self, is_about: impl Fn(Option<&lsp::Uri>) -> bool) -> Vec<Message> {
+    fn answer_all(&mut self, is_about: impl Fn(Option<&Uri>) -> bool) -> Vec<Message> {
         let mut said = Vec::new();
         while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
             let uri = uri(request);
@@ -123,7 +123,7 @@ impl Server {
     }
 
     /// Answers what waits about a text, or about none, and tells what is wrong with it if it has changed.
-    fn work_on(&mut self, wanted: Option<&lsp::Uri>, is_changed: bool) -> Vec<Message> {
+    fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
         self.waiting = others;
@@ -193,7 +193,7 @@ impl Server {
     }
 
     /// Forgets the scene of a text that has changed. Answers those who wait for a frame of it.
-    fn forget(&mut self, uri: &lsp::Uri) -> Vec<Message> {
+    fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -207,7 +207,7 @@ impl Server {
     fn answer_about_life(&mut self, request: Request) -> Message {
         let refuse = |code, message: &str| Err(Refusal(code, message.to_owned()));
         let answer = match (request.method.as_str(), self.phase) {
-            ("initialize", Phase::Silent) => self.initialize(&request.params),
+            ("initialize", Phase::Silent) => Ok(self.initialize(&request.params)),
             (_, Phase::Silent) => refuse(
                 ErrorCode::ServerNotInitialized,
                 "`initialize` comes before everything else",
@@ -225,15 +225,12 @@ impl Server {
         response(request.id, answer)
     }
 
-    fn initialize(&mut self, params: &Value) -> Result<Value, Refusal> {
+    fn initialize(&mut self, params: &Value) -> Value {
         let client = Client::new(params);
         self.phase = Phase::Talking(client);
-        written(&lsp::InitializeResult {
-            capabilities: convert::capabilities(&client),
-            server_info: Some(lsp::ServerInfo {
-                name: "pinhole".to_owned(),
-                version: Some(env!("CARGO_PKG_VERSION").to_owned()),
-            }),
+        json!({
+            "capabilities": convert::capabilities(&client),
+            "serverInfo": { "name": "pinhole", "version": env!("CARGO_PKG_VERSION") },
         })
     }
 
@@ -248,15 +245,15 @@ impl Server {
             return Vec::new();
         };
         let about = params.pointer("/textDocument/uri").and_then(Value::as_str);
-        let about = about.map(|uri| lsp::Uri(uri.to_owned()));
+        let about = about.map(|uri| Uri(uri.to_owned()));
         let mut said = Vec::new();
         if method.starts_with("textDocument/did") {
             said = self.answer_all(|uri| uri.is_some() && uri == about.as_ref());
         }
         let noticed = match method.as_str() {
-            "textDocument/didOpen" => self.open(params, &client),
+            "textDocument/didOpen" => self.open(&params, &client),
             "textDocument/didChange" => self.change(&params),
-            "textDocument/didClose" => self.close(params),
+            "textDocument/didClose" => self.close(&params),
             "$/cancelRequest" => Ok(self.cancel(&params).into_iter().collect()),
             // Others are for servers that know more.
             _ => Ok(Vec::new()),
@@ -268,11 +265,10 @@ impl Server {
         said
     }
 
-    fn open(&mut self, params: Value, client: &Client) -> Result<Vec<Message>, Refusal> {
-        let params: lsp::DidOpenTextDocumentParams = parsed(params)?;
-        let lsp::TextDocumentItem {
-            uri, version, text, ..
-        } = params.text_document;
+    fn open(&mut self, params: &Value, client: &Client) -> Result<Vec<Message>, Refusal> {
+        let uri: Uri = at(params, "/textDocument/uri")?;
+        let version = at(params, "/textDocument/version")?;
+        let text = at(params, "/textDocument/text")?;
         let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
         self.changed.insert(uri.0.clone());
         let document = Document::new(&name, version, text, client.encoding);
@@ -283,11 +279,8 @@ impl Server {
 
     fn change(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
         let refuse = |message| Err(Refusal::invalid(message));
-        let text_document = params.get("textDocument").cloned().unwrap_or_default();
-        let lsp::VersionedTextDocumentIdentifier {
-            version,
-            text_document_identifier: lsp::TextDocumentIdentifier { uri },
-        } = parsed(text_document)?;
+        let uri: Uri = at(params, "/textDocument/uri")?;
+        let version = at(params, "/textDocument/version")?;
         let changes = convert::changes(params)?;
         let Some(document) = self.documents.get_mut(&uri) else {
             return refuse(format!("{} is not open", uri.0));
@@ -304,9 +297,8 @@ impl Server {
         Ok(said)
     }
 
-    fn close(&mut self, params: Value) -> Result<Vec<Message>, Refusal> {
-        let params: lsp::DidCloseTextDocumentParams = parsed(params)?;
-        let uri = params.text_document.uri;
+    fn close(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
+        let uri: Uri = at(params, "/textDocument/uri")?;
         self.documents.remove(&uri);
         let said = self.forget(&uri);
         self.changed.insert(uri.0);
@@ -337,9 +329,9 @@ fn is_of_life(request: &Request) -> bool {
 }
 
 /// The document that a request is about.
-fn uri(request: &Request) -> Option<lsp::Uri> {
+fn uri(request: &Request) -> Option<Uri> {
     let uri = request.params.pointer("/textDocument/uri")?.as_str()?;
-    Some(lsp::Uri(uri.to_owned()))
+    Some(Uri(uri.to_owned()))
 }
 
 /// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.

@@ -1,12 +1,11 @@
 //! A request about a document, and its answer: the parameters read, the editor asked, the answer converted.
 
-use gen_lsp_types as lsp;
 use lsp_server::Request;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{
-    convert::{self, Converter},
-    params::{Answer, Refusal, parsed, written},
+    convert::{self, Converter, FIX_ALL, QUICK_FIX},
+    params::{self, Answer, Refusal},
 };
 use crate::{
     diagnostic::Edit,
@@ -22,30 +21,26 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
     let Some((converter, analysis)) = known else {
         return Err(not_open());
     };
-    let at = || {
-        let position = params.get("position").cloned().unwrap_or_default();
-        parsed(position).map(|position| converter.offset(position))
-    };
-    let range = || {
-        let range = params.get("range").cloned().unwrap_or_default();
-        parsed(range).map(|range| converter.span(range))
-    };
+    let at = || params::at(&params, "/position").map(|at| converter.offset(at));
+    let range = || params::at(&params, "/range").map(|range| converter.span(range));
     match about {
         "completion" => {
             let completions = editor::completions(analysis, at()?).into_iter().enumerate();
             list(completions.map(|(index, completion)| converter.completion(index, completion)))
         }
-        "hover" => written(&editor::hover(analysis, at()?).map(|it| converter.hover(it))),
+        "hover" => Ok(editor::hover(analysis, at()?)
+            .map(|it| converter.hover(it))
+            .into()),
         "signatureHelp" => {
-            written(&editor::signature(analysis, at()?).map(|it| converter.signature(it)))
+            let found = editor::signature(analysis, at()?);
+            Ok(found.map(|it| converter.signature(it)).into())
         }
         "definition" => {
-            written(&editor::definition(analysis, at()?).map(|it| converter.location(it)))
+            let found = editor::definition(analysis, at()?);
+            Ok(found.map(|it| converter.location(it)).into())
         }
         "references" => {
-            let context = params.get("context").cloned().unwrap_or_default();
-            let context: lsp::ReferenceContext = parsed(context)?;
-            let all = context.include_declaration;
+            let all: bool = params::at(&params, "/context/includeDeclaration")?;
             let found = editor::occurrences(analysis, at()?).into_iter();
             let found = found.filter(|found| all || !found.is_definition);
             list(found.map(|found| converter.location(found.span)))
@@ -56,13 +51,13 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
         }
         "prepareRename" => {
             let span = editor::renamable(analysis, at()?).map_err(Refusal::failed)?;
-            written(&json!({ "range": converter.range(span), "placeholder": analysis.slice(span) }))
+            Ok(json!({ "range": converter.range(span), "placeholder": analysis.slice(span) }))
         }
         "rename" => {
-            let new: String = parsed(params.get("newName").cloned().unwrap_or_default())?;
+            let new: String = params::at(&params, "/newName")?;
             let spans = editor::rename(analysis, at()?, &new).map_err(Refusal::failed)?;
             let edits = spans.into_iter().map(|span| Edit::new(span, &*new));
-            written(&converter.edit(edits))
+            Ok(converter.edit(edits))
         }
         "documentSymbol" => {
             let symbols = editor::symbols(analysis).into_iter();
@@ -82,26 +77,19 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             list(swatches.map(|swatch| converter.swatch(swatch)))
         }
         "colorPresentation" => {
-            let color: lsp::Color = parsed(params.get("color").cloned().unwrap_or_default())?;
-            let span = range()?;
-            let labels = editor::presentations(analysis, span, convert::color(&color));
-            list(
-                labels
-                    .into_iter()
-                    .map(|label| converter.presentation(span, label)),
-            )
+            let (color, span) = (params::at(&params, "/color")?, range()?);
+            let labels = editor::presentations(analysis, span, convert::color(color));
+            let labels = labels.into_iter();
+            list(labels.map(|label| converter.presentation(span, label)))
         }
-        "codeAction" => code_actions(converter, analysis, parsed(params)?),
+        "codeAction" => code_actions(converter, analysis, &params),
         // Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not
         // complain each time.
         "formatting" => {
             let edits = editor::formatting(analysis);
-            let edits = edits.map(|edits| converter.text_edits(edits).collect::<Vec<_>>());
-            written(&edits)
+            Ok(edits.map(|edits| converter.text_edits(edits)).into())
         }
-        "semanticTokens/full" => {
-            written(&converter.semantic_tokens(&editor::semantic_tokens(analysis)))
-        }
+        "semanticTokens/full" => Ok(converter.semantic_tokens(&editor::semantic_tokens(analysis))),
         _ => Err(Refusal::unknown(&method)),
     }
 }
@@ -111,37 +99,33 @@ pub fn not_open() -> Refusal {
     Refusal::invalid("the document is not open")
 }
 
-fn list<T: serde::Serialize>(items: impl Iterator<Item = T>) -> Answer {
-    written(&items.collect::<Vec<T>>())
+fn list(items: impl Iterator<Item = Value>) -> Answer {
+    Ok(Value::Array(items.collect()))
 }
 
-fn code_actions(
-    converter: Converter<'_>,
-    analysis: &Analysis<'_>,
-    params: lsp::CodeActionParams,
-) -> Answer {
-    use lsp::CodeActionKind as Kind;
-    let only = params.context.only;
-    let is_wanted = |wanted: &[Kind]| {
+fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Value) -> Answer {
+    let range = params::at(params, "/range")?;
+    let only: Option<Vec<String>> = params::at(params, "/context/only")?;
+    let is_wanted = |wanted: &[&str]| {
         let mut only = only.iter().flatten();
-        only.any(|kind| *kind == Kind::Empty || wanted.contains(kind))
+        only.any(|kind| kind.is_empty() || wanted.contains(&kind.as_str()))
     };
     let mut actions = Vec::new();
-    if only.is_none() || is_wanted(&[Kind::QuickFix]) {
-        let fixes = editor::fixes(analysis, converter.span(params.range));
+    if only.is_none() || is_wanted(&[QUICK_FIX]) {
+        let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
     // Beside a fix it is offered where there are others.
     let all = analysis.diagnostics().iter();
     let is_more = !actions.is_empty() && all.filter(|it| !it.fixes.is_empty()).count() > 1;
-    if is_more || is_wanted(&[Kind::Source, Kind::SourceFixAll]) {
+    if is_more || is_wanted(&["source", FIX_ALL]) {
         actions.extend(editor::fix_all(analysis).map(|fix| converter.action(&fix, None)));
     }
-    written(&actions)
+    Ok(Value::Array(actions))
 }
 
 /// What is wrong with a document.
-pub fn diagnostics(converter: Converter<'_>, analysis: &Analysis<'_>) -> Vec<lsp::Diagnostic> {
+pub fn diagnostics(converter: Converter<'_>, analysis: &Analysis<'_>) -> Vec<Value> {
     let diagnostics = analysis.diagnostics().iter();
     diagnostics
         .map(|diagnostic| converter.diagnostic(diagnostic))

@@ -1,9 +1,9 @@
 //! What the client understands, and what the server offers it.
 
-use gen_lsp_types as lsp;
 use line_index::WideEncoding;
 use serde_json::{Value, json};
 
+use super::converter::{FIX_ALL, QUICK_FIX};
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
 /// What the client understands.
@@ -47,62 +47,38 @@ fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
 }
 
 /// What the server offers.
-pub fn capabilities(client: &Client) -> lsp::ServerCapabilities {
-    let words = |words: &[&str]| Some(words.iter().map(|word| (*word).to_owned()).collect());
-    lsp::ServerCapabilities {
-        position_encoding: Some(match client.encoding {
-            Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
-            Encoding::Wide(WideEncoding::Utf32) => lsp::PositionEncodingKind::UTF32,
-            Encoding::Wide(_) => lsp::PositionEncodingKind::UTF16,
-        }),
-        text_document_sync: Some(lsp::TextDocumentSync::Options(
-            lsp::TextDocumentSyncOptions {
-                open_close: Some(true),
-                change: Some(lsp::TextDocumentSyncKind::Incremental),
-                ..Default::default()
+pub fn capabilities(client: &Client) -> Value {
+    json!({
+        "positionEncoding": match client.encoding {
+            Encoding::Utf8 => "utf-8",
+            Encoding::Wide(WideEncoding::Utf32) => "utf-32",
+            Encoding::Wide(_) => "utf-16",
+        },
+        // 2: changes come as edits of the text.
+        "textDocumentSync": { "openClose": true, "change": 2 },
+        "completionProvider": {},
+        "hoverProvider": true,
+        "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
+        "definitionProvider": true,
+        "referencesProvider": true,
+        "documentHighlightProvider": true,
+        "documentSymbolProvider": true,
+        "documentFormattingProvider": true,
+        "codeActionProvider": { "codeActionKinds": [QUICK_FIX, FIX_ALL] },
+        "colorProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "foldingRangeProvider": true,
+        "inlayHintProvider": true,
+        "semanticTokensProvider": {
+            "legend": {
+                "tokenTypes": SemanticKind::ALL.map(token_type),
+                "tokenModifiers": ["declaration"],
             },
-        )),
-        completion_provider: Some(lsp::CompletionOptions::default()),
-        hover_provider: Some(lsp::HoverProvider::Bool(true)),
-        signature_help_provider: Some(lsp::SignatureHelpOptions {
-            trigger_characters: words(&["(", ","]),
-            ..Default::default()
-        }),
-        definition_provider: Some(lsp::DefinitionProvider::Bool(true)),
-        references_provider: Some(lsp::ReferencesProvider::Bool(true)),
-        document_highlight_provider: Some(lsp::DocumentHighlightProvider::Bool(true)),
-        document_symbol_provider: Some(lsp::DocumentSymbolProvider::Bool(true)),
-        document_formatting_provider: Some(lsp::DocumentFormattingProvider::Bool(true)),
-        code_action_provider: Some(lsp::CodeActionProvider::CodeActionOptions(
-            lsp::CodeActionOptions {
-                code_action_kinds: Some(vec![
-                    lsp::CodeActionKind::QuickFix,
-                    lsp::CodeActionKind::SourceFixAll,
-                ]),
-                ..Default::default()
-            },
-        )),
-        color_provider: Some(lsp::ColorProvider::Bool(true)),
-        rename_provider: Some(lsp::RenameProvider::RenameOptions(lsp::RenameOptions {
-            prepare_provider: Some(true),
-            ..Default::default()
-        })),
-        folding_range_provider: Some(lsp::FoldingRangeProvider::Bool(true)),
-        inlay_hint_provider: Some(lsp::InlayHintProvider::Bool(true)),
-        semantic_tokens_provider: Some(lsp::SemanticTokensProvider::SemanticTokensOptions(
-            lsp::SemanticTokensOptions {
-                legend: lsp::SemanticTokensLegend {
-                    token_types: SemanticKind::ALL.map(token_type).map(str::to_owned).into(),
-                    token_modifiers: vec!["declaration".to_owned()],
-                },
-                full: Some(lsp::Full::Bool(true)),
-                ..Default::default()
-            },
-        )),
+            "full": true,
+        },
         // docs/protocol.md
-        experimental: Some(json!({ "pinhole": 1 })),
-        ..Default::default()
-    }
+        "experimental": { "pinhole": 1 },
+    })
 }
 
 /// The legend's word for a kind of token.

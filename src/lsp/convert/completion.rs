@@ -1,53 +1,52 @@
 //! A completion, and what is put in by it.
 
-use gen_lsp_types as lsp;
+use serde_json::{Value, json};
 
 use super::converter::{Converter, markup};
-use crate::editor::{Completion, CompletionKind, Piece};
+use crate::{
+    editor::{Completion, CompletionKind, Piece},
+    lsp::protocol::without_nulls,
+};
 
 impl Converter<'_> {
-    pub fn completion(&self, index: usize, completion: Completion) -> lsp::CompletionItem {
-        let (kind, documentation) = match completion.kind {
-            CompletionKind::Keyword => (lsp::CompletionItemKind::Keyword, None),
-            CompletionKind::Block => (lsp::CompletionItemKind::Struct, None),
-            CompletionKind::Field => (lsp::CompletionItemKind::Property, None),
-            CompletionKind::Definition => (lsp::CompletionItemKind::Variable, None),
-            CompletionKind::Function => (lsp::CompletionItemKind::Function, None),
-            CompletionKind::Method => (lsp::CompletionItemKind::EnumMember, None),
-            CompletionKind::Constant => (lsp::CompletionItemKind::Constant, None),
-            CompletionKind::Value => (lsp::CompletionItemKind::Value, None),
-            // Editors show a swatch of a colour's code that stands here by itself.
-            CompletionKind::Color(color) => {
-                let code = lsp::Documentation::String(color.to_string());
-                (lsp::CompletionItemKind::Color, Some(code))
-            }
+    pub fn completion(&self, index: usize, completion: Completion) -> Value {
+        let kind = match completion.kind {
+            CompletionKind::Function => 3,
+            // Variable
+            CompletionKind::Definition => 6,
+            // Property
+            CompletionKind::Field => 10,
+            CompletionKind::Value => 12,
+            CompletionKind::Keyword => 14,
+            CompletionKind::Color(_) => 16,
+            // EnumMember
+            CompletionKind::Method => 20,
+            CompletionKind::Constant => 21,
+            // Struct
+            CompletionKind::Block => 22,
         };
-        let markup = || lsp::Documentation::MarkupContent(markup(completion.help));
-        let has_holes = completion
-            .insert
-            .iter()
-            .any(|piece| matches!(piece, Piece::Hole(_)));
-        let is_snippet = self.client.snippets && has_holes;
-        lsp::CompletionItem {
-            label: completion.label,
-            kind: Some(kind),
-            detail: Some(completion.detail).filter(|detail| !detail.is_empty()),
-            documentation: Some(documentation.unwrap_or_else(markup)),
+        let documentation = match completion.kind {
+            // Editors show a swatch of a colour's code that stands here by itself.
+            CompletionKind::Color(color) => json!(color.to_string()),
+            _ => markup(completion.help),
+        };
+        let is_hole = |piece: &Piece| matches!(piece, Piece::Hole(_));
+        let is_snippet = self.client.snippets && completion.insert.iter().any(is_hole);
+        let text = match is_snippet {
+            true => snippet(&completion.insert),
+            false => plain(&completion.insert),
+        };
+        without_nulls(json!({
+            "label": completion.label,
+            "kind": kind,
+            "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
+            "documentation": documentation,
             // Editors sort by this text, and the list is in its order.
-            sort_text: Some(format!("{index:04}")),
-            insert_text_format: Some(match is_snippet {
-                true => lsp::InsertTextFormat::Snippet,
-                false => lsp::InsertTextFormat::PlainText,
-            }),
-            text_edit: Some(lsp::CompletionItemTextEdit::TextEdit(lsp::TextEdit {
-                range: self.range(completion.replaces),
-                new_text: match is_snippet {
-                    true => snippet(&completion.insert),
-                    false => plain(&completion.insert),
-                },
-            })),
-            ..Default::default()
-        }
+            "sortText": format!("{index:04}"),
+            // PlainText, or Snippet
+            "insertTextFormat": 1 + u8::from(is_snippet),
+            "textEdit": { "range": self.range(completion.replaces), "newText": text },
+        }))
     }
 }
 

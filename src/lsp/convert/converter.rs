@@ -1,8 +1,7 @@
-//! Converts answers about a document into the types of the protocol, and the places and changes of the protocol into ours.
+//! Converts answers about a document into those of the protocol, and the places and changes of the protocol into ours.
 
-use gen_lsp_types as lsp;
 use line_index::WideEncoding;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::client::Client;
 use crate::{
@@ -11,7 +10,8 @@ use crate::{
     editor::{Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind},
     lsp::{
         documents::{Change, Document, Place},
-        params::{Refusal, parsed},
+        params::{Refusal, at},
+        protocol::{self, Position, Range, Uri, without_nulls},
     },
     source::{SourceId, Span},
 };
@@ -22,7 +22,7 @@ pub struct Converter<'d> {
     /// Who has it open.
     pub client: &'d Client,
     /// Its address.
-    pub uri: &'d lsp::Uri,
+    pub uri: &'d Uri,
     /// The text.
     pub document: &'d Document,
 }
@@ -33,33 +33,30 @@ pub(super) fn count(number: usize) -> u32 {
 
 impl Converter<'_> {
     /// The offset of a position.
-    pub fn offset(&self, position: lsp::Position) -> usize {
+    pub fn offset(&self, position: Position) -> usize {
         self.document.offset(place(position))
     }
 
     /// A span of the text from a range.
-    pub fn span(&self, range: lsp::Range) -> Span {
+    pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
     }
 
-    pub fn position(&self, offset: usize) -> lsp::Position {
+    pub fn position(&self, offset: usize) -> Position {
         let (line, character) = self.document.place(offset);
-        lsp::Position { line, character }
+        Position { line, character }
     }
 
-    pub fn range(&self, span: Span) -> lsp::Range {
-        lsp::Range {
+    pub fn range(&self, span: Span) -> Range {
+        Range {
             start: self.position(span.start),
             end: self.position(span.end),
         }
     }
 
-    pub fn location(&self, span: Span) -> lsp::Location {
-        lsp::Location {
-            uri: self.uri.clone(),
-            range: self.range(span),
-        }
+    pub fn location(&self, span: Span) -> Value {
+        json!({ "uri": self.uri, "range": self.range(span) })
     }
 
     pub(super) fn columns(&self, text: &str) -> u32 {
@@ -67,241 +64,182 @@ impl Converter<'_> {
     }
 
     /// A diagnostic: the help stands below the message, the labels but the first are its other places.
-    pub fn diagnostic(&self, diagnostic: &Diagnostic) -> lsp::Diagnostic {
+    pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
-        let place = labels.next().map(|label| label.span);
-        let related = labels.map(|label| lsp::DiagnosticRelatedInformation {
-            location: self.location(label.span),
-            message: label.message.clone(),
-        });
+        let place = labels.next().map(|label| self.range(label.span));
+        let related = labels.map(
+            |label| json!({ "location": self.location(label.span), "message": label.message }),
+        );
         let related: Vec<_> = related.collect();
         let message = match &diagnostic.help {
             Some(help) => format!("{}\nhelp: {help}", diagnostic.message),
             None => diagnostic.message.clone(),
         };
-        // The source says whose code it is.
-        let code = diagnostic.code.trim_start_matches("pinhole::");
-        lsp::Diagnostic {
-            range: place.map(|span| self.range(span)).unwrap_or_default(),
-            severity: Some(match diagnostic.severity {
-                Severity::Error => lsp::DiagnosticSeverity::Error,
-                Severity::Warning => lsp::DiagnosticSeverity::Warning,
-            }),
-            code: Some(lsp::Code::String(code.to_owned())),
-            code_description: None,
-            source: Some("pinhole".to_owned()),
-            message: lsp::Message::String(message),
-            // An editor shows it in grey.
-            tags: diagnostic
-                .is_needless
-                .then(|| vec![lsp::DiagnosticTag::Unnecessary]),
-            related_information: Some(related).filter(|related| !related.is_empty()),
-            data: None,
-        }
+        without_nulls(json!({
+            "range": place.unwrap_or_default(),
+            "severity": match diagnostic.severity {
+                Severity::Error => 1,
+                Severity::Warning => 2,
+            },
+            // The source says whose code it is.
+            "code": diagnostic.code.trim_start_matches("pinhole::"),
+            "source": "pinhole",
+            "message": message,
+            // Unnecessary: an editor shows it in grey.
+            "tags": diagnostic.is_needless.then_some([1]),
+            "relatedInformation": Some(related).filter(|related| !related.is_empty()),
+        }))
     }
 
-    pub fn hover(&self, hover: Hover) -> lsp::Hover {
-        lsp::Hover {
-            contents: lsp::Contents::MarkupContent(markup(hover.markdown)),
-            range: Some(self.range(hover.span)),
-        }
+    pub fn hover(&self, hover: Hover) -> Value {
+        json!({ "contents": markup(hover.markdown), "range": self.range(hover.span) })
     }
 
-    pub fn signature(&self, signature: Signature) -> lsp::SignatureHelp {
+    pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
             // Counted in UTF-16 units whatever the encoding of positions.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(WideEncoding::Utf16.measure(before))
             };
-            lsp::ParameterInformation {
-                label: lsp::ParameterInformationLabel::Tuple((
-                    before(range.start),
-                    before(range.end),
-                )),
-                documentation: None,
-            }
+            json!({ "label": [before(range.start), before(range.end)] })
         });
-        let active = lsp::ActiveParameter::Int(count(signature.active));
-        lsp::SignatureHelp {
-            signatures: vec![lsp::SignatureInformation {
-                parameters: Some(parameters.collect()),
-                documentation: Some(lsp::Documentation::String(signature.help.to_owned())),
-                active_parameter: Some(active),
-                label: signature.label,
+        let parameters: Vec<_> = parameters.collect();
+        let active = count(signature.active);
+        json!({
+            "signatures": [{
+                "label": signature.label,
+                "documentation": signature.help,
+                "parameters": parameters,
+                "activeParameter": active,
             }],
-            active_signature: Some(0),
-            active_parameter: Some(active),
-        }
-    }
-
-    pub fn highlight(&self, occurrence: Occurrence) -> lsp::DocumentHighlight {
-        lsp::DocumentHighlight {
-            range: self.range(occurrence.span),
-            kind: Some(match occurrence.is_definition {
-                true => lsp::DocumentHighlightKind::Write,
-                false => lsp::DocumentHighlightKind::Read,
-            }),
-        }
-    }
-
-    /// Texts that take the place of others.
-    pub fn text_edits(
-        &self,
-        edits: impl IntoIterator<Item = Edit>,
-    ) -> impl Iterator<Item = lsp::TextEdit> {
-        edits.into_iter().map(|edit| lsp::TextEdit {
-            range: self.range(edit.span),
-            new_text: edit.text,
+            "activeSignature": 0,
+            "activeParameter": active,
         })
     }
 
+    pub fn highlight(&self, occurrence: Occurrence) -> Value {
+        // Write, or Read
+        let kind = if occurrence.is_definition { 3 } else { 2 };
+        json!({ "range": self.range(occurrence.span), "kind": kind })
+    }
+
+    /// Texts that take the place of others.
+    pub fn text_edits(&self, edits: impl IntoIterator<Item = Edit>) -> Vec<Value> {
+        let edits = edits.into_iter();
+        let edit = |edit: Edit| json!({ "range": self.range(edit.span), "newText": edit.text });
+        edits.map(edit).collect()
+    }
+
     /// The same as one change of the document.
-    pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> lsp::WorkspaceEdit {
+    pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> Value {
         let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
-            let changes = [(self.uri.clone(), edits.collect())];
-            return lsp::WorkspaceEdit {
-                changes: Some(changes.into()),
-                ..Default::default()
-            };
+            return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
         // With the version, an editor that is ahead of this text refuses it.
-        let edit = lsp::TextDocumentEdit {
-            text_document: lsp::OptionalVersionedTextDocumentIdentifier {
-                version: Some(self.document.version),
-                text_document_identifier: lsp::TextDocumentIdentifier {
-                    uri: self.uri.clone(),
-                },
-            },
-            edits: edits.map(lsp::Edit::TextEdit).collect(),
-        };
-        lsp::WorkspaceEdit {
-            document_changes: Some(vec![lsp::DocumentChange::TextDocumentEdit(edit)]),
-            ..Default::default()
-        }
+        let document = json!({ "uri": self.uri, "version": self.document.version });
+        json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
     /// A way out of a diagnostic, or of all of them.
-    pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> lsp::CodeAction {
-        lsp::CodeAction {
-            title: fix.title.clone(),
-            kind: Some(match of {
-                Some(_) => lsp::CodeActionKind::QuickFix,
-                None => lsp::CodeActionKind::SourceFixAll,
-            }),
-            diagnostics: of.map(|diagnostic| vec![self.diagnostic(diagnostic)]),
+    pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
+        without_nulls(json!({
+            "title": fix.title,
+            "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
+            "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
             // The only way out is the one to take without asking.
-            is_preferred: of.map(|diagnostic| diagnostic.fixes.len() == 1),
-            edit: Some(self.edit(fix.edits.iter().cloned())),
-            ..Default::default()
-        }
+            "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1),
+            "edit": self.edit(fix.edits.iter().cloned()),
+        }))
     }
 
     /// An entry of the outline.
-    #[allow(deprecated, reason = "a struct must be given all its fields")]
-    pub fn symbol(&self, symbol: Symbol) -> lsp::DocumentSymbol {
+    pub fn symbol(&self, symbol: Symbol) -> Value {
         let children = symbol.children.into_iter().map(|child| self.symbol(child));
         let children: Vec<_> = children.collect();
-        lsp::DocumentSymbol {
-            name: symbol.name,
-            detail: Some(symbol.detail).filter(|detail| !detail.is_empty()),
-            kind: symbol_kind(symbol.kind),
-            tags: None,
-            deprecated: None,
-            range: self.range(symbol.span),
-            selection_range: self.range(symbol.selection),
-            children: Some(children).filter(|children| !children.is_empty()),
-        }
+        without_nulls(json!({
+            "name": symbol.name,
+            "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
+            "kind": match symbol.kind {
+                // Module
+                SymbolKind::Setting => 2,
+                // Property
+                SymbolKind::Field => 7,
+                // Variable
+                SymbolKind::Definition => 13,
+                SymbolKind::Object => 19,
+            },
+            "range": self.range(symbol.span),
+            "selectionRange": self.range(symbol.selection),
+            "children": Some(children).filter(|children| !children.is_empty()),
+        }))
     }
 
-    pub fn fold(&self, fold: Fold) -> lsp::FoldingRange {
+    pub fn fold(&self, fold: Fold) -> Value {
         let range = self.range(fold.span);
-        lsp::FoldingRange {
-            start_line: range.start.line,
-            start_character: None,
-            end_line: range.end.line,
-            end_character: None,
-            kind: match fold.kind {
-                FoldKind::Comment => Some(lsp::FoldingRangeKind::Comment),
+        without_nulls(json!({
+            "startLine": range.start.line,
+            "endLine": range.end.line,
+            "kind": match fold.kind {
+                FoldKind::Comment => Some("comment"),
                 FoldKind::Block => None,
             },
-            collapsed_text: None,
-        }
+        }))
     }
 
-    pub fn hint(&self, hint: Hint) -> lsp::InlayHint {
-        lsp::InlayHint {
-            position: self.position(hint.at),
-            label: lsp::Label::String(hint.text),
-            kind: Some(lsp::InlayHintKind::Type),
-            text_edits: None,
-            tooltip: None,
-            padding_left: Some(true),
-            padding_right: None,
-            data: None,
-        }
+    pub fn hint(&self, hint: Hint) -> Value {
+        // Type
+        let kind = 1;
+        json!({
+            "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true
+        })
     }
 
-    pub fn swatch(&self, swatch: Swatch) -> lsp::ColorInformation {
+    pub fn swatch(&self, swatch: Swatch) -> Value {
         let [red, green, blue] = swatch.color.srgb.map(|channel| (channel / 255.0) as f32);
-        lsp::ColorInformation {
-            range: self.range(swatch.span),
-            color: lsp::Color {
-                red,
-                green,
-                blue,
-                alpha: 1.0,
-            },
-        }
+        let color = protocol::Color {
+            red,
+            green,
+            blue,
+            alpha: 1.0,
+        };
+        json!({ "range": self.range(swatch.span), "color": color })
     }
 
-    pub fn presentation(&self, span: Span, label: String) -> lsp::ColorPresentation {
-        let mut edits = self.text_edits([Edit::new(span, &*label)]);
-        lsp::ColorPresentation {
-            text_edit: edits.next(),
-            label,
-            additional_text_edits: None,
-        }
+    pub fn presentation(&self, span: Span, label: String) -> Value {
+        let edit = json!({ "range": self.range(span), "newText": label });
+        json!({ "label": label, "textEdit": edit })
     }
 }
 
-/// The changes of a text. They are taken apart here: to the protocol's type, a change whose range is none looks like one of the whole text.
+/// The kinds of what mends one mistake, and all of them.
+pub const QUICK_FIX: &str = "quickfix";
+pub const FIX_ALL: &str = "source.fixAll";
+
+/// The changes of a text: each of a range, or of the whole text if there is none.
 pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
-    let changes = params.get("contentChanges").cloned().unwrap_or_default();
-    let changes: Vec<Value> = parsed(changes)?;
-    let change = |change: Value| {
-        let text = parsed(change.get("text").cloned().unwrap_or_default())?;
-        let range: Option<lsp::Range> = parsed(change.get("range").cloned().unwrap_or_default())?;
+    let changes: Vec<Value> = at(params, "/contentChanges")?;
+    let change = |change: &Value| {
+        let text = at(change, "/text")?;
+        let range: Option<Range> = at(change, "/range")?;
         let range = range.map(|range| [place(range.start), place(range.end)]);
         Ok(Change { range, text })
     };
-    changes.into_iter().map(change).collect()
+    changes.iter().map(change).collect()
 }
 
-fn place(position: lsp::Position) -> Place {
+fn place(position: Position) -> Place {
     (position.line, position.character)
 }
 
 /// A colour as a client picks it.
-pub fn color(color: &lsp::Color) -> Color {
+pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
     // A conversion of floats ends at the bounds.
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 
-fn symbol_kind(kind: SymbolKind) -> lsp::SymbolKind {
-    match kind {
-        SymbolKind::Definition => lsp::SymbolKind::Variable,
-        SymbolKind::Setting => lsp::SymbolKind::Module,
-        SymbolKind::Object => lsp::SymbolKind::Object,
-        SymbolKind::Field => lsp::SymbolKind::Property,
-    }
-}
-
-pub(super) fn markup(markdown: String) -> lsp::MarkupContent {
-    lsp::MarkupContent {
-        kind: lsp::MarkupKind::Markdown,
-        value: markdown,
-    }
+pub(super) fn markup(markdown: String) -> Value {
+    json!({ "kind": "markdown", "value": markdown })
 }

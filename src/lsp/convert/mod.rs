@@ -1,4 +1,4 @@
-//! From the editor's answers to the protocol's types, and back.
+//! From the editor's answers to those of the protocol, and back. Their kinds are numbers, whose names in the protocol stand beside them.
 
 mod client;
 mod completion;
@@ -6,4 +6,4 @@ mod converter;
 mod tokens;
 
 pub use client::{Client, capabilities};
-pub use converter::{Converter, changes, color};
+pub use converter::{Converter, FIX_ALL, QUICK_FIX, changes, color};

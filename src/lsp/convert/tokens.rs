@@ -1,15 +1,18 @@
 //! Tokens, each as far from the one before it as the protocol counts.
 
-use gen_lsp_types as lsp;
+use serde_json::{Value, json};
 
 use super::converter::{Converter, count};
-use crate::editor::{SemanticKind, SemanticToken};
+use crate::{
+    editor::{SemanticKind, SemanticToken},
+    lsp::protocol::Position,
+};
 
 impl Converter<'_> {
     /// Each token relative to the one before it; comments of several lines in pieces, a line each.
-    pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> lsp::SemanticTokens {
-        let mut data = Vec::with_capacity(tokens.len());
-        let mut last = lsp::Position::default();
+    pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> Value {
+        let mut data = Vec::with_capacity(5 * tokens.len());
+        let mut last = Position::default();
         for token in tokens {
             let kind = SemanticKind::ALL
                 .iter()
@@ -22,22 +25,17 @@ impl Converter<'_> {
                 if piece.is_empty() {
                     continue;
                 }
-                data.push(lsp::SemanticToken {
-                    delta_line: at.line - last.line,
-                    delta_start: match at.line == last.line {
-                        true => at.character - last.character,
-                        false => at.character,
-                    },
-                    length: self.columns(piece),
-                    token_type: kind.map_or(0, count),
-                    token_modifiers_bitset: u32::from(token.is_declaration),
-                });
+                let is_same_line = at.line == last.line;
+                data.extend([
+                    at.line - last.line,
+                    at.character - if is_same_line { last.character } else { 0 },
+                    self.columns(piece),
+                    kind.map_or(0, count),
+                    u32::from(token.is_declaration),
+                ]);
                 last = at;
             }
         }
-        lsp::SemanticTokens {
-            result_id: None,
-            data,
-        }
+        json!({ "data": data })
     }
 }
