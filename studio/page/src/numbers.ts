@@ -53,7 +53,7 @@ class Turn {
   private readonly gesture: Gesture;
   private to: number;
 
-  constructor(private readonly view: EditorView, readonly literal: Literal) {
+  constructor(private readonly view: EditorView, private readonly literal: Literal) {
     this.gesture = new Gesture(view);
     this.to = literal.to;
   }
@@ -93,14 +93,6 @@ function createSlider(view: EditorView): TooltipView {
   let turn: Turn | null = null;
   let shown: number | null = null;
   const literal = () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1);
-  const begin = () => {
-    const found = literal();
-    if (turn === null && found !== null) turn = new Turn(view, found);
-  };
-  const end = () => {
-    turn?.end();
-    turn = null;
-  };
   const adapt = () => {
     const found = literal();
     if (found === null || turn !== null || found.value === shown) return;
@@ -113,25 +105,23 @@ function createSlider(view: EditorView): TooltipView {
     shown = found.value;
   };
   range.addEventListener("input", () => {
-    begin();
+    const found = literal();
+    if (found !== null) turn ??= new Turn(view, found);
     turn?.set(Number(range.value));
   });
-  range.addEventListener("change", end);
+  range.addEventListener("change", () => {
+    turn?.end();
+    turn = null;
+  });
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
     event.preventDefault();
     view.dispatch({ effects: openSlider.of(null) });
     view.focus();
   });
-  const nudge = (direction: number) => {
-    begin();
-    if (turn !== null) turn.set(turn.literal.value + direction * turn.literal.step);
-    end();
-    adapt();
-  };
-  const less = createButton("−", "", () => nudge(-1));
+  const less = createButton("−", "", () => turnOnce(view, literal(), -1));
   less.setAttribute("aria-label", "Less");
-  const more = createButton("+", "", () => nudge(1));
+  const more = createButton("+", "", () => turnOnce(view, literal(), 1));
   more.setAttribute("aria-label", "More");
   const grip = create("span", "grip", "↔");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
@@ -161,16 +151,18 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   });
 }
 
-/** Turns the number at the cursor by a step; elsewhere the key does what it does without. */
+/** Turns a number by a step. Says whether there is one. */
+function turnOnce(view: EditorView, literal: Literal | null, direction: number): boolean {
+  if (literal === null) return false;
+  const turn = new Turn(view, literal);
+  turn.set(literal.value + direction * literal.step);
+  turn.end();
+  return true;
+}
+
+/** Turns the number at the cursor; elsewhere the key does what it does without. */
 function turnBy(direction: number): Command {
-  return view => {
-    const literal = literalAt(view.state, view.state.selection.main.head);
-    if (literal === null) return false;
-    const turn = new Turn(view, literal);
-    turn.set(literal.value + direction * literal.step);
-    turn.end();
-    return true;
-  };
+  return view => turnOnce(view, literalAt(view.state, view.state.selection.main.head), direction);
 }
 
 const openAtCursor: Command = view => {
