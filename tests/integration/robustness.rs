@@ -222,14 +222,6 @@ fn many_overrides(effort: Effort) {
     }
 }
 
-#[test]
-fn every_example_is_right_and_says_what_it_shows() {
-    for example in examples() {
-        assert!(example.starts_with("// "));
-        assert!(read(example));
-    }
-}
-
 sampled_and_exhaustive!(every_prefix_of_every_example);
 
 fn every_prefix_of_every_example(effort: Effort) {

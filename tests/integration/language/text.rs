@@ -69,18 +69,8 @@ proptest! {
 }
 
 fn gap() -> impl Strategy<Value = &'static str> {
-    select(vec![
-        " ",
-        " ",
-        "  ",
-        "\n",
-        "\r\n",
-        "\t",
-        "\n\n",
-        "/**/",
-        " /* a\n */ ",
-        " // b\n",
-    ])
+    let gaps = " | |  |\n|\r\n|\t|\n\n|/**/| /* a\n */ | // b\n";
+    select(gaps.split('|').collect::<Vec<_>>())
 }
 
 /// Items of which a scene can be made in any order. Their names are often those of kinds, and the values of the definitions

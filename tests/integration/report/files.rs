@@ -106,7 +106,7 @@ fn a_folder_gets_whole_files() {
 
 #[test]
 fn a_large_picture_is_shown_whole_and_small() {
-    let folder = folder();
+    let folder = Folder::with([("a.scn", SCENE.replace("checkerboard {}", "").as_str())]);
     folder.told(
         "report a.scn -o out --methods sobol --samples 1 --runs 1 --set image.width=1300 --set image.height=700",
         0,
