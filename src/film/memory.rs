@@ -22,25 +22,33 @@ pub struct TooLarge {
     pub available: Option<u64>,
 }
 
-/// Refuses a picture for which there is not so much memory.
-pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
+/// Refuses a picture for which there is not so much memory, and says how many bytes it needs.
+pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLarge> {
     let pixels = u64::from(width) * u64::from(height);
     let needed = pixels.saturating_mul(bytes_per_pixel);
-    let refused = |available| TooLarge {
-        width,
-        height,
-        needed,
-        available,
-    };
-    let available = available();
-    if available.is_some_and(|available| needed > available) {
-        return Err(refused(available));
+    match available() {
+        Some(available) if needed > available => Err(TooLarge {
+            width,
+            height,
+            needed,
+            available: Some(available),
+        }),
+        _ => Ok(needed),
     }
-    // Given back at once.
+}
+
+/// Refuses a picture also where the system does not hand out as much; what is taken to find that out is given back at once.
+pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
+    let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
     match usize::try_from(needed).is_ok_and(fits) {
         true => Ok(()),
-        false => Err(refused(None)),
+        false => Err(TooLarge {
+            width,
+            height,
+            needed,
+            available: None,
+        }),
     }
 }
 

@@ -70,7 +70,7 @@ pub struct Film<P = [f64; 3]> {
 impl<P: Pixel> Film<P> {
     /// A black picture, if the memory for it is there.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
-        memory::check(width, height, size_of::<P>() as u64)?;
+        memory::reserve(width, height, size_of::<P>() as u64)?;
         // The system has zeros at hand, so that a page is touched only when something is put there.
         Ok(Self {
             width,

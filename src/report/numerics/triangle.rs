@@ -53,10 +53,10 @@ const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
 /// Centroids of the turned triangle for each edge, and points of that edge, as seen from the first centroid.
 #[rustfmt::skip]
-const SHARED: [([f64; 2], &[(f64, f64)]); 3] = [
-    ([0.0, -8.0], &[(-9.0, -4.0), (-4.0, -4.0), (0.0, -4.0), (7.0, -4.0), (9.0, -4.0)]),
-    ([9.0, 4.0], &[(9.0, -4.0), (6.0, 0.0), (3.0, 4.0), (0.0, 8.0)]),
-    ([-9.0, 4.0], &[(-9.0, -4.0), (-6.0, 0.0), (-3.0, 4.0), (0.0, 8.0)]),
+const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
+    ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
+    ([9.0, 4.0], &[[9.0, -4.0], [6.0, 0.0], [3.0, 4.0], [0.0, 8.0]]),
+    ([-9.0, 4.0], &[[-9.0, -4.0], [-6.0, 0.0], [-3.0, 4.0], [0.0, 8.0]]),
 ];
 
 fn shared_edges(random: &mut Random) -> Input {
@@ -98,7 +98,7 @@ fn lattice_points(random: &mut Random) -> Input {
     shapes.rotate_left(random.below(2) as usize);
     let half = f64::from(SIZE) / 2.0;
     input(along(DVec3::ZERO, DVec3::NEG_Z), &shapes).at(move |random| {
-        let (x, y) = random.pick(points);
+        let [x, y] = random.pick(points);
         [half + place[0] + x, half - place[1] - y].map(|pixel| match random.below(3) {
             0 => (
                 pixel as u32,
