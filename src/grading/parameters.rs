@@ -2,6 +2,8 @@
 //!
 //! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and the scene with others in their place.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::axes::Axes;
@@ -367,7 +369,8 @@ fn set(scene: &mut Scene, owner: Owner, field: &str, value: Value) -> Option<()>
         }
         _ => return None,
     };
-    match (&mut scene.objects[index].shape, field, value) {
+    let object = &mut Arc::make_mut(&mut scene.objects)[index];
+    match (&mut object.shape, field, value) {
         (Shape::Sphere(sphere), "center", Value::Vector(center)) => sphere.center = center,
         (Shape::Sphere(sphere), "radius", Value::Number(radius)) => sphere.radius = radius,
         (Shape::Sphere(sphere), "color", Value::Color(color)) => sphere.color = color,
