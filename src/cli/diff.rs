@@ -110,7 +110,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         is_strict,
     };
     report.print(args.format.format)?;
-    let films = [&a.film, &judge.exact.film];
+    let films = [&a.film, &judge.exact().film];
     write_heat_map(args, films, judge.tolerance(steps), is_equal, cancel)?;
     Ok(status(if is_strict { is_equal } else { is_right }))
 }

@@ -144,7 +144,7 @@ fn grade(
     let verdict = judge.judge(&picture, jpeg, &comparison, cancel)?;
     let thumbnails = match args.output {
         Some(_) => {
-            let (film, exact) = (&picture.film, &judge.exact.film);
+            let (film, exact) = (&picture.film, &judge.exact().film);
             match Thumbnails::new(film, exact, judge.tolerance(steps)) {
                 Ok(thumbnails) => Some(thumbnails),
                 Err(error) => return Ok(Err(error.to_string())),

@@ -6,17 +6,14 @@ use pinhole::{
     area::Area,
     film::{self, Comparison, Picture, SizesDiffer, Tolerance},
     grading::{Jpeg, Reference, Verdict},
-    render::{self, Control, Exact, RenderError},
+    render::{Control, Exact, RenderError},
     scene::Scene,
-    tracer::World,
 };
 
 /// A scene, or a part of it, and its exact picture.
 pub struct Judge<'a> {
     /// The part.
     pub part: Area,
-    /// Its exact picture.
-    pub exact: Exact,
     reference: Reference<'a>,
 }
 
@@ -34,25 +31,25 @@ impl<'a> Judge<'a> {
             progress,
             cancel,
         };
-        let world = World::new_unless(scene, cancel)?;
-        let exact = render::render_exact(&world, part, &control)?;
-        Ok(Self {
-            part,
-            exact,
-            reference: Reference::new(scene, part),
-        })
+        let reference = Reference::new(scene, part, &control)?;
+        Ok(Self { part, reference })
+    }
+
+    /// The exact picture.
+    pub fn exact(&self) -> &Exact {
+        &self.reference.exact
     }
 
     /// How far a picture is from the exact one: beyond so many steps, and the exact picture's own bound.
     pub fn compare(&self, picture: &Picture, steps: f64) -> Result<Comparison, SizesDiffer> {
-        film::compare(&picture.film, &self.exact.film, self.tolerance(steps))
+        film::compare(&picture.film, &self.exact().film, self.tolerance(steps))
     }
 
     /// So many steps, and the exact picture's own bound on top.
     pub fn tolerance(&self, steps: f64) -> Tolerance<'_> {
         Tolerance {
             steps,
-            bounds: Some(&self.exact.bounds),
+            bounds: Some(&self.exact().bounds),
         }
     }
 

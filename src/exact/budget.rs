@@ -16,6 +16,7 @@ const OBJECT: f64 = 5e4;
 /// The work that may still be spent on a pixel, and the flag by which its picture is given up.
 #[derive(Debug)]
 pub(super) struct Budget<'a> {
+    all: f64,
     left: Cell<f64>,
     /// Set once nobody wants the picture any more.
     pub cancel: &'a AtomicBool,
@@ -24,10 +25,17 @@ pub(super) struct Budget<'a> {
 impl<'a> Budget<'a> {
     /// That of a whole pixel, in which so many objects may be seen.
     pub fn of_pixel(objects: usize, cancel: &'a AtomicBool) -> Self {
+        let all = PIXEL + OBJECT * objects as f64;
         Self {
-            left: Cell::new(PIXEL + OBJECT * objects as f64),
+            all,
+            left: Cell::new(all),
             cancel,
         }
+    }
+
+    /// The work that was spent.
+    pub fn spent(&self) -> f64 {
+        self.all - self.left.get()
     }
 
     /// Whether nothing more should be computed.

@@ -32,7 +32,7 @@ mod slabs;
 use std::{
     collections::BinaryHeap,
     ops::ControlFlow,
-    sync::atomic::{AtomicBool, Ordering::Relaxed},
+    sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
 use crate::{
@@ -70,6 +70,10 @@ const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
 const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
 const LOOK_WORK: f64 = 8.0;
+/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes twice as long as its regions alone tell), which ends no pixel.
+const SLABS_WORK: u64 = 60;
+/// The work of a pixel that shows nothing but a few squares of a checkerboard.
+const BOARD_PIXEL_WORK: u64 = 10;
 
 /// A pixel computed: of N numbers from 0 to 1 that each colour has, its channels in linear light if nothing else is said.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +91,9 @@ pub struct Integrator<'a, const N: usize = 3> {
     quartering: Quartering<'a>,
     /// Of the palette.
     colors: Vec<[f64; N]>,
+    /// Units of work that were spent on pixels, and how many may be.
+    work: AtomicU64,
+    most_work: u64,
 }
 
 /// A part of a pixel.
@@ -134,10 +141,23 @@ impl<'a, const N: usize> Integrator<'a, N> {
             world,
             quartering: Quartering::new(world),
             colors: world.palette().iter().copied().map(numbers).collect(),
+            work: AtomicU64::new(0),
+            most_work: u64::MAX,
         }
     }
 
-    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too.
+    /// The same, which gives up once it has spent so many units of work.
+    pub fn within(mut self, most_work: u64) -> Self {
+        self.most_work = most_work;
+        self
+    }
+
+    /// The units of work that were spent, of some 50 ns each: the same for the same pixels, whatever the machine.
+    pub fn work(&self) -> u64 {
+        self.work.load(Relaxed)
+    }
+
+    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too, or given up.
     pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel<N>>> {
         let black = ExactPixel {
             mean: [0.0; N],
@@ -152,8 +172,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut batches = BoardBatches::new();
         // Pixels of a checkerboard for which that is not enough.
         let mut others = Vec::new();
+        let is_ended = || cancel.load(Relaxed) || self.work() > self.most_work;
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
-            if cancel.load(Relaxed) {
+            if is_ended() {
                 return ControlFlow::Break(());
             }
             match part {
@@ -167,6 +188,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     ([candidate], Some(checks)) => {
                         let candidate = *candidate;
                         let pixel = BoardPixel { x, y, candidate };
+                        self.work.fetch_add(BOARD_PIXEL_WORK, Relaxed);
                         let mut set = |pixel, sum| self.set(pixel, sum, &mut film, &mut others);
                         batches.push(pixel, checks, &mut set);
                     }
@@ -179,12 +201,12 @@ impl<'a, const N: usize> Integrator<'a, N> {
         });
         batches.finish(&mut |pixel, sum| self.set(pixel, sum, &mut film, &mut others));
         for BoardPixel { x, y, candidate } in others {
-            if cancel.load(Relaxed) {
+            if is_ended() {
                 break;
             }
             film.set(x, y, self.pixel(x, y, &[candidate], &mut curves, cancel));
         }
-        (flow.is_continue() && !cancel.load(Relaxed)).then_some(film.pixels)
+        (flow.is_continue() && !is_ended()).then_some(film.pixels)
     }
 
     /// One pixel, of what may be seen in it: in pieces where the whole has too many curves, or is not known well enough.
@@ -234,6 +256,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
             bound += after - worst.bound();
             open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
         }
+        self.work.fetch_add(budget.spent() as u64, Relaxed);
         let rounding = rounding(together.by_slot.len());
         self.mean(&together.by_slot, (together.bound + rounding).min(1.0))
     }
@@ -287,7 +310,12 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 });
                 match lines.collect::<Option<Vec<_>>>() {
                     Some(lines) => arrangement::shares(&lines, regions),
-                    None => slabs::shares(curves, regions),
+                    None => {
+                        // Each conic is followed past all others.
+                        let pairs = curves.len() * curves.len();
+                        self.work.fetch_add(SLABS_WORK * pairs as u64, Relaxed);
+                        slabs::shares(curves, regions)
+                    }
                 }
             }
             false => Shares::unknown(self.world, sub_pixel, &candidates),

@@ -61,11 +61,16 @@ impl Axes {
 
     /// Where a point is seen, if it lies before the eye.
     pub fn place(&self, point: DVec3) -> Option<DVec2> {
+        let (place, depth) = self.projected(point);
+        (depth > 0.0).then_some(place)
+    }
+
+    /// Where the line through the eye and a point meets the picture, and how far the point lies before the eye.
+    pub fn projected(&self, point: DVec3) -> (DVec2, f64) {
         let to = point - self.eye;
         let depth = -to.dot(self.w);
-        (depth > 0.0).then(|| {
-            self.middle + DVec2::new(to.dot(self.u), -to.dot(self.v)) * (self.focal / depth)
-        })
+        let place = DVec2::new(to.dot(self.u), -to.dot(self.v)) * (self.focal / depth);
+        (self.middle + place, depth)
     }
 
     /// How large a pixel is at a point, in metres.

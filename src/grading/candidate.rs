@@ -1,12 +1,14 @@
 //! A program with mistakes: the scene that it makes a picture of, how it behaves, and what it does to the picture's light.
 
+use std::sync::Arc;
+
 use super::{
     layout::Layout,
     light::{Average, Curve, Look},
     parameters::Parameter,
     textbook::Behaviour,
 };
-use crate::scene::Scene;
+use crate::scene::{Scene, Shape};
 
 /// A mistake that a candidate has.
 #[derive(Clone, Debug)]
@@ -110,6 +112,24 @@ impl Candidate {
         named.iter().try_fold(Self::right(scene), |candidate, one| {
             candidate.with(one.clone())
         })
+    }
+
+    /// An object of its scene.
+    pub fn shape(&mut self, object: usize) -> &mut Shape {
+        &mut Arc::make_mut(&mut self.scene.objects)[object].shape
+    }
+
+    /// Whether it traces what another one does, but for how they behave, and for what they do then.
+    pub fn traces_as(&self, other: &Self) -> bool {
+        let (one, two) = (&self.scene, &other.scene);
+        let is_one_view = one.camera == two.camera && one.image == two.image;
+        let are_same_objects =
+            Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects;
+        is_one_view
+            && self.average == other.average
+            && self.layout.is_shifted() == other.layout.is_shifted()
+            && self.is_drawn == other.is_drawn
+            && are_same_objects
     }
 
     /// How many numbers were fitted.

@@ -124,7 +124,7 @@ pub fn scaled(c: &mut Candidate, by: f64) -> Option<()> {
 
 /// A box is moved by so many times its size.
 pub fn moved(c: &mut Candidate, object: usize, by: DVec3) -> Option<()> {
-    let Shape::Box(cuboid) = &mut c.scene.objects[object].shape else {
+    let Shape::Box(cuboid) = c.shape(object) else {
         return None;
     };
     let by = by * (cuboid.max - cuboid.min);

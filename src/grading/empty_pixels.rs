@@ -2,6 +2,8 @@
 //!
 //! Samples at random over the whole picture leave some pixels empty: these show the background, or black in some programs, and say nothing of the scene.
 
+use std::sync::Arc;
+
 use super::{
     light::{Curve, is_near},
     score::{DEVIATIONS, FLAT, Model, score},
@@ -14,7 +16,7 @@ use crate::film::Film;
 /// A pixel that should show no such colour and does is empty if such pixels lie at random, so that not more pairs of neighbours, beside or below each other, are
 /// empty than of independent pixels, and if there are not more than the noise of the others lets expect: of n samples in a pixel on an average, a share of e⁻ⁿ
 /// of the pixels has none.
-pub fn without_empty(film: &Film, moments: &Moments, empty: [f64; 3]) -> Option<Film> {
+pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
     let may_be_empty = |at: usize| !is_near(moments.mean[at], empty);
@@ -50,7 +52,7 @@ pub fn without_empty(film: &Film, moments: &Moments, empty: [f64; 3]) -> Option<
         }
     }
     let model = Model {
-        moments: moments.clone(),
+        moments: Arc::clone(moments),
         doubt: Vec::new(),
         cut: 0.0,
         curve: Curve::Right,

@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::axes::focal;
 use crate::{
     area::Area,
-    scene::{Image, Lens, Scene},
+    scene::{Camera, Image, Lens, Scene},
 };
 
 /// The grid.
@@ -86,18 +86,16 @@ impl Grid {
         self.margin + (cell + 0.5) * f64::from(self.factor)
     }
 
-    /// The scene whose pixels the cells are, with one more column and row if that is wished, half of it on each side.
-    pub fn scene(&self, scene: &Scene, more: bool) -> Scene {
-        let mut scene = scene.clone();
-        if self.factor == 1 && !more {
-            return scene;
+    /// The view of a scene whose pixels the cells are, with one more column and row if that is wished, half of it on each side.
+    pub fn view(&self, scene: &Scene, more: bool) -> (Camera, Image) {
+        let (mut image, mut camera) = (scene.image, scene.camera);
+        if self.factor > 1 || more {
+            let focal = focal(&camera, &image);
+            [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
+            camera.lens = Lens::Distance(1.0);
+            camera.view_height = f64::from(image.height * self.factor) / focal;
         }
-        let (image, camera) = (&mut scene.image, &mut scene.camera);
-        let focal = focal(camera, image);
-        [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
-        camera.lens = Lens::Distance(1.0);
-        camera.view_height = f64::from(image.height * self.factor) / focal;
-        scene
+        (camera, image)
     }
 
     /// The means of the part's pixels, told by column and row in it, but for those without a number.
@@ -116,17 +114,24 @@ impl Grid {
             let columns = reach(x, self.margin.x, self.corner.x);
             let rows = reach(y, self.margin.y, self.corner.y);
             let (mut sum, mut total) = ([0.0; 3], 0.0);
+            // What is one everywhere is not rounded.
+            let mut one = None;
+            let mut is_one = true;
             for row in rows.2.clone() {
                 for column in columns.2.clone() {
                     let weight = share(row, &rows) * share(column, &columns);
                     let pixel = pixel(column, row);
                     if !pixel[0].is_nan() {
+                        is_one &= *one.get_or_insert(pixel) == pixel;
                         sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
                         total += weight;
                     }
                 }
             }
-            sum.map(|sum| sum / total)
+            match one.filter(|_| is_one) {
+                Some(one) => one,
+                None => sum.map(|sum| sum / total),
+            }
         };
         self.cells.iter().map(cell).collect()
     }

@@ -16,6 +16,11 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Whether it shows what lies between pixels.
+    pub fn is_shifted(self) -> bool {
+        self.half_pixels != [0, 0]
+    }
+
     /// The pixel that is shown in the place of one, in a picture of a size.
     pub fn source(self, (x, y): (u32, u32), [width, height]: [u32; 2]) -> (u32, u32) {
         let (x, y) = if self.is_transposed { (y, x) } else { (x, y) };
@@ -30,16 +35,21 @@ impl Layout {
         (x + right, y + down)
     }
 
-    /// The part of a picture of a size that is shown in the place of a part.
+    /// The part of a picture of a size that is shown in the place of a part; where it is shifted, all that any shift shows.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
+        let more = u32::from(self.is_shifted());
+        let layout = Self {
+            half_pixels: [0, 0],
+            ..self
+        };
         let last = (part.x + part.width - 1, part.y + part.height - 1);
-        let (ax, ay) = self.source((part.x, part.y), size);
-        let (bx, by) = self.source(last, size);
+        let (ax, ay) = layout.source((part.x, part.y), size);
+        let (bx, by) = layout.source(last, size);
         Area {
             x: ax.min(bx),
             y: ay.min(by),
-            width: ax.abs_diff(bx) + 1,
-            height: ay.abs_diff(by) + 1,
+            width: ax.abs_diff(bx) + 1 + more,
+            height: ay.abs_diff(by) + 1 + more,
         }
     }
 }

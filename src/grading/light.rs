@@ -104,5 +104,18 @@ pub enum Look {
 
 /// Whether two colours are within a step of each other.
 pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
-    (0..3).all(|i| (linear_to_srgb(one[i]) - linear_to_srgb(other[i])).abs() < 1.5 * STEP)
+    /// The least and the greatest slope of sRGB, for light of 1 and of 0.
+    const SLOPES: [f64; 2] = [1.055 / 2.4, 12.92];
+    let is_near = |i: usize| {
+        let difference = (one[i] - other[i]).abs();
+        if difference * SLOPES[1] < 1.5 * STEP {
+            return true;
+        }
+        let is_light = one[i] <= 1.0 && other[i] <= 1.0;
+        if is_light && difference * SLOPES[0] > 1.5 * STEP {
+            return false;
+        }
+        (linear_to_srgb(one[i]) - linear_to_srgb(other[i])).abs() < 1.5 * STEP
+    };
+    (0..3).all(is_near)
 }

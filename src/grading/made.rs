@@ -1,6 +1,6 @@
 //! What a candidate shows on a grid: exactly, but for behaviour that no scene can say, which the textbook's tracer samples.
 
-use std::sync::{Arc, atomic::AtomicBool};
+use std::{cell::OnceCell, sync::Arc};
 
 use glam::DVec2;
 
@@ -12,13 +12,13 @@ use super::{
     light::{Average, Look, STEP, is_near},
     score::Model,
     textbook::{Behaviour, Behind, Moments, Textbook, bounds},
+    work::Work,
 };
 use crate::{
     area::Area,
     color::Color,
-    exact::{ExactPixel, Integrator},
+    exact::ExactPixel,
     scene::{Camera, Scene},
-    tracer::World,
 };
 
 /// Samples in a cell of what no scene can say.
@@ -28,22 +28,32 @@ const SAMPLES: usize = 34;
 const MISSED: f64 = 1e-3;
 
 /// What a candidate makes, before it is laid out and its light is changed.
+#[derive(Clone)]
 pub struct Made {
     pub candidate: Candidate,
-    part: Area,
-    /// How many cells were computed for it, exactly or by all samples.
-    pub work: f64,
+    pub part: Area,
     /// What it would make if it behaved as a right program.
-    right: Moments,
+    right: Arc<Moments>,
     /// How far the means are off of what is told from it by samples, where it was made for that.
     error: Option<Arc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
-    behaved: Option<(Moments, Vec<[f64; 3]>)>,
+    behaved: Option<Arc<(Moments, Vec<[f64; 3]>)>>,
 }
 
 impl Made {
+    /// What a candidate that behaves as a right program makes in a part of the picture.
+    pub fn new(candidate: Candidate, part: Area, moments: Moments) -> Self {
+        Self {
+            candidate,
+            part,
+            right: Arc::new(moments),
+            error: None,
+            behaved: None,
+        }
+    }
+
     /// What it would make if it behaved as a right program.
-    pub fn moments(&self) -> &Moments {
+    pub fn moments(&self) -> &Arc<Moments> {
         &self.right
     }
 
@@ -62,15 +72,19 @@ impl Made {
             true => all.to_vec(),
             false => order.iter().map(|&at| all[at]).collect(),
         };
-        let (moments, doubt) = match &self.behaved {
-            Some((moments, doubt)) => (moments, ordered(doubt)),
-            None => (&self.right, Vec::new()),
-        };
-        let mut model = Model {
-            moments: Moments {
+        let all = |moments: &Moments| {
+            Arc::new(Moments {
                 mean: ordered(&moments.mean),
                 variance: ordered(&moments.variance),
-            },
+            })
+        };
+        let (moments, doubt) = match self.behaved.as_deref() {
+            Some((moments, doubt)) => (all(moments), ordered(doubt)),
+            None if order.is_empty() => (Arc::clone(&self.right), Vec::new()),
+            None => (all(&self.right), Vec::new()),
+        };
+        let mut model = Model {
+            moments,
             doubt,
             cut: 0.0,
             curve: self.candidate.curve,
@@ -80,37 +94,30 @@ impl Made {
     }
 }
 
-/// The exact means and variances of what a part of a scene's picture shows.
-pub fn exact_moments(
-    scene: &Scene,
-    average: Average,
-    part: Area,
-    cancel: &AtomicBool,
-) -> Option<Moments> {
-    let world = World::new_unless(scene, cancel).ok()?;
-    // Each channel and its square.
-    let numbers = |color: Color| {
+/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel and its square.
+pub fn numbers(average: Average) -> impl Fn(Color) -> [f64; 6] {
+    move |color| {
         let [r, g, b] = color.to_linear().map(|light| average.of(light));
         [r, g, b, r * r, g * g, b * b]
-    };
-    let pixels = Integrator::of(&world, numbers).pixels(part, cancel)?;
-    let moments = |pixel: ExactPixel<6>| {
-        let [r, g, b, rr, gg, bb] = pixel.mean;
-        let doubt = pixel.bound * pixel.bound;
-        let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
-        (
-            [r, g, b],
-            [variance(r, rr), variance(g, gg), variance(b, bb)],
-        )
-    };
-    let (mean, variance) = pixels.into_iter().map(moments).unzip();
-    Some(Moments { mean, variance })
+    }
+}
+
+/// The mean and the variance of an exact pixel.
+pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
+    let [r, g, b, rr, gg, bb] = pixel.mean;
+    let doubt = pixel.bound * pixel.bound;
+    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
+    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
+    ([r, g, b], variances)
 }
 
 impl Model {
     /// Does to the light what is done to it.
     pub fn look(&mut self, looks: &[Look], grid: &Grid, seen: &[[f64; 3]]) {
-        let Moments { mean, variance } = &mut self.moments;
+        if looks.is_empty() {
+            return;
+        }
+        let Moments { mean, variance } = Arc::make_mut(&mut self.moments);
         for look in looks {
             match *look {
                 Look::Channels(order) => {
@@ -176,35 +183,34 @@ impl Model {
 impl Candidate {
     /// The scene that a grid's cells are pixels of, without what it does not draw.
     pub fn drawn(&self, grid: &Grid) -> Scene {
-        let mut scene = grid.scene(&self.scene, self.layout.half_pixels != [0, 0]);
-        let mut is_drawn = self.is_drawn.iter();
-        scene.objects.retain(|_| is_drawn.next() == Some(&true));
+        let (camera, image) = grid.view(&self.scene, self.layout.is_shifted());
+        let mut scene = Scene {
+            camera,
+            image,
+            ..self.scene.clone()
+        };
+        if self.is_drawn.contains(&false) {
+            let mut is_drawn = self.is_drawn.iter();
+            Arc::make_mut(&mut scene.objects).retain(|_| is_drawn.next() == Some(&true));
+        }
         scene
     }
 
     /// What it shows in the cells of a grid: exactly, or by so many samples in a cell where these are given. What it shows as one of others does is taken from
-    /// that which shows most of it. None if it is cancelled.
+    /// that which shows most of it. None if it is cancelled, or takes too much work.
     pub fn made(
         &self,
         grid: &Grid,
         samples: Option<usize>,
         likes: &[&Made],
-        cancel: &AtomicBool,
+        work: &Work,
     ) -> Option<Made> {
         let part = self.layout.sources(grid.cells, grid.size());
-        let scene = self.drawn(grid);
-        let sampled = |behaviour, area, samples| {
-            Textbook::new(&scene, behaviour, |light| self.average.of(light)).moments(area, samples)
-        };
-        let render = |area| match samples {
-            None => exact_moments(&scene, self.average, area, cancel),
-            Some(samples) => Some(sampled(self.behaviour, area, samples)),
-        };
         let is_alike = |like: &&Made| {
             let other = &like.candidate;
             let behaves = samples.is_none()
                 || other.behaviour == self.behaviour && self.is_seen_where_it_is();
-            let is_in_place = other.layout.half_pixels == self.layout.half_pixels;
+            let is_in_place = other.layout.is_shifted() == self.layout.is_shifted();
             like.part == part && is_in_place && behaves
         };
         let likes = likes.iter().copied().filter(is_alike);
@@ -215,40 +221,55 @@ impl Candidate {
             (!behaves, changed.pixels())
         });
         let (like, changed) = nearest.unzip();
-        // A sample takes less time than a cell.
-        let cost = if samples.is_none() { 1.0 } else { 0.1 };
-        let mut work = cost * changed.unwrap_or(part).pixels() as f64;
+        let scene = OnceCell::new();
+        let scene = || scene.get_or_init(|| self.drawn(grid));
+        let sampled = |behaviour, area: Area, samples| {
+            let textbook = Textbook::new(scene(), behaviour, self.average);
+            let moments = textbook.moments(area, samples);
+            work.sampled(&textbook, area);
+            moments
+        };
+        let render = |area| match samples {
+            None => work.exact_moments(scene(), self.average, area),
+            Some(samples) => Some(sampled(self.behaviour, area, samples)),
+        };
         let right = match (like, changed) {
+            (Some(like), Some(area)) if area.pixels() == 0 => Arc::clone(&like.right),
             (Some(like), Some(area)) => {
-                let mut moments = like.right.clone();
-                if area.pixels() > 0 {
-                    let mut own = render(area)?;
-                    if let Some(error) = &like.error {
-                        for ((x, y), mean) in area.iter().zip(&mut own.mean) {
-                            let error = error[part.index(x, y)];
-                            *mean = [0, 1, 2].map(|i| mean[i] - error[i]);
-                        }
-                    }
-                    for ((at, mean), variance) in area.iter().zip(own.mean).zip(own.variance) {
-                        let index = part.index(at.0, at.1);
-                        (moments.mean[index], moments.variance[index]) = (mean, variance);
+                let mut moments = Moments::clone(&like.right);
+                let mut own = render(area)?;
+                if let Some(error) = &like.error {
+                    for ((x, y), mean) in area.iter().zip(&mut own.mean) {
+                        let error = error[part.index(x, y)];
+                        *mean = [0, 1, 2].map(|i| mean[i] - error[i]);
                     }
                 }
-                moments
+                for ((at, mean), variance) in area.iter().zip(own.mean).zip(own.variance) {
+                    let index = part.index(at.0, at.1);
+                    (moments.mean[index], moments.variance[index]) = (mean, variance);
+                }
+                Arc::new(moments)
             }
-            _ => render(part)?,
+            _ => Arc::new(render(part)?),
         };
         // No scene says what a program does that behaves otherwise. Where its samples show something else than those of a right one, their difference comes on top.
         let behaved = (samples.is_none() && self.behaviour != Behaviour::RIGHT).then(|| {
             let is_near = |like: &&Made| {
-                like.candidate.behaviour == self.behaviour && self.is_seen_where_it_is()
+                let is_in_place = self.is_seen_where_it_is()
+                    || changed.is_some_and(|changed| changed.pixels() == 0);
+                like.candidate.behaviour == self.behaviour && is_in_place
             };
             let near = like
                 .filter(is_near)
                 .and_then(|like| Some((like.behaved.clone()?, changed?)));
-            let ((mut behaved, mut doubt), area) =
-                near.unwrap_or_else(|| ((right.clone(), vec![[0.0; 3]; right.mean.len()]), part));
-            work += 2.0 * area.pixels() as f64;
+            let (behaved, area) = near.unwrap_or_else(|| {
+                let doubt = vec![[0.0; 3]; right.mean.len()];
+                (Arc::new((Moments::clone(&right), doubt)), part)
+            });
+            if area.pixels() == 0 {
+                return behaved;
+            }
+            let (mut behaved, mut doubt) = Arc::unwrap_or_clone(behaved);
             let other = sampled(self.behaviour, area, SAMPLES);
             let own = sampled(Behaviour::RIGHT, area, SAMPLES);
             for (from, (x, y)) in area.iter().enumerate() {
@@ -275,12 +296,11 @@ impl Candidate {
                     ),
                 };
             }
-            (behaved, doubt)
+            Arc::new((behaved, doubt))
         });
         Some(Made {
             candidate: self.clone(),
             part,
-            work,
             right,
             behaved,
             error: like.and_then(|like| like.error.clone()),
@@ -291,20 +311,21 @@ impl Candidate {
     /// that differ from it in a part of the picture.
     pub fn made_to_compare(
         &self,
+        exact: Option<&Made>,
         grid: &Grid,
         samples: usize,
-        cancel: &AtomicBool,
+        work: &Work,
     ) -> Option<Made> {
-        let sampled = self.made(grid, Some(samples), &[], cancel)?;
-        if self.behaviour != Behaviour::RIGHT {
+        let sampled = self.made(grid, Some(samples), &[], work)?;
+        let Some(exact) = exact else {
             return Some(sampled);
-        }
-        let exact = self.made(grid, None, &[], cancel)?;
+        };
         let pairs = sampled.right.mean.iter().zip(&exact.right.mean);
         let error = pairs.map(|(sampled, exact)| [0, 1, 2].map(|i| sampled[i] - exact[i]));
         Some(Made {
+            candidate: self.clone(),
             error: Some(error.collect()),
-            ..exact
+            ..exact.clone()
         })
     }
 
@@ -327,19 +348,26 @@ impl Candidate {
         if one.camera != two.camera {
             return Some(part);
         }
-        let scenes =
-            [self, other].map(|one| grid.scene(&one.scene, self.layout.half_pixels != [0, 0]));
-        let axes = Axes::new(&scenes[0].camera, &scenes[0].image);
+        let nothing = Area {
+            width: 0,
+            height: 0,
+            ..part
+        };
+        if Arc::ptr_eq(&one.objects, &two.objects) && self.is_drawn == other.is_drawn {
+            return Some(nothing);
+        }
+        let (camera, image) = grid.view(&self.scene, self.layout.is_shifted());
+        let axes = Axes::new(&camera, &image);
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for object in 0..self.scene.objects.len() {
-            let states = [(self, 0), (other, 1)]
-                .map(|(one, i)| (one.is_drawn[object], scenes[i].objects[object].shape));
+            let states =
+                [self, other].map(|one| (one.is_drawn[object], one.scene.objects[object].shape));
             if states[0] == states[1] {
                 continue;
             }
             for (is_drawn, shape) in states {
                 if is_drawn {
-                    let [low, high] = bounds(&shape, &axes)?;
+                    let [low, high] = bounds(&shape, &axes, true)?;
                     (least, most) = (least.min(low), most.max(high));
                 }
             }

@@ -317,8 +317,9 @@ pub const ROWS: &[Row] = &[
         SQUARES,
         |c| {
             let mut is_swapped = None;
-            for object in &mut c.scene.objects {
-                if let Shape::Checkerboard(board) = &mut object.shape {
+            let count = c.scene.objects.len();
+            for object in 0..count {
+                if let Shape::Checkerboard(board) = c.shape(object) {
                     board.colors.reverse();
                     is_swapped = Some(());
                 }
@@ -467,7 +468,7 @@ pub const OBJECT_ROWS: &[ObjectRow] = &[
         message: "is twice as large: its size counts on both sides of its center",
         help: "a box reaches from center − size/2 to center + size/2",
         change: |c, object| {
-            let Shape::Box(cuboid) = &mut c.scene.objects[object].shape else {
+            let Shape::Box(cuboid) = c.shape(object) else {
                 return None;
             };
             let half = (cuboid.max - cuboid.min) / 2.0;

@@ -7,7 +7,7 @@
 //! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
 //! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
 //! holds the picture, but for its `empty_pixels`; `select` chooses mistakes, a `patch` being the last of them, and `number_text` writes their numbers. What is
-//! the same for all pictures of a class is in the `class_cache`.
+//! the same for all pictures of a class is in the `class_cache`; `work` is what is spent on one of them.
 
 mod axes;
 mod candidate;
@@ -30,26 +30,35 @@ mod score;
 mod search;
 mod select;
 mod textbook;
+mod work;
 
-use std::{borrow::Cow, sync::atomic::AtomicBool};
+use std::{
+    borrow::Cow,
+    sync::{Arc, Mutex, PoisonError, atomic::AtomicBool},
+};
 
 use serde_json::{Map, Value, json};
 
 use crate::{
     area::Area,
     cancel,
-    color::linear_to_srgb,
+    color::srgb_to_linear,
+    exact::Integrator,
     film::{Comparison, Film},
-    render::RenderError,
-    scene::{Scene, Shape},
+    render::{Control, Exact, RenderError, render_numbers},
+    scene::Scene,
+    tracer::World,
 };
 
 use self::{
     candidate::Candidate,
     class_cache::ClassCache,
     empty_pixels::without_empty,
+    light::Average,
+    made::Made,
     score::WRONG,
     search::{Found, Search},
+    textbook::Moments,
 };
 pub use self::{jpeg::Jpeg, objects::ObjectVerdict};
 
@@ -114,21 +123,49 @@ pub struct Verdict {
     pub is_cut: bool,
 }
 
-/// What pictures of a part of a scene's are judged by: made once for a whole class, when it is asked for.
+/// What pictures of a part of a scene's are judged by: made once for a whole class.
 pub struct Reference<'a> {
+    /// The exact picture.
+    pub exact: Exact,
     scene: &'a Scene,
     part: Area,
+    right: Arc<Made>,
+    /// The work of making it.
+    work: f64,
     shared: ClassCache,
 }
 
 impl<'a> Reference<'a> {
-    /// Of a part of a scene's picture.
-    pub fn new(scene: &'a Scene, part: Area) -> Self {
-        Self {
+    /// Makes the exact picture of a part of a scene's.
+    ///
+    /// # Errors
+    ///
+    /// It is cancelled, or too large.
+    pub fn new(scene: &'a Scene, part: Area, control: &Control) -> Result<Self, RenderError> {
+        let world = World::new_unless(scene, control.cancel)?;
+        let integrator = Integrator::of(&world, made::numbers(Average::Light));
+        let none = vec![[0.0; 3]; part.pixels() as usize];
+        let all = Mutex::new(Moments {
+            mean: none.clone(),
+            variance: none,
+        });
+        let exact = render_numbers(&integrator, part, control, &|tile, pixels| {
+            let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+            for ((x, y), pixel) in tile.iter().zip(pixels) {
+                let at = part.index(x, y);
+                (all.mean[at], all.variance[at]) = made::moments(pixel);
+            }
+        })?;
+        let moments = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let work = work::of_exact(integrator.work(), scene.objects.len(), part.pixels());
+        Ok(Self {
+            exact,
             scene,
             part,
+            right: Arc::new(Made::new(Candidate::right(scene), part, moments)),
+            work,
             shared: ClassCache::default(),
-        }
+        })
     }
 
     /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
@@ -146,15 +183,10 @@ impl<'a> Reference<'a> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
-        let scene = self.scene;
-        let right = Candidate::right(scene);
-        let search = Search::new(self, film, jpeg, cancel);
-        let shown = search.made(&right, &search.fine, None);
-        let shown = shown.ok_or(RenderError::Cancelled)?;
-        let empties = [scene.image.background.to_linear(), [0.0; 3]];
+        let empties = [self.scene.image.background.to_linear(), [0.0; 3]];
         let mut without = empties
             .iter()
-            .filter_map(|empty| without_empty(film, shown.moments(), *empty));
+            .filter_map(|empty| without_empty(film, self.right.moments(), *empty));
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let search = Search::new(self, &film, jpeg, cancel);
@@ -165,10 +197,12 @@ impl<'a> Reference<'a> {
 fn judged(search: &Search, film: &Film, cancel: &AtomicBool) -> Result<Verdict, RenderError> {
     let (scene, jpeg) = (search.scene, search.fine.jpeg);
     let found = select::run(search)?;
+    // What was found is told, however much work that is.
+    search.work.lift();
     let right = Candidate::right(scene);
     let mut verdict = match found {
         Some(found) if !found.candidate.named.is_empty() => wrong(search, &found),
-        _ if search.strays(&right).is_empty() && !has_other_colors(film, scene, jpeg) => {
+        _ if search.has_no_strays(&right) && !has_other_colors(film, scene, jpeg) => {
             let judged = search.judged_on(&search.fine, right, None);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
@@ -185,18 +219,14 @@ fn judged(search: &Search, film: &Film, cancel: &AtomicBool) -> Result<Verdict, 
         }
     };
     verdict.is_coded = jpeg.is_some();
-    verdict.is_cut = search.is_cut.get();
+    verdict.is_cut = search.work.is_cut();
     Ok(cancel::unless_set(cancel, verdict)?)
 }
 
 /// Whether a picture has a channel that is less or more than in all colours of the scene, which no mean of them is.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
-    let colors = scene.objects.iter().flat_map(|object| match object.shape {
-        Shape::Sphere(sphere) => vec![sphere.color],
-        Shape::Triangle(triangle) => vec![triangle.color],
-        Shape::Box(cuboid) => vec![cuboid.color],
-        Shape::Checkerboard(board) => board.colors.to_vec(),
-    });
+    let colors = scene.objects.iter();
+    let colors = colors.flat_map(|object| object.shape.colors());
     let all = colors.chain([scene.image.background]);
     let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for srgb in all.map(|color| color.srgb) {
@@ -204,14 +234,11 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
             (least[i], most[i]) = (least[i].min(srgb[i]), most[i].max(srgb[i]));
         }
     }
+    let least = least.map(|srgb| srgb_to_linear((srgb - WRONG) / 255.0));
+    let most = most.map(|srgb| srgb_to_linear((srgb + WRONG) / 255.0));
+    let is_other = |pixel: &[f64; 3]| (0..3).any(|i| pixel[i] < least[i] || pixel[i] > most[i]);
     // JPEG has colours overshoot where they meet.
-    jpeg.is_none()
-        && film.pixels().iter().any(|pixel| {
-            (0..3).any(|i| {
-                let srgb = 255.0 * linear_to_srgb(pixel[i]);
-                srgb < least[i] - WRONG || srgb > most[i] + WRONG
-            })
-        })
+    jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
 /// The verdict on a picture with mistakes.
@@ -263,7 +290,7 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!search.strays(&found.candidate).is_empty()).then(|| (at_last / all).min(1.0));
+    let rest = (!search.has_no_strays(&found.candidate)).then(|| (at_last / all).min(1.0));
     let (objects, is_background_right) = objects::judged(search, &found.candidate);
     Verdict {
         samples: found.score.samples,

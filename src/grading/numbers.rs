@@ -53,7 +53,9 @@ pub fn numbers(
         tried.truncate(STARTS);
         (parameter, tried)
     });
-    let on_tiny = tried.filter_map(|(parameter, tried)| {
+    // Those first that start best: work may end before all are fitted.
+    let started = tried.filter_map(|one| Some((one.1.first()?.0, one)));
+    let on_tiny = least(started, usize::MAX).filter_map(|(parameter, tried)| {
         let rounds = if is_read(&parameter) { 0 } else { 4 };
         let fitted = tried.into_iter().filter_map(|(_, start)| {
             search.fit_one(tiny, &parameter, &search.tiny, start, [rounds, 0])
@@ -63,10 +65,12 @@ pub fn numbers(
     });
     let (local, others): (Vec<_>, Vec<_>) =
         on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
-    let on_coarse = [local, others]
-        .into_iter()
-        .flat_map(|fitted| least(fitted.into_iter(), FITTED));
-    let on_coarse = on_coarse.filter_map(|(parameter, start)| {
+    let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
+        fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
+        fitted.truncate(FITTED);
+        fitted
+    });
+    let on_coarse = least(on_coarse, usize::MAX).filter_map(|(parameter, start)| {
         let rounds = if is_read(&parameter) { [0, 0] } else { [3, 1] };
         let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
         let named = number_text::numbers(search.scene, &parameter, fitted.numbers);

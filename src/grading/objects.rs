@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     axes::Axes,
     candidate::Candidate,
+    light::Average,
     parameters::Owner,
     search::Search,
     textbook::{Behaviour, Textbook, corners, vertices},
@@ -64,9 +65,9 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
         is_drawn: is_drawn.clone(),
         ..Candidate::right(scene)
     };
-    let strays = search.strays(&plain);
+    let strays = search.strays(&plain).unwrap_or_default();
     let grid = &search.fine.grid;
-    let textbook = Textbook::new(&plain.drawn(grid), Behaviour::RIGHT, |light| light);
+    let textbook = Textbook::new(&plain.drawn(grid), Behaviour::RIGHT, Average::Light);
     let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
     let labels = textbook.labels(grid.cells).into_iter();
     let labels: Vec<Option<usize>> = labels.map(|label| label.map(|at| drawn[at])).collect();
@@ -82,14 +83,16 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
             })
         })
     };
-    let is_right = |object: Option<usize>| {
-        strays.is_empty_among(|at| labels[at] == object && !is_of_another(at))
-    };
-    for one in &mut objects {
-        one.is_right = one.is_right && is_right(Some(one.index));
+    // The background counts as one behind all objects.
+    let group =
+        |at: usize| (!is_of_another(at)).then_some(labels[at].unwrap_or(scene.objects.len()));
+    let are_right = strays.are_empty(scene.objects.len() + 1, group);
+    for (one, is_right) in objects.iter_mut().zip(&are_right) {
+        one.is_right &= is_right;
     }
     let backgrounds = [scene, &candidate.scene].map(|scene| scene.image.background);
-    (objects, backgrounds[0] == backgrounds[1] && is_right(None))
+    let is_background_right = backgrounds[0] == backgrounds[1] && are_right[scene.objects.len()];
+    (objects, is_background_right)
 }
 
 /// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.

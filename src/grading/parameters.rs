@@ -2,6 +2,8 @@
 //!
 //! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and the scene with others in their place.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::axes::Axes;
@@ -196,7 +198,9 @@ impl Parameter {
             match (part, self.owner) {
                 (Part::Image(image), _) => changed.image = image,
                 (Part::Camera(camera), _) => changed.camera = camera,
-                (Part::Shape(shape), Owner::Object(index)) => changed.objects[index].shape = shape,
+                (Part::Shape(shape), Owner::Object(index)) => {
+                    Arc::make_mut(&mut changed.objects)[index].shape = shape
+                }
                 (Part::Shape(_), _) => {}
             }
             changed

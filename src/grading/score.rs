@@ -6,7 +6,10 @@
 //! 1989). Of two models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
 //! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`).
 
-use std::{collections::HashMap, sync::OnceLock};
+use std::{
+    collections::HashMap,
+    sync::{Arc, OnceLock},
+};
 
 use super::{
     light::{Curve, STEP},
@@ -30,7 +33,7 @@ const SAME: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Means and variances.
-    pub moments: Moments,
+    pub moments: Arc<Moments>,
     /// The variances of the means themselves; empty if they are exact.
     pub doubt: Vec<[f64; 3]>,
     /// By how much bytes are cut off on an average, in steps.
@@ -253,7 +256,7 @@ impl Known {
 impl Model {
     /// The differences in light of what is seen from what is expected, of each channel of each pixel.
     pub fn differences(&self, seen: &[[f64; 3]]) -> Vec<f64> {
-        let Moments { mean, variance } = &self.moments;
+        let Moments { mean, variance } = &*self.moments;
         let pixels = seen.iter().zip(mean).zip(variance);
         let differences = pixels.flat_map(|((seen, mean), variance)| {
             [0, 1, 2].map(|i| self.difference(seen[i], mean[i], *variance))
@@ -391,20 +394,31 @@ impl Strays {
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.is_empty_among(|_| true)
+        self.are_empty(1, |_| Some(0)) == [true]
     }
 
-    /// Whether there are none among some pixels.
-    pub fn is_empty_among(&self, is_one: impl Fn(usize) -> bool) -> bool {
-        let (mut squares, mut expected) = (0.0, 0.0);
-        for (_, square, variance) in self.edges.iter().filter(|(at, ..)| is_one(*at)) {
-            squares += square;
-            expected += variance;
+    /// Whether there are none in each of some groups of pixels.
+    pub fn are_empty(&self, groups: usize, group: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
+        let mut is_right = vec![true; groups];
+        for group in self.pixels.iter().filter_map(|at| group(*at)) {
+            is_right[group] = false;
+        }
+        let mut sums = vec![(0.0, 0.0); groups];
+        for (at, square, variance) in &self.edges {
+            if let Some(group) = group(*at) {
+                let (squares, expected) = &mut sums[group];
+                (*squares, *expected) = (*squares + square, *expected + variance);
+            }
         }
         // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be no more than three times the sum, and its variance no more
         // than that.
-        let is_noise = squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected);
-        is_noise && !self.pixels.iter().any(|at| is_one(*at))
+        let is_noise = |(squares, expected): (f64, f64)| {
+            squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
+        };
+        let pairs = is_right.into_iter().zip(sums);
+        pairs
+            .map(|(is_right, sums)| is_right && is_noise(sums))
+            .collect()
     }
 }
 

@@ -1,15 +1,14 @@
 //! A picture that is compared with a scene: what it shows on grids, and how well candidates explain it.
 
 use std::{
-    cell::{Cell, OnceCell, RefCell},
-    collections::HashMap,
+    cell::{OnceCell, RefCell},
+    collections::{HashMap, VecDeque},
     sync::{Arc, atomic::AtomicBool},
 };
 
 use super::{
     Reference,
     candidate::{Candidate, Cause, Named},
-    class_cache::ClassCache,
     fit::{Fitted, Trial, fit},
     grid::Grid,
     jpeg::Jpeg,
@@ -18,26 +17,21 @@ use super::{
     mistakes::{ROWS, Shows},
     parameters::Parameter,
     score::{Model, Score, Strays, gain, score},
+    textbook::{Behaviour, Moments},
+    work::{self, Work},
 };
-use crate::{
-    area::Area,
-    film::Film,
-    scene::{Object, Scene, Shape},
-};
+use crate::{area::Area, film::Film, scene::Scene};
 
 /// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
 pub const TINY: (u32, usize) = (32, 5);
 const COARSE: u32 = 48;
 const MIDDLE: u32 = 128;
 
+/// So many pictures of all pixels are kept, those that were made last: one candidate's, and one's that it is compared with.
+const LAST: usize = 2;
+
 /// Of so many pixels in the middle of a picture, those tell of edges.
 const PIXELS_OF_EDGES: u64 = 20_000;
-
-/// A search looks for no more after so much work: cells that were computed, times the boards and so many more; every other object takes as long as so many cells,
-/// if there are as many. Measured: a unit takes 0.05 to 0.1 μs, with 4 objects, 50 boards and 200 boxes.
-const MOST_WORK: f64 = 1e7;
-const BESIDE_BOARDS: f64 = 4.0;
-const CELLS_OF_AN_OBJECT: f64 = 800.0;
 
 /// A grid over a part of a picture.
 pub struct Level<'a> {
@@ -74,6 +68,22 @@ impl Level<'_> {
         })
     }
 
+    /// What the cells show of something whose pixels are known, all of those of a part.
+    fn reduced(&self, pixels: &Moments, part: Area) -> Moments {
+        let [left, top] = self.corner;
+        let index = |x: u32, y: u32| ((top + y) * part.width + left + x) as usize;
+        let mean = self.grid.reduce(|x, y| pixels.mean[index(x, y)]);
+        let squares = self.grid.reduce(|x, y| {
+            let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
+            [0, 1, 2].map(|i| mean[i] * mean[i] + variance[i])
+        });
+        let pairs = mean.iter().zip(squares);
+        let variance = pairs
+            .map(|(mean, squares)| [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0)))
+            .collect();
+        Moments { mean, variance }
+    }
+
     /// What a candidate shows on it.
     pub fn model(&self, made: &Made) -> Model {
         let mut model = made.model(&self.grid, self.seen(made.candidate.curve));
@@ -97,7 +107,7 @@ impl Level<'_> {
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
     pub scene: &'a Scene,
-    shared: &'a ClassCache,
+    reference: &'a Reference<'a>,
     pub tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
@@ -105,13 +115,8 @@ pub struct Search<'a> {
     /// The pixels in the middle of the picture.
     pub edges: Level<'a>,
     /// What was made last of all pixels.
-    last: Cell<Option<Arc<Made>>>,
-    /// How many boards the scene has, and other objects.
-    boards: f64,
-    others: f64,
-    work: Cell<f64>,
-    /// Whether something was left out for that.
-    pub is_cut: Cell<bool>,
+    last: RefCell<VecDeque<Arc<Made>>>,
+    pub work: Work<'a>,
     pub cancel: &'a AtomicBool,
 }
 
@@ -132,11 +137,7 @@ impl<'a> Search<'a> {
         jpeg: Option<Jpeg>,
         cancel: &'a AtomicBool,
     ) -> Self {
-        let Reference {
-            scene,
-            part,
-            shared,
-        } = reference;
+        let Reference { scene, part, .. } = reference;
         let part = *part;
         let level = |area: Area, longest, samples| Level {
             grid: Grid::new(&scene.image, area, longest),
@@ -147,79 +148,119 @@ impl<'a> Search<'a> {
             jpeg,
             coded: OnceCell::new(),
         };
-        let (boards, others): (Vec<&Object>, Vec<&Object>) = scene
-            .objects
-            .iter()
-            .partition(|object| matches!(object.shape, Shape::Checkerboard(_)));
+        let work = Work::new(work::most(part.pixels()), cancel);
+        work.spend(reference.work);
         Self {
             scene,
-            shared,
+            reference,
             tiny: level(part, TINY.0, Some(TINY.1)),
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             edges: level(middle(part), u32::MAX, None),
-            last: Cell::new(None),
-            boards: boards.len() as f64,
-            others: others.len() as f64,
-            work: Cell::new(0.0),
-            is_cut: Cell::new(false),
+            last: RefCell::default(),
+            work,
             cancel,
         }
     }
 
-    /// What a candidate makes on a level; none if it is cancelled.
+    /// What a candidate makes on a level; none if it is cancelled, or takes too much work.
     pub fn made(
         &self,
         candidate: &Candidate,
         level: &Level,
         like: Option<&Made>,
     ) -> Option<Arc<Made>> {
-        let make = |candidate: &Candidate, likes: &[&Made]| {
-            let made = candidate.made(&level.grid, level.samples, likes, self.cancel)?;
-            let cells = made.work;
-            let work =
-                cells * (BESIDE_BOARDS + self.boards) + cells.min(CELLS_OF_AN_OBJECT) * self.others;
-            self.work.set(self.work.get() + work);
-            Some(made)
-        };
-        // What a program shows that has the scene's own numbers is the same for all pictures; most often it differs in a part from what this one shows.
-        let rows = candidate.named.iter().filter(|named| named.is_row());
-        let rows: Vec<Named> = rows.cloned().collect();
-        let is_small = level.grid.count() as u64 <= PIXELS_OF_EDGES;
-        let may_share = level.samples.is_none() && rows.len() <= usize::from(is_small);
-        let base = may_share
-            .then(|| Candidate::of(self.scene, &rows))
-            .flatten();
-        let base = base.filter(|base| {
-            let (one, other) = (&base.scene, &candidate.scene);
-            one.camera == other.camera && one.image == other.image
-        });
-        let likes: Vec<&Made> = like.into_iter().collect();
-        let base = base.and_then(|base| {
-            let mistake = rows.first().map_or("", |row| &row.message);
-            self.shared
-                .get(&level.grid, mistake, || make(&base, &likes))
-        });
-        if let Some(base) = &base
-            && candidate.looks.len() == base.candidate.looks.len()
-            && candidate.is_drawn == base.candidate.is_drawn
-            && candidate.scene.objects == base.candidate.scene.objects
-        {
-            return Some(Arc::clone(base));
+        let is_fine = level.grid == self.fine.grid && level.samples.is_none();
+        let mut known: Vec<Arc<Made>> = Vec::new();
+        if is_fine {
+            known.extend(self.last.borrow().iter().map(Arc::clone));
+            known.push(Arc::clone(&self.reference.right));
+        } else if level.samples.is_none() {
+            let right = Candidate::right(self.scene);
+            known.extend(match self.reduced(candidate, level) {
+                Some(same) => vec![same],
+                None => {
+                    let all = [self.shared(candidate, level), self.reduced(&right, level)];
+                    all.into_iter().flatten().collect()
+                }
+            });
         }
-        let likes: Vec<&Made> = like.into_iter().chain(base.as_deref()).collect();
-        Some(Arc::new(make(candidate, &likes)?))
+        let likes: Vec<&Made> = like
+            .into_iter()
+            .chain(known.iter().map(|one| &**one))
+            .collect();
+        let made = candidate.made(&level.grid, level.samples, &likes, &self.work)?;
+        let made = Arc::new(made);
+        let mut last = self.last.borrow_mut();
+        let is_known = |one: &Arc<Made>| {
+            one.candidate.traces_as(candidate) && one.candidate.behaviour == candidate.behaviour
+        };
+        if is_fine && !last.iter().any(is_known) {
+            last.push_front(Arc::clone(&made));
+            last.truncate(LAST);
+        }
+        Some(made)
+    }
+
+    /// What a candidate makes on a level, from what was made of the same program of all pixels.
+    fn reduced(&self, candidate: &Candidate, level: &Level) -> Option<Arc<Made>> {
+        let fine = self.fine.grid.cells;
+        let is_same = |made: &&Arc<Made>| made.part == fine && made.candidate.traces_as(candidate);
+        let reduce = |made: &Made| {
+            let moments = level.reduced(made.moments(), fine);
+            Made::new(made.candidate.clone(), level.grid.cells, moments)
+        };
+        let right = &self.reference.right;
+        if is_same(&right) {
+            let shared = &self.reference.shared;
+            return shared
+                .get(&level.grid, level.samples, "", || {
+                    (Some(reduce(right)), 0.0)
+                })
+                .0;
+        }
+        let last = self.last.borrow();
+        last.iter().find(is_same).map(|made| Arc::new(reduce(made)))
+    }
+
+    /// What a program shows that has the scene's own numbers, and one mistake that is a row, is the same for all pictures; most often it differs in a part from
+    /// what a candidate shows.
+    fn shared(&self, candidate: &Candidate, level: &Level) -> Option<Arc<Made>> {
+        let mut rows = candidate.named.iter().filter(|named| named.is_row());
+        let row = rows.next()?;
+        let is_small = level.grid.count() as u64 <= PIXELS_OF_EDGES;
+        (is_small && rows.next().is_none()).then_some(())?;
+        let base = Candidate::right(self.scene).with(row.clone())?;
+        let (one, other) = (&base.scene, &candidate.scene);
+        (one.camera == other.camera && one.image == other.image).then_some(())?;
+        let make = || {
+            let left = work::most(self.fine.grid.count() as u64) - self.reference.work;
+            let work = Work::new(left.max(0.0), self.cancel);
+            let right = self.reduced(&Candidate::right(self.scene), level);
+            let likes: Vec<&Made> = right.iter().map(|right| &**right).collect();
+            let made = base.made(&level.grid, None, &likes, &work);
+            (made, work.spent())
+        };
+        // Programs that err by half a pixel trace the same pixels, and show each of them in another place.
+        let mistake = match base.layout.is_shifted() {
+            true => row.id,
+            false => &row.message,
+        };
+        let (made, work) = self.reference.shared.get(&level.grid, None, mistake, make);
+        self.work.spend(work);
+        made
     }
 
     /// What a candidate shows on the tiny grid, for others to be compared with it.
     pub fn made_to_compare(&self, candidate: &Candidate) -> Option<Arc<Made>> {
-        let grid = &self.tiny.grid;
-        let make = || candidate.made_to_compare(grid, TINY.1, self.cancel);
-        match candidate.named.is_empty() {
-            true => self.shared.get(grid, "", make),
-            false => make().map(Arc::new),
-        }
+        let level = &self.tiny;
+        let exact = match candidate.behaviour == Behaviour::RIGHT {
+            true => self.reduced(candidate, level),
+            false => None,
+        };
+        let made = candidate.made_to_compare(exact.as_deref(), &level.grid, TINY.1, &self.work)?;
+        Some(Arc::new(made))
     }
 
     /// What a candidate makes on a level, if there was not too much work before.
@@ -229,15 +270,9 @@ impl<'a> Search<'a> {
         level: &Level,
         like: Option<&Made>,
     ) -> Option<Arc<Made>> {
-        self.may_go_on()
+        self.work
+            .may_go_on()
             .then(|| self.made(candidate, level, like))?
-    }
-
-    /// Whether there was not too much work yet; if there was, something is left out.
-    pub fn may_go_on(&self) -> bool {
-        let may = self.work.get() < MOST_WORK;
-        self.is_cut.set(self.is_cut.get() || !may);
-        may
     }
 
     /// By how much the picture differs from what was made.
@@ -284,19 +319,23 @@ impl<'a> Search<'a> {
     /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
     pub fn is_explained(&self, candidate: &Candidate) -> bool {
         let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
-        let rows = rows.take_while(|_| self.may_go_on());
+        let rows = rows.take_while(|_| self.work.may_go_on());
         let mut all = std::iter::once(candidate.clone())
             .chain(rows.filter_map(|row| candidate.with(row.named())));
-        all.any(|candidate| self.strays(&candidate).is_empty())
+        all.any(|candidate| self.has_no_strays(&candidate))
     }
 
-    /// What shows something else than a candidate for certain.
-    pub fn strays(&self, candidate: &Candidate) -> Strays {
-        let model = self.pixels(candidate);
+    /// What shows something else than a candidate for certain; none if it is not known.
+    pub fn strays(&self, candidate: &Candidate) -> Option<Strays> {
+        let model = self.pixels(candidate)?;
         let seen = self.fine.seen(candidate.curve);
-        model.map_or_else(Strays::default, |model| {
-            Strays::new(seen, &model, self.fine.grid.width())
-        })
+        Some(Strays::new(seen, &model, self.fine.grid.width()))
+    }
+
+    /// Whether it is known that nothing shows something else than a candidate for certain.
+    pub fn has_no_strays(&self, candidate: &Candidate) -> bool {
+        self.strays(candidate)
+            .is_some_and(|strays| strays.is_empty())
     }
 
     /// Whether what was found beside another candidate can be seen.
@@ -313,13 +352,11 @@ impl<'a> Search<'a> {
         one.is_seen_beside(&other, self.fine.grid.width(), samples.max(1.0))
     }
 
-    /// What a candidate shows in the pixels; none if it is cancelled.
+    /// What a candidate shows in the pixels; none if it is cancelled, or takes too much work.
     fn pixels(&self, candidate: &Candidate) -> Option<Model> {
-        let like = self.last.take();
-        let made = self.made(candidate, &self.fine, like.as_deref())?;
-        let model = self.fine.model(&made);
-        self.last.set(Some(made));
-        Some(model)
+        let made = self.made(candidate, &self.fine, None)?;
+        self.work.compared(self.fine.grid.count());
+        Some(self.fine.model(&made))
     }
 
     /// What differs if a parameter has other numbers than in what was made.

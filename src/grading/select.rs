@@ -7,7 +7,7 @@
 use super::{
     candidate::{Candidate, Cause, Named},
     fit::absolute,
-    light::Curve,
+    light::{Average, Curve},
     made::Made,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
     number_text,
@@ -18,7 +18,10 @@ use super::{
     search::{Found, Level, Search, joined, split},
     textbook::Textbook,
 };
-use crate::cancel::{self, Cancelled};
+use crate::{
+    cancel::{self, Cancelled},
+    scene::Scene,
+};
 
 /// So many mistakes are named at most.
 const MOST_MISTAKES: usize = 4;
@@ -43,10 +46,10 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     };
     // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
     // alone.
-    let mut is_open = search.strays(&best.candidate).is_empty();
+    let mut is_open = search.has_no_strays(&best.candidate);
     while best.candidate.named.len() < MOST_MISTAKES
         && (is_open || !search.is_explained(&best.candidate))
-        && search.may_go_on()
+        && search.work.may_go_on()
         && let Some(next) = step(search, &best, is_open)
     {
         best = next;
@@ -65,7 +68,7 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     {
         let right = Candidate::right(search.scene);
         let other = with_edges(search, right, found.score.samples)?;
-        let other = other.filter(|other| search.strays(&other.candidate).is_empty());
+        let other = other.filter(|other| search.has_no_strays(&other.candidate));
         best = best
             .into_iter()
             .chain(other)
@@ -81,7 +84,12 @@ fn with_edges(
     candidate: Candidate,
     samples: Option<f64>,
 ) -> Result<Option<Found>, Cancelled> {
-    let Some(null) = search.judged_on(&search.edges, candidate, None) else {
+    // Where areas are not explained yet, that comes first. What is found so far is judged, however much work that is.
+    let most = search.work.lift();
+    let is_open = !search.has_no_strays(&candidate);
+    let null = search.judged_on(&search.edges, candidate, None);
+    search.work.restore(most);
+    let Some(null) = null else {
         return Ok(None);
     };
     // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
@@ -98,16 +106,14 @@ fn with_edges(
     let rows = ROWS.iter().filter(shows);
     let candidates = rows.filter_map(|row| null.candidate.with(row.named()));
     let judged = candidates
-        .take_while(|_| search.may_go_on())
+        .take_while(|_| search.work.may_go_on())
         .filter_map(|candidate| search.judged_on(&search.edges, candidate, Some(&null.made)));
     let judged: Vec<Found> = judged.collect();
-    // Where areas are not explained yet, that comes first.
-    let is_open = !search.strays(&null.candidate).is_empty();
     let best = judged
         .into_iter()
-        .filter(|found| !is_open || search.strays(&found.candidate).is_empty())
         .map(|found| (search.gain(&search.edges, &null, &found), found))
         .filter(|(gain, _)| *gain > 0.0)
+        .filter(|(_, found)| !is_open || search.has_no_strays(&found.candidate))
         .max_by(|one, other| one.0.total_cmp(&other.0));
     cancel::unless_set(search.cancel, Some(best.map_or(null, |(_, found)| found)))
 }
@@ -124,11 +130,15 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
         && !is_open
         && let Some(found) = finalist(search, from, row.clone())
         && found.cost < from.cost
-        && search.strays(&found.candidate).is_empty()
+        && search.has_no_strays(&found.candidate)
     {
         return Some(found);
     }
+    // Half of the work that is left is left for judging those that were tried.
+    let most = search.work.keep(0.5);
     tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
+    let are_all_numbers_tried = search.work.may_go_on();
+    search.work.restore(most);
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
     let finalists = tried
         .into_iter()
@@ -149,16 +159,24 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
         let (one, other) = (rank(one), rank(other));
         one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
     });
+    // Where not all were tried, the best of them need not be the best of all; what explains all is.
+    let are_all_tried = search.work.may_go_on() && are_all_numbers_tried;
     let is_better = |best: &Found| {
         let is_likelier = match is_open {
             true => search.gain(&search.middle, from, best) > 0.0,
             false => best.cost < from.cost,
         };
-        is_likelier && search.is_seen(best, &from.candidate)
+        is_likelier
+            && (are_all_tried || search.has_no_strays(&best.candidate))
+            && search.is_seen(best, &from.candidate)
     };
+    // The few that were judged are looked at in all pixels, however much work that is.
+    let most = search.work.lift();
+    let better = judged.into_iter().find(is_better);
+    search.work.restore(most);
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
-    judged.into_iter().find(is_better).or_else(|| {
-        (!is_open && search.may_go_on()).then_some(())?;
+    better.or_else(|| {
+        (!is_open && are_all_tried).then_some(())?;
         let patched = from.candidate.with(patch(search, from)?)?;
         let found = search.judged_on(&search.middle, patched, Some(&from.made))?;
         (found.cost < from.cost).then_some(found)
@@ -214,11 +232,13 @@ fn rows(
 fn suspects(search: &Search, from: &Found) -> Vec<usize> {
     let grid = &search.middle.grid;
     let candidate = &from.candidate;
-    let textbook = Textbook::new(
-        &grid.scene(&candidate.scene, false),
-        candidate.behaviour,
-        |light| light,
-    );
+    let (camera, image) = grid.view(&candidate.scene, false);
+    let scene = Scene {
+        camera,
+        image,
+        ..candidate.scene.clone()
+    };
+    let textbook = Textbook::new(&scene, candidate.behaviour, Average::Light);
     let labels = textbook.labels(grid.cells);
     let mut wrong = vec![0.0; search.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
@@ -290,7 +310,8 @@ fn level(named: &mut [Named]) {
 /// Without those mistakes that are not needed beside the others.
 fn without_needless(search: &Search, mut found: Found) -> Found {
     let mut at = 0;
-    while found.candidate.named.len() > 1 && at < found.candidate.named.len() {
+    // The last was better than what was without it.
+    while at + 1 < found.candidate.named.len() {
         let mut named = found.candidate.named.clone();
         named.remove(at);
         let without = Candidate::of(search.scene, &named).and_then(|candidate| {

@@ -4,11 +4,17 @@
 //! few samples at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
+use std::cell::{Cell, OnceCell};
+
 use glam::{BVec3, DVec2, DVec3};
 
-use super::axes::{Axes, radians};
+use super::{
+    axes::{Axes, radians},
+    light::Average,
+};
 use crate::{
     area::Area,
+    color::Color,
     scene::{Outline, Scene, Shape},
 };
 
@@ -146,19 +152,20 @@ pub struct Textbook {
     shapes: Vec<Prepared>,
     /// The part of the picture that each lies in, where that is known.
     bounds: Vec<[DVec2; 2]>,
-    /// For each object what its first and second colour count as in an average, the background's last.
-    colors: Vec<[[f64; 3]; 2]>,
+    tiles: Tiles,
+    /// Each object's first and second colour, the background's last, and what of them is averaged, once it was asked for.
+    colors: Vec<[Color; 2]>,
+    averaged: Vec<OnceCell<[[f64; 3]; 2]>>,
+    average: Average,
+    tested: Cell<u64>,
 }
 
 impl Textbook {
-    /// Prepares a scene, and what is averaged in place of light.
-    pub fn new(scene: &Scene, behaviour: Behaviour, average: impl Fn(f64) -> f64) -> Self {
+    /// Prepares a scene, and what is averaged.
+    pub fn new(scene: &Scene, behaviour: Behaviour, average: Average) -> Self {
         let eye = scene.camera.eye;
-        let light = |color: crate::color::Color| color.to_linear().map(&average);
-        let mut colors = Vec::new();
         let shapes = scene.objects.iter().map(|object| match object.shape {
             Shape::Sphere(sphere) => {
-                colors.push([light(sphere.color); 2]);
                 let to = sphere.center - eye;
                 Prepared::Sphere {
                     to,
@@ -166,7 +173,6 @@ impl Textbook {
                 }
             }
             Shape::Triangle(triangle) => {
-                colors.push([light(triangle.color); 2]);
                 let points = vertices(&triangle.outline).map(|vertex| vertex - eye);
                 let normal = (points[1] - points[0]).cross(points[2] - points[0]);
                 let edges = [0, 1, 2].map(|i| {
@@ -179,31 +185,40 @@ impl Textbook {
                     edges,
                 }
             }
-            Shape::Box(cuboid) => {
-                colors.push([light(cuboid.color); 2]);
-                Prepared::Box {
-                    min: cuboid.min - eye,
-                    max: cuboid.max - eye,
-                }
-            }
-            Shape::Checkerboard(board) => {
-                colors.push(board.colors.map(light));
-                Prepared::Board {
-                    y: board.y - eye.y,
-                    square: board.square,
-                }
-            }
+            Shape::Box(cuboid) => Prepared::Box {
+                min: cuboid.min - eye,
+                max: cuboid.max - eye,
+            },
+            Shape::Checkerboard(board) => Prepared::Board {
+                y: board.y - eye.y,
+                square: board.square,
+            },
         });
         let shapes = shapes.collect();
         let axes = Axes::new(&scene.camera, &scene.image);
         let bounds = scene.objects.iter().map(|object| {
-            match behaviour.behind == Behind::Unseen && !behaviour.is_squeezed {
-                true => bounds(&object.shape, &axes).unwrap_or(EVERYWHERE),
-                false => EVERYWHERE,
-            }
+            let of = |is_before| bounds(&object.shape, &axes, is_before);
+            let behind = || match behaviour.behind {
+                Behind::Unseen => of(false).map(|_| NOWHERE),
+                _ => of(false),
+            };
+            of(true).or_else(behind).unwrap_or(EVERYWHERE)
         });
-        let bounds = bounds.collect();
-        colors.push([light(scene.image.background); 2]);
+        let mut bounds: Vec<[DVec2; 2]> = bounds.collect();
+        let sees_nearest =
+            behaviour.visible == Visible::Nearest && behaviour.behind == Behind::Unseen;
+        if sees_nearest && scene.camera.near == 0.0 {
+            hide_boards(scene, &mut bounds);
+        }
+        let mut size = 2.0 * axes.middle;
+        if behaviour.is_squeezed {
+            // Columns are seen that lie as far from the middle as rows do.
+            size.x = size.max_element();
+        }
+        let tiles = Tiles::new(&bounds, axes.middle - size / 2.0, size);
+        let objects = scene.objects.iter();
+        let colors = objects.map(|object| object.shape.colors());
+        let colors: Vec<[Color; 2]> = colors.chain([[scene.image.background; 2]]).collect();
         Self {
             axes,
             behaviour,
@@ -211,8 +226,22 @@ impl Textbook {
             far: scene.camera.far.unwrap_or(f64::INFINITY),
             shapes,
             bounds,
+            tiles,
+            averaged: vec![OnceCell::new(); colors.len()],
             colors,
+            average,
+            tested: Cell::new(0),
         }
+    }
+
+    /// How many objects it has.
+    pub fn objects(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// How often it was asked whether a ray hits a shape.
+    pub fn tested(&self) -> u64 {
+        self.tested.get()
     }
 
     /// What the pixels of a part of the picture show, with so many samples in each.
@@ -265,17 +294,22 @@ impl Textbook {
             }
             false => place,
         };
-        match self.seen(moved) {
-            Some((object, second)) => self.colors[object][usize::from(second)],
-            None => self.colors[self.shapes.len()][0],
-        }
+        let (object, second) = self.seen(moved).unwrap_or((self.shapes.len(), false));
+        let averaged = self.averaged[object].get_or_init(|| {
+            let of = |color: Color| color.to_linear().map(|light| self.average.of(light));
+            self.colors[object].map(of)
+        });
+        averaged[usize::from(second)]
     }
 
     /// The object that is seen at a place, and whether it is a board's second colour.
     fn seen(&self, place: DVec2) -> Option<(usize, bool)> {
         let ray = self.axes.ray(place);
         let mut best: Option<(usize, f64)> = None;
-        for (object, (shape, [least, most])) in self.shapes.iter().zip(&self.bounds).enumerate() {
+        let objects = self.tiles.at(place);
+        self.tested.set(self.tested.get() + objects.len() as u64);
+        for object in objects.iter().map(|&object| object as usize) {
+            let (shape, [least, most]) = (&self.shapes[object], self.bounds[object]);
             if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
                 continue;
             }
@@ -363,11 +397,40 @@ impl Textbook {
     }
 }
 
+/// Of boards on one side of the eye the nearest hides all others, the first of equal ones.
+fn hide_boards(scene: &Scene, bounds: &mut [[DVec2; 2]]) {
+    let mut nearest: [Option<(usize, f64)>; 2] = [None; 2];
+    for (index, object) in scene.objects.iter().enumerate() {
+        let Shape::Checkerboard(board) = &object.shape else {
+            continue;
+        };
+        let height = board.y - scene.camera.eye.y;
+        // A board in the eye's own plane is not seen.
+        if height == 0.0 {
+            bounds[index] = NOWHERE;
+            continue;
+        }
+        let side = &mut nearest[usize::from(height > 0.0)];
+        match *side {
+            Some((_, least)) if height.abs() >= least => bounds[index] = NOWHERE,
+            hidden => {
+                if let Some((hidden, _)) = hidden {
+                    bounds[hidden] = NOWHERE;
+                }
+                *side = Some((index, height.abs()));
+            }
+        }
+    }
+}
+
 /// Bounds of what may be seen anywhere.
 const EVERYWHERE: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
 
-/// The rectangle of the picture that a shape lies in, if all of it lies before the eye.
-pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
+/// Bounds of what is not seen.
+const NOWHERE: [DVec2; 2] = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+
+/// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind it.
+pub fn bounds(shape: &Shape, axes: &Axes, is_before: bool) -> Option<[DVec2; 2]> {
     let (min, max) = match shape {
         Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
         Shape::Box(cuboid) => (cuboid.min, cuboid.max),
@@ -379,11 +442,77 @@ pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
     };
     let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     for corner in corners(min, max) {
-        let place = axes.place(corner)?;
+        let (place, depth) = axes.projected(corner);
+        (depth != 0.0 && is_before == (depth > 0.0)).then_some(())?;
         bounds = [bounds[0].min(place), bounds[1].max(place)];
     }
     // Room for roundings.
     Some([bounds[0] - 1e-6, bounds[1] + 1e-6])
+}
+
+/// The shapes that may be seen in each tile of a picture, in their order.
+struct Tiles {
+    /// The corner of the first tile, and how many tiles there are in a pixel.
+    corner: DVec2,
+    scale: DVec2,
+    columns: usize,
+    rows: usize,
+    /// Where those of each tile begin among all.
+    starts: Vec<u32>,
+    shapes: Vec<u32>,
+}
+
+/// So many tiles are in a row and in a column at most: as many as the cells of the smallest grid, which most scenes are compared on.
+const MOST_TILES: f64 = 32.0;
+
+impl Tiles {
+    fn new(bounds: &[[DVec2; 2]], corner: DVec2, size: DVec2) -> Self {
+        let count = size.ceil().min(DVec2::splat(MOST_TILES));
+        let (columns, rows) = (count.x as usize, count.y as usize);
+        let scale = count / size;
+        // Casts leave nothing below 0, nor of what is no number.
+        let within = |least: f64, most: f64, count: usize| {
+            least.floor() as usize..((most.floor() + 1.0) as usize).min(count)
+        };
+        let tiles = |[least, most]: &[DVec2; 2]| {
+            let [least, most] = [least, most].map(|place| (place - corner) * scale);
+            let columns_of = within(least.x, most.x, columns);
+            within(least.y, most.y, rows)
+                .flat_map(move |row| columns_of.clone().map(move |column| row * columns + column))
+        };
+        let mut starts = vec![0; columns * rows + 1];
+        for tile in bounds.iter().flat_map(tiles) {
+            starts[tile + 1] += 1;
+        }
+        for tile in 0..columns * rows {
+            starts[tile + 1] += starts[tile];
+        }
+        let mut shapes = vec![0; starts[columns * rows] as usize];
+        let mut ends = starts.clone();
+        for (shape, bounds) in (0..).zip(bounds) {
+            for tile in tiles(bounds) {
+                shapes[ends[tile] as usize] = shape;
+                ends[tile] += 1;
+            }
+        }
+        Self {
+            corner,
+            scale,
+            columns,
+            rows,
+            starts,
+            shapes,
+        }
+    }
+
+    /// Those that may be seen at a place.
+    fn at(&self, place: DVec2) -> &[u32] {
+        let tile = (place - self.corner) * self.scale;
+        let column = (tile.x as usize).min(self.columns - 1);
+        let row = (tile.y as usize).min(self.rows - 1);
+        let at = row * self.columns + column;
+        &self.shapes[self.starts[at] as usize..self.starts[at + 1] as usize]
+    }
 }
 
 /// The vertices of a triangle: left and right base end, apex.

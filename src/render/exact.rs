@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{Control, RenderError, finished, wanted};
 use crate::{
     area::Area,
-    exact::{self, Integrator},
+    exact::{ExactPixel, Integrator},
     film::{self, Encoder, Film},
     threads,
     tracer::{GRID, World},
@@ -56,18 +56,29 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     part: Area,
     control: &Control,
 ) -> Result<Exact<P>, RenderError> {
+    render_numbers(&Integrator::new(world), part, control, &|_, _| ())
+}
+
+/// Computes a part of the picture from an integrator of numbers of which the first three are the channels; `also` is shown all of them, tile by tile.
+pub fn render_numbers<P: film::Pixel, const N: usize>(
+    integrator: &Integrator<N>,
+    part: Area,
+    control: &Control,
+    also: &(dyn Fn(Area, &[ExactPixel<N>]) + Sync),
+) -> Result<Exact<P>, RenderError> {
     let exact = Mutex::new(Exact {
         film: Film::new(part.width, part.height)?,
         bounds: vec![0f32; part.pixels() as usize],
         certain: 0,
     });
-    let integrator = Integrator::new(world);
     let encoder = Encoder::default();
     threads::install(control.threads, || {
         wanted(part, TILE, control).par_bridge().for_each(|tile| {
             let Some(pixels) = integrator.pixels(tile, control.cancel) else {
                 return;
             };
+            also(tile, &pixels);
+            let channels = |pixel: &ExactPixel<N>| [0, 1, 2].map(|i| pixel.mean[i]);
             let bounds: Vec<f32> = pixels
                 .iter()
                 .map(|pixel| match pixel.bound {
@@ -81,14 +92,15 @@ pub(super) fn render_exact_as<P: film::Pixel>(
             let means: Vec<P> = pixels
                 .iter()
                 .map(|pixel| {
-                    if pixel.mean != before {
-                        (before, last) = (pixel.mean, P::of(pixel.mean, &encoder));
+                    let mean = channels(pixel);
+                    if mean != before {
+                        (before, last) = (mean, P::of(mean, &encoder));
                     }
                     last
                 })
                 .collect();
-            let is_certain = |(pixel, bound): &(&exact::ExactPixel, &f32)| {
-                P::is_certain(pixel.mean, f64::from(**bound), &encoder)
+            let is_certain = |(pixel, bound): &(&ExactPixel<N>, &f32)| {
+                P::is_certain(channels(pixel), f64::from(**bound), &encoder)
             };
             let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
             let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);

@@ -32,7 +32,7 @@ use crate::{
 };
 
 pub use self::{
-    exact::{Exact, render_exact},
+    exact::{Exact, render_exact, render_numbers},
     sampled::render,
 };
 

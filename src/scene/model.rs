@@ -1,5 +1,7 @@
 //! What a scene is: plain data, which the tracer is built from.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{color::Color, diagnostic::Diagnostic, math::Angle, schema::Method, source::Span};
@@ -29,8 +31,8 @@ pub struct Scene {
     pub camera: Camera,
     /// Where its samples lie.
     pub sampler: Sampler,
-    /// What is seen, in the order of the file: on a tie the first one wins.
-    pub objects: Vec<Object>,
+    /// What is seen, in the order of the file: on a tie the first one wins. Shared by scenes that differ in the rest.
+    pub objects: Arc<Vec<Object>>,
 }
 
 /// The picture.
@@ -225,6 +227,16 @@ impl Shape {
             Self::Triangle(_) => "triangle",
             Self::Box(_) => "box",
             Self::Checkerboard(_) => "checkerboard",
+        }
+    }
+
+    /// Its first and its second colour, which are one but for a checkerboard.
+    pub fn colors(&self) -> [Color; 2] {
+        match self {
+            Self::Sphere(Sphere { color, .. })
+            | Self::Triangle(Triangle { color, .. })
+            | Self::Box(Cuboid { color, .. }) => [*color; 2],
+            Self::Checkerboard(board) => board.colors,
         }
     }
 }

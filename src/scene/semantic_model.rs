@@ -2,6 +2,8 @@
 //!
 //! In: what lowering read. Out: the tree beside what it means, and the value of any part of it.
 
+use std::sync::Arc;
+
 use super::{
     eval::{Evaluator, Names},
     model::{Camera, Image, Object, Sampler, Scene},
@@ -36,7 +38,7 @@ impl Parts {
             image: self.image?,
             camera: self.camera?,
             sampler: self.sampler?,
-            objects: self.objects,
+            objects: Arc::new(self.objects),
         })
     }
 }

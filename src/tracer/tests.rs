@@ -1,6 +1,6 @@
 //! The quadtree against the plain loop over all objects, in scenes that are hard on its bounds.
 
-use std::cmp::Ordering;
+use std::{cmp::Ordering, sync::Arc};
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use rand::{Rng, RngExt, SeedableRng};
@@ -331,7 +331,8 @@ fn very_many_objects() {
     let mut random = Random::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
-    let template = stage.objects.remove(0);
+    let template = stage.objects[0].clone();
+    let mut objects = Vec::new();
     for index in 0..40_000 {
         let depth = random.within(1.0, 10.0);
         let spread = if index % 2 == 0 { 0.5 } else { 1e-9 };
@@ -343,8 +344,9 @@ fn very_many_objects() {
             // Each has its own colour.
             sphere.color.srgb[0] = f64::from(index) / 256.0;
         }
-        stage.objects.push(object);
+        objects.push(object);
     }
+    stage.objects = Arc::new(objects);
     let world = World::new(&stage);
     assert!(
         size_of::<Object<f64>>() <= 96,

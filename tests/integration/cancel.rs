@@ -3,7 +3,7 @@
 use std::{
     fmt::Write,
     sync::{
-        OnceLock,
+        Arc, OnceLock,
         atomic::{AtomicBool, Ordering},
     },
     thread,
@@ -122,13 +122,14 @@ fn a_reading_is_given_up_whichever_way_it_goes() {
 fn the_preparation_of_objects_is_given_up() {
     let mut scene = scene::read(&sources(&spheres(1))).scene.expect("a scene");
     let one = scene.objects[0].clone();
-    scene.objects = (0..200_000).map(|_| one.clone()).collect();
-    for (index, object) in (0u32..).zip(&mut scene.objects) {
+    let mut objects = vec![one; 200_000];
+    for (index, object) in (0u32..).zip(&mut objects) {
         if let scene::Shape::Sphere(sphere) = &mut object.shape {
             let [x, y] = [index % 447, index / 447].map(f64::from);
             sphere.center = glam::DVec3::new(x - 223.0, y - 223.0, -400.0);
         }
     }
+    scene.objects = Arc::new(objects);
     check("a world", |cancel| World::new_unless(&scene, cancel));
     let unwanted = World::new_unless(&scene, &AtomicBool::new(true));
     assert_eq!(unwanted.err(), Some(Cancelled));

@@ -4,7 +4,10 @@ use std::{
     collections::BTreeSet,
     num::NonZero,
     ops::ControlFlow,
-    sync::atomic::{AtomicBool, AtomicU64, Ordering},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
 };
 
 use glam::{DVec3, dvec3};
@@ -48,7 +51,8 @@ fn part(scene: &Scene, part: Area, threads: usize) -> (Film, u64) {
 fn crowd(camera: Camera, shapes: &[Shape]) -> Scene {
     let mut scenes = shapes.chunks(200).map(|shapes| scene(camera, shapes));
     let mut all = scenes.next().unwrap();
-    all.objects.extend(scenes.flat_map(|scene| scene.objects));
+    let more = scenes.flat_map(|scene| scene.objects.to_vec());
+    Arc::make_mut(&mut all.objects).extend(more);
     all
 }
 
@@ -231,15 +235,15 @@ fn crowds_of_all_kinds() {
     let (mut dense, mut open) = (0, 0);
     for index in 0..3 {
         let mut all = random_scene(&mut random, index % 2 == 0);
-        let more = (0..20).flat_map(|_| random_scene(&mut random, true).objects);
-        all.objects.extend(more);
+        let more = (0..20).flat_map(|_| random_scene(&mut random, true).objects.to_vec());
+        Arc::make_mut(&mut all.objects).extend(more);
         let tiny: Vec<_> = (0..1 << 14)
             .map(|_| sphere(random.vector(3.0), random.within(1e-3, 0.03)))
             .collect();
         let tiny = crowd(camera(DVec3::X, DVec3::ZERO), &tiny);
-        all.objects.extend(tiny.objects);
+        Arc::make_mut(&mut all.objects).extend(tiny.objects.to_vec());
         // Some of them twice: the first is seen.
-        all.objects.extend_from_within(100..300);
+        Arc::make_mut(&mut all.objects).extend_from_within(100..300);
         if index % 3 == 0 {
             (all.camera.near, all.camera.far) = (3.0, Some(6.0));
         }
@@ -319,7 +323,7 @@ fn objects_as_small_as_pixels() {
             (camera.near, camera.far) = (5.5, Some(8.0));
         }
         let mut all = crowd(camera, &shapes);
-        for object in &mut all.objects {
+        for object in Arc::make_mut(&mut all.objects) {
             if let Shape::Triangle(triangle) = &mut object.shape
                 && let Outline::Centered(triangle) = &mut triangle.outline
             {
@@ -327,7 +331,7 @@ fn objects_as_small_as_pixels() {
             }
         }
         // Some of them twice: the first is seen.
-        all.objects.extend_from_within(100..900);
+        Arc::make_mut(&mut all.objects).extend_from_within(100..900);
         (all.image.width, all.image.height) = (47, 35);
         for (n, method) in [2, 3, 4, 8, 9, 16].into_iter().zip(Method::SAMPLED) {
             let all = with_samples(&all, method, Count::PerPixel(n));
@@ -341,8 +345,8 @@ fn parts_cover_each_pixel_once() {
     let mut random = Random::new(7);
     for index in 0..40 {
         let mut all = random_scene(&mut random, index % 2 == 0);
-        let more = (0..index).flat_map(|_| random_scene(&mut random, true).objects);
-        all.objects.extend(more);
+        let more = (0..index).flat_map(|_| random_scene(&mut random, true).objects.to_vec());
+        Arc::make_mut(&mut all.objects).extend(more);
         let world = World::new(&all);
         let area = whole(&all);
         for samples in [0.01, 1.0, 3.0, 8.0, 64.0, f64::INFINITY] {

@@ -2,6 +2,8 @@
 //!
 //! Coordinates are multiples of 1/128, so that moving and turning them is exact.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3Swizzles, dvec3};
 use pinhole::{
     area::Area,
@@ -149,7 +151,7 @@ impl Stage {
             count: Count::PerPixel(9),
             seed: 5,
         };
-        for object in &mut scene.objects {
+        for object in Arc::make_mut(&mut scene.objects) {
             if let Shape::Checkerboard(board) = &mut object.shape
                 && swapped
             {

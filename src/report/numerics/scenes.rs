@@ -1,5 +1,7 @@
 //! The scenes of the cases: cameras, shapes, and colours that tell them apart.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::{
@@ -117,6 +119,6 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
             count: Count::PerPixel(1),
             seed: 0,
         },
-        objects: objects.collect(),
+        objects: Arc::new(objects.collect()),
     }
 }

@@ -44,7 +44,7 @@ fn boards_in_layers(count: usize) -> World {
     };
     let layers: Vec<_> = (0..count).map(layer).collect();
     let mut scene = scene(along(DVec3::ZERO, DVec3::NEG_Z), &layers);
-    for object in &mut scene.objects {
+    for object in std::sync::Arc::make_mut(&mut scene.objects) {
         if let Shape::Checkerboard(board) = &mut object.shape {
             board.colors[1] = board.colors[0];
         }

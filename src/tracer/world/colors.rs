@@ -4,10 +4,7 @@
 
 use std::collections::HashMap;
 
-use crate::{
-    color::Color,
-    scene::{self, Shape},
-};
+use crate::{color::Color, scene};
 
 /// The colours of the objects.
 #[derive(Debug)]
@@ -31,13 +28,9 @@ impl Colors {
                     (palette.len() - 1) as u32
                 })
         };
-        let of_object = |object: &scene::Object| match object.shape {
-            Shape::Sphere(scene::Sphere { color, .. })
-            | Shape::Triangle(scene::Triangle { color, .. })
-            | Shape::Box(scene::Cuboid { color, .. }) => [slot(color); 2],
-            Shape::Checkerboard(scene::Checkerboard { colors, .. }) => colors.map(&mut slot),
-        };
-        let of_objects = objects.iter().map(of_object).collect();
+        let of_objects = objects.iter();
+        let of_objects = of_objects.map(|object| object.shape.colors().map(&mut slot));
+        let of_objects = of_objects.collect();
         palette.push(background);
         Self {
             palette,

@@ -1,5 +1,7 @@
 //! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
 
+use std::sync::Arc;
+
 use pinhole::color::linear_to_srgb;
 
 use super::*;
@@ -163,7 +165,7 @@ fn ten_thousand_objects() {
             radius: random.within(0.005, 0.03),
             ..ball
         });
-        scene.objects.push(object);
+        Arc::make_mut(&mut scene.objects).push(object);
     }
     let exact = exact(&scene);
     assert!(exact.bound() <= 1e-9, "{:e}", exact.bound());

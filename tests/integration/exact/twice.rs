@@ -1,5 +1,7 @@
 //! The computed picture against itself in other ways: in pieces, turned, in parts, on other threads.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::effort::{Effort, sampled_and_exhaustive};
 
@@ -91,7 +93,7 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
     };
     let squares = |side: f64| {
         with(&|scene| {
-            for object in &mut scene.objects {
+            for object in Arc::make_mut(&mut scene.objects) {
                 if let Shape::Checkerboard(board) = &mut object.shape {
                     board.square = side;
                 }

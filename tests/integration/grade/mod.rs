@@ -13,10 +13,9 @@ use pinhole::{
     area::Area,
     film::{self, Tolerance},
     grading::{self, Jpeg, Reference},
-    render::{self, Control},
+    render::Control,
     scene,
     source::{Source, Sources},
-    tracer::World,
 };
 use rayon::prelude::*;
 use serde_json::Value;
@@ -109,14 +108,15 @@ fn answer(sets: &[&str], case: &Case, file: &[u8]) -> Value {
         progress: &|_| {},
         cancel: &cancel,
     };
-    let exact = render::render_exact(&World::new(&scene), part, &control).unwrap();
+    let reference = Reference::new(&scene, part, &control).unwrap();
+    let exact = &reference.exact;
     let picture = film::read_picture(file).unwrap();
     let tolerance = Tolerance {
         steps: picture.rounding.steps(),
         bounds: Some(&exact.bounds),
     };
     let comparison = film::compare(&picture.film, &exact.film, tolerance).unwrap();
-    let verdict = Reference::new(&scene, part)
+    let verdict = reference
         .judge(&picture.film, Jpeg::of(file), &comparison, &cancel)
         .unwrap();
     Value::Object(grading::json(&verdict))
