@@ -7,6 +7,8 @@
 mod corpus;
 #[path = "../tests/integration/grade/mistakes.rs"]
 mod mistakes;
+#[path = "../tests/integration/grade/rarer.rs"]
+mod rarer;
 #[path = "../tests/integration/grade/textbook.rs"]
 mod textbook;
 
@@ -40,7 +42,6 @@ fn main() {
         false => (vec![SIZES[1]], few.to_vec()),
     };
     let program = after("--program").unwrap_or(env!("CARGO_BIN_EXE_pinhole").to_owned());
-    let folder = tempfile::tempdir().expect("a folder for pictures");
     let mut truth = Vec::new();
     println!(
         "| mistakes | size | sampling | right | judged otherwise | seconds |\n| --- | --- | --- | --- | --- | --- |"
@@ -60,33 +61,39 @@ fn main() {
                     truth.extend(cases.iter().map(|case| write(case, Path::new(&folder))));
                     continue;
                 }
-                let (mut table, mut time) = (BTreeMap::new(), Duration::ZERO);
-                for case in &cases {
-                    let (answer, taken) = ask(&program, case, folder.path());
-                    time += taken;
-                    let judgement = case.judge(&answer);
-                    *table.entry(judgement).or_insert(0) += 1;
-                    if judgement != corpus::Judgement::Right {
-                        eprintln!("{judgement:?} {}: {}", case.title, told(&answer));
-                    }
-                }
-                let right = table.remove(&corpus::Judgement::Right).unwrap_or(0);
-                println!(
-                    "| {count} | {} × {} | {} {:?} | {right} of {} | {table:?} | {:.2} |",
-                    size[0],
-                    size[1],
-                    sampling.1,
-                    sampling.0,
-                    cases.len(),
-                    time.as_secs_f64(),
+                let of = format!(
+                    "{count} | {} × {} | {} {:?}",
+                    size[0], size[1], sampling.1, sampling.0
                 );
+                judge(&program, &of, &cases);
             }
         }
     }
     if let Some(folder) = after("--write") {
         let text = serde_json::to_string_pretty(&truth).expect("a list");
         fs::write(Path::new(&folder).join("truth.json"), text).expect("a file");
+        return;
     }
+    let cases: Vec<Case> = rarer::cases().collect();
+    judge(&program, "1, rarer | 96 × 54 | 16 Regular", &cases);
+}
+
+/// A row of the table: how cases are judged.
+fn judge(program: &str, of: &str, cases: &[Case]) {
+    let folder = tempfile::tempdir().expect("a folder for pictures");
+    let (mut table, mut time) = (BTreeMap::new(), Duration::ZERO);
+    for case in cases {
+        let (answer, taken) = ask(program, case, folder.path());
+        time += taken;
+        let judgement = case.judge(&answer);
+        *table.entry(judgement).or_insert(0) += 1;
+        if judgement != corpus::Judgement::Right {
+            eprintln!("{judgement:?} {}: {}", case.title, told(&answer));
+        }
+    }
+    let right = table.remove(&corpus::Judgement::Right).unwrap_or(0);
+    let (count, seconds) = (cases.len(), time.as_secs_f64());
+    println!("| {of} | {right} of {count} | {table:?} | {seconds:.2} |");
 }
 
 /// What the program says of a picture, and how long it takes.

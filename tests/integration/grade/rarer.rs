@@ -9,7 +9,10 @@ use super::{
     textbook::{Behind, Program, Shape, Squares, Visible},
 };
 
-const MISTAKES: &[(fn() -> Program, Mistake)] = &[
+/// Makes the right program.
+type Right = fn() -> Program;
+
+const MISTAKES: &[(Right, Mistake)] = &[
     (
         square,
         row("transposed", |p| {
