@@ -63,7 +63,8 @@ try {
         const begin = performance.now();
         for (let i = 0; i < steps; i++) {
           await new Promise(requestAnimationFrame);
-          const at = { clientX: x + 40 * Math.sin(i / 10), clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
+          // By two pixels each time: where it does not move, the numbers do not change, and nothing is drawn.
+          const at = { clientX: x + 2 * Math.abs((i % 80) - 40) - 40, clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
           stage.dispatchEvent(new PointerEvent("pointermove", at));
         }
         const coarse = window.frames.filter(frame => frame.fineness === "coarse").length;
