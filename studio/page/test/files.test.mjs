@@ -143,14 +143,12 @@ test("a lost connection is told, the text stays, and a new one is found", async 
   const started = await host(t);
   const page = await open(await launch(t), started);
   const { port } = new URL(started.address);
-  await page.context().setOffline(true);
   started.stop();
   await page.waitForSelector("#connection:not([hidden])");
   assert.match(await page.textContent("#connection"), /Connection lost/);
   await type(page, LARGER);
   assert.equal(await text(page), LARGER);
   assert.equal(await page.textContent("#file-state"), "not saved");
-  await page.context().setOffline(false);
   const again = await serve(started.file, { port });
   t.after(() => again.stop());
   // The new host gives out a new cookie, in another tab.
