@@ -1,6 +1,6 @@
 //! Tests whose tables take long: a sample of each in every run, the whole table where somebody asks for it.
 //!
-//! `cargo test --release -- --ignored` tries the whole tables, as the continuous integration does; it wants Neovim, QEMU and Chromium, too.
+//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does; it wants Neovim, QEMU and Chromium, too.
 
 /// How much of its tables a test tries.
 #[derive(Clone, Copy, PartialEq)]

@@ -217,7 +217,7 @@ sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let mut compared = 0;
-    let count = effort.part_of(9600) as u64;
+    let count = effort.part_of(3200) as u64;
     for seed in 0..count {
         let mut numbers = Numbers::new(seed);
         let Some(mut scene) = scene::read(&sources(&numbers.scene())).scene else {

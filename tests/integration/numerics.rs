@@ -18,7 +18,7 @@ use crate::effort::{Effort, sampled_and_exhaustive};
 /// The inputs of each case in every run.
 const INPUTS: u64 = 1_000;
 
-/// The inputs of each case in an exhaustive run, which takes a quarter of a minute of CPU time in a release build.
+/// The inputs of each case in an exhaustive run.
 const MANY_INPUTS: u64 = 10_000;
 
 fn run(inputs: u64, threads: Option<usize>) -> Table {

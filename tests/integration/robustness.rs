@@ -1,7 +1,6 @@
 //! Whatever the text, reading it ends soon, says something if there is no scene, and points into the text.
 //!
-//! The times hold for a release build, which tries texts of a megabyte and more; a build without optimization gets more time, and each run of
-//! the tests tries a sample, of shorter texts.
+//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the tests tries a sample, of shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -40,8 +39,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // A second on an idle machine, and a busy one takes twice as long.
-    let bound = if cfg!(debug_assertions) { 60 } else { 2 };
+    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests are, up to four seconds.
+    let bound = if cfg!(debug_assertions) { 20 } else { 2 };
     assert!(
         time < Duration::from_secs(bound),
         "{time:?} for {length} bytes"
@@ -272,9 +271,9 @@ sampled_and_exhaustive!(time_grows_with_the_text);
 /// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
 fn time_grows_with_the_text(effort: Effort) {
     let few = if effort == Effort::Sample {
-        2_000
+        1_000
     } else {
-        10_000
+        4_000
     };
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [
@@ -291,15 +290,13 @@ fn time_grows_with_the_text(effort: Effort) {
     for line in effort.of(lines) {
         let time = |lines: usize| {
             let text = CAMERA.to_owned() + &line.repeat(lines);
-            let once = || {
-                let start = Instant::now();
-                let sources = Sources::new(Source::from_text("test.scn", text.as_str()));
-                let reading = scene::read(&sources);
-                (start.elapsed(), reading).0
-            };
-            (0..3).map(|_| once()).min().unwrap_or_default()
+            let start = Instant::now();
+            let sources = Sources::new(Source::from_text("test.scn", text));
+            let reading = scene::read(&sources);
+            (start.elapsed(), reading).0
         };
-        let (once, many) = (time(few), time(8 * few));
+        let once = (0..3).map(|_| time(few)).min().unwrap_or_default();
+        let many = time(8 * few);
         assert!(many < 32 * once, "{once:?} and {many:?}: {line}");
     }
 }

@@ -162,7 +162,8 @@ impl Homography {
             across,
             below,
             slope: [(0, of_a), (1, of_b)].map(|(i, by)| libm::ldexp(columns[i][2] / det, -by)),
-            density: libm::ldexp(1.0 / det.abs(), -of_a - of_b),
+            // Beyond the range of f64 an exponent is the largest there is, and this is no number.
+            density: libm::ldexp(1.0 / det.abs(), (-of_a).saturating_sub(of_b)),
             misfit: det_off(Double::UNIT),
             handed: det.signum(),
             displacement,
