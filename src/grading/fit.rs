@@ -3,8 +3,8 @@
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
 //! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can.
 
-/// A move by less than this part of a step is the last one.
-const CLOSE: f64 = 0.01;
+/// A move by less than this part of a step is the last one: the next would be by a small part of it.
+const CLOSE: f64 = 0.05;
 
 /// Numbers that were fitted.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ pub fn fit<T: Trial>(
     let mut now = shown.differences();
     let mut normal = vec![vec![0.0; count]; count];
     let mut slopes: Vec<Vec<f64>> = Vec::new();
-    let mut moves_since = 0;
+    let mut are_new = true;
     for (is_robust, rounds) in [false, true].into_iter().zip(rounds) {
         let loss = match is_robust && rounds > 0 {
             true => Loss {
@@ -82,13 +82,7 @@ pub fn fit<T: Trial>(
         let mut left = loss.of(&now);
         let mut damping = 1e-3;
         for _ in 0..rounds {
-            // Slopes serve for two moves: to find them takes most of the time.
-            if moves_since == 2 {
-                slopes.clear();
-            }
-            if slopes.is_empty() {
-                moves_since = 0;
-            }
+            are_new |= slopes.is_empty();
             for i in slopes.len()..count {
                 let varied = |by: f64| {
                     let mut other = numbers.clone();
@@ -113,8 +107,10 @@ pub fn fit<T: Trial>(
                 }
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
-            let mut is_moving = false;
-            for _ in 0..4 {
+            let (mut is_moved, mut is_far) = (false, None);
+            // Where slopes are not new, these are to blame first.
+            let attempts = if are_new { 4 } else { 1 };
+            for _ in 0..attempts {
                 let mut damped = normal.clone();
                 for (i, row) in damped.iter_mut().enumerate() {
                     row[i] += damping * row[i] + 1e-12;
@@ -122,23 +118,28 @@ pub fn fit<T: Trial>(
                 let Some(moves) = solve(damped, gradient.clone()) else {
                     break;
                 };
+                is_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
                 let moved = numbers.iter().zip(steps).zip(&moves);
                 let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
                 if let Some(other) = trial(&moved) {
                     let differences = other.differences();
                     let less = loss.of(&differences);
                     if less < left {
+                        update(&mut slopes, &moves, &now, &differences);
+                        are_new = false;
+                        is_moved = true;
                         (left, now, shown, numbers) = (less, differences, other, moved);
                         damping *= 0.1;
-                        moves_since += 1;
-                        is_moving = moves.iter().any(|by| by.abs() > CLOSE);
                         break;
                     }
                 }
                 damping *= 10.0;
             }
-            if !is_moving {
+            if is_far != Some(true) || !is_moved && are_new {
                 break;
+            }
+            if !is_moved {
+                slopes.clear();
             }
         }
     }
@@ -155,6 +156,23 @@ pub fn fit<T: Trial>(
         numbers,
         errors,
     })
+}
+
+/// Slopes that agree with what a move did: Broyden, A class of methods for solving nonlinear simultaneous equations, 1965. To vary each number once more would
+/// take most of the time.
+fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
+    let square: f64 = moves.iter().map(|by| by * by).sum();
+    for at in 0..before.len() {
+        let told: f64 = slopes
+            .iter()
+            .zip(moves)
+            .map(|(slope, by)| slope[at] * by)
+            .sum();
+        let missed = (after[at] - before[at] - told) / square;
+        for (slope, by) in slopes.iter_mut().zip(moves) {
+            slope[at] += missed * by;
+        }
+    }
 }
 
 /// Solves a small system of linear equations by elimination with the largest pivot.

@@ -1,6 +1,9 @@
 //! What a candidate shows on a grid: exactly, but for behaviour that no scene can say, which the textbook's tracer samples.
 
-use std::{cell::OnceCell, sync::Arc};
+use std::{
+    cell::OnceCell,
+    sync::{Arc, OnceLock},
+};
 
 use glam::DVec2;
 
@@ -38,6 +41,8 @@ pub struct Made {
     error: Option<Arc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
     behaved: Option<Arc<(Moments, Vec<[f64; 3]>)>>,
+    /// What samples of it show, if it behaves as a right program; made for the first that behaves otherwise.
+    samples: OnceLock<Arc<Moments>>,
 }
 
 impl Made {
@@ -49,6 +54,7 @@ impl Made {
             right: Arc::new(moments),
             error: None,
             behaved: None,
+            samples: OnceLock::new(),
         }
     }
 
@@ -271,7 +277,13 @@ impl Candidate {
             }
             let (mut behaved, mut doubt) = Arc::unwrap_or_clone(behaved);
             let other = sampled(self.behaviour, area, SAMPLES);
-            let own = sampled(Behaviour::RIGHT, area, SAMPLES);
+            // What others behave like that trace the same is sampled once.
+            let known = like.filter(|_| changed.is_some_and(|changed| changed.pixels() == 0));
+            let sample = || sampled(Behaviour::RIGHT, area, SAMPLES);
+            let own = match known {
+                Some(like) => like.samples.get_or_init(|| Arc::new(sample())).clone(),
+                None => Arc::new(sample()),
+            };
             for (from, (x, y)) in area.iter().enumerate() {
                 let at = part.index(x, y);
                 let is_alike = other.mean[from] == own.mean[from]
@@ -304,6 +316,7 @@ impl Candidate {
             right,
             behaved,
             error: like.and_then(|like| like.error.clone()),
+            samples: OnceLock::new(),
         })
     }
 

@@ -71,7 +71,7 @@ pub fn numbers(
         fitted
     });
     let on_coarse = least(on_coarse, usize::MAX).filter_map(|(parameter, start)| {
-        let rounds = if is_read(&parameter) { [0, 0] } else { [3, 1] };
+        let rounds = if is_read(&parameter) { [0, 0] } else { [2, 1] };
         let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
         let named = number_text::numbers(search.scene, &parameter, fitted.numbers);
         Some((fitted.left, candidate.with(named)?))

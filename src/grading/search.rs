@@ -25,7 +25,7 @@ use crate::{area::Area, film::Film, scene::Scene};
 /// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
 pub const TINY: (u32, usize) = (32, 5);
 const COARSE: u32 = 48;
-const MIDDLE: u32 = 128;
+const MIDDLE: u32 = 96;
 
 /// So many pictures of all pixels are kept, those that were made last: one candidate's, and one's that it is compared with.
 const LAST: usize = 2;
@@ -327,15 +327,22 @@ impl<'a> Search<'a> {
 
     /// What shows something else than a candidate for certain; none if it is not known.
     pub fn strays(&self, candidate: &Candidate) -> Option<Strays> {
-        let model = self.pixels(candidate)?;
-        let seen = self.fine.seen(candidate.curve);
-        Some(Strays::new(seen, &model, self.fine.grid.width()))
+        self.strays_on(&self.fine, candidate)
     }
 
-    /// Whether it is known that nothing shows something else than a candidate for certain.
+    fn strays_on(&self, level: &Level, candidate: &Candidate) -> Option<Strays> {
+        let made = self.made(candidate, level, None)?;
+        self.work.compared(level.grid.count());
+        let seen = level.seen(candidate.curve);
+        Some(Strays::new(seen, &level.model(&made), level.grid.width()))
+    }
+
+    /// Whether it is known that nothing shows something else than a candidate for certain. What cells of the middle grid show for certain, pixels of theirs do.
     pub fn has_no_strays(&self, candidate: &Candidate) -> bool {
-        self.strays(candidate)
-            .is_some_and(|strays| strays.is_empty())
+        [&self.middle, &self.fine].into_iter().all(|level| {
+            self.strays_on(level, candidate)
+                .is_some_and(|strays| strays.is_empty())
+        })
     }
 
     /// Whether what was found beside another candidate can be seen.
@@ -367,6 +374,8 @@ impl<'a> Search<'a> {
         numbers: &[f64],
         level: &'l Level,
     ) -> Option<Shown<'l>> {
+        // Another scene of many objects is much work by itself.
+        self.work.may_go_on().then_some(())?;
         let changed = Candidate {
             scene: parameter.put(&like.candidate.scene, numbers)?,
             ..like.candidate.clone()

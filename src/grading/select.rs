@@ -29,6 +29,9 @@ const MOST_MISTAKES: usize = 4;
 /// So many are fitted and judged at a time, of those that leave least on the coarse grid.
 const FINALISTS: usize = 3;
 
+/// Rounds of fitting numbers to the middle grid. On a coarser one they came near, so squares, which have one valley, are not needed any more.
+const ROUNDS: [usize; 2] = [0, 4];
+
 /// So many objects are looked at, those around which most is wrong.
 const SUSPECTS: usize = 12;
 
@@ -128,7 +131,8 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, row)) = row
         && !is_open
-        && let Some(found) = finalist(search, from, row.clone())
+        && let Some(found) = likelier(search, from, row.clone())
+        && let Some(found) = fitted(search, found)
         && found.cost < from.cost
         && search.has_no_strays(&found.candidate)
     {
@@ -144,8 +148,22 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
         .into_iter()
         .take(FINALISTS)
         .map(|(_, candidate)| candidate);
-    let judged = finalists.filter_map(|candidate| finalist(search, from, candidate));
-    let judged: Vec<Found> = judged.collect();
+    let unfitted = finalists.filter_map(|candidate| likelier(search, from, candidate));
+    let mut unfitted: Vec<Found> = unfitted.collect();
+    unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    let mut judged: Vec<Found> = Vec::new();
+    // What explains all is beaten only by what does so with fewer numbers.
+    let mut enough = usize::MAX;
+    for found in unfitted {
+        if found.candidate.fitted() < enough
+            && let Some(found) = fitted(search, found)
+        {
+            if !is_open && search.has_no_strays(&found.candidate) {
+                enough = found.candidate.fitted();
+            }
+            judged.push(found);
+        }
+    }
     let least = judged
         .iter()
         .map(|found| found.cost)
@@ -183,12 +201,16 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     })
 }
 
-/// A candidate fitted and judged; none if it is no likelier than what it is made from.
-fn finalist(search: &Search, from: &Found, candidate: Candidate) -> Option<Found> {
+/// A candidate judged; none if it is no likelier than what it is made from.
+fn likelier(search: &Search, from: &Found, candidate: Candidate) -> Option<Found> {
     let found = search.judged_on(&search.middle, candidate, Some(&from.made))?;
-    (found.score.likelihood > from.score.likelihood).then_some(())?;
-    let candidate = search.fitted(found.candidate, &search.middle, &found.made, [3, 3])?;
-    search.judged_on(&search.middle, candidate, Some(&from.made))
+    (found.score.likelihood > from.score.likelihood).then_some(found)
+}
+
+/// The same with its numbers fitted.
+fn fitted(search: &Search, found: Found) -> Option<Found> {
+    let candidate = search.fitted(found.candidate, &search.middle, &found.made, ROUNDS)?;
+    search.judged_on(&search.middle, candidate, Some(&found.made))
 }
 
 /// The rows of the table that leave least on the tiny grid, and how much each leaves on the coarse one.
@@ -315,9 +337,9 @@ fn without_needless(search: &Search, mut found: Found) -> Found {
         let mut named = found.candidate.named.clone();
         named.remove(at);
         let without = Candidate::of(search.scene, &named).and_then(|candidate| {
-            let made = search.made(&candidate, &search.middle, Some(&found.made))?;
-            let candidate = search.fitted(candidate, &search.middle, &made, [3, 3])?;
-            search.judged_on(&search.middle, candidate, Some(&found.made))
+            let made = search.made(&candidate, &search.coarse, None)?;
+            let candidate = search.fitted(candidate, &search.coarse, &made, [3, 1])?;
+            fitted(search, search.judged_on(&search.middle, candidate, None)?)
         });
         match without {
             Some(without) if without.cost <= found.cost => found = without,
