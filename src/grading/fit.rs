@@ -1,9 +1,10 @@
 //! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small differences and absolute values of large ones.
 //!
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
-//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can.
+//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can. Slopes are found by varying each number once, and then updated by what each
+//! move does (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
 
-/// A move by less than this part of a step is the last one: the next would be by a small part of it.
+/// A round whose first move changes no number by more than this part of its step is the last.
 const CLOSE: f64 = 0.05;
 
 /// Numbers that were fitted.
@@ -51,7 +52,8 @@ impl Loss {
     }
 }
 
-/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be.
+/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be, and where no more
+/// work may be done.
 ///
 /// By squares first, which have one valley; then in standard deviations, of which more than one counts by its absolute value, so that what the numbers
 /// cannot explain does not draw them away from what they can.
@@ -68,7 +70,8 @@ pub fn fit<T: Trial>(
     let mut normal = vec![vec![0.0; count]; count];
     let mut slopes: Vec<Vec<f64>> = Vec::new();
     let mut are_new = true;
-    for (is_robust, rounds) in [false, true].into_iter().zip(rounds) {
+    let mut has_moved = false;
+    'fitting: for (is_robust, rounds) in [false, true].into_iter().zip(rounds) {
         let loss = match is_robust && rounds > 0 {
             true => Loss {
                 units: shown.deviations(),
@@ -81,7 +84,8 @@ pub fn fit<T: Trial>(
         };
         let mut left = loss.of(&now);
         let mut damping = 1e-3;
-        for _ in 0..rounds {
+        let mut round = 0;
+        while round < rounds {
             are_new |= slopes.is_empty();
             for i in slopes.len()..count {
                 let varied = |by: f64| {
@@ -89,7 +93,12 @@ pub fn fit<T: Trial>(
                     other[i] += by;
                     Some((by, trial(&other)?.differences()))
                 };
-                let (by, other) = varied(steps[i]).or_else(|| varied(-steps[i]))?;
+                let Some((by, other)) = varied(steps[i]).or_else(|| varied(-steps[i])) else {
+                    if has_moved {
+                        break 'fitting;
+                    }
+                    return None;
+                };
                 // In units of the step, so that all numbers are alike.
                 let sign = steps[i] / by;
                 let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
@@ -107,8 +116,8 @@ pub fn fit<T: Trial>(
                 }
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
-            let (mut is_moved, mut is_far) = (false, None);
-            // Where slopes are not new, these are to blame first.
+            let (mut moves_now, mut is_first_far) = (false, None);
+            // A move that fails with updated slopes is blamed on these: they are found anew before damping is tried.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();
@@ -118,7 +127,7 @@ pub fn fit<T: Trial>(
                 let Some(moves) = solve(damped, gradient.clone()) else {
                     break;
                 };
-                is_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
+                is_first_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
                 let moved = numbers.iter().zip(steps).zip(&moves);
                 let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
                 if let Some(other) = trial(&moved) {
@@ -127,7 +136,7 @@ pub fn fit<T: Trial>(
                     if less < left {
                         update(&mut slopes, &moves, &now, &differences);
                         are_new = false;
-                        is_moved = true;
+                        (moves_now, has_moved) = (true, true);
                         (left, now, shown, numbers) = (less, differences, other, moved);
                         damping *= 0.1;
                         break;
@@ -135,11 +144,12 @@ pub fn fit<T: Trial>(
                 }
                 damping *= 10.0;
             }
-            if is_far != Some(true) || !is_moved && are_new {
+            if is_first_far != Some(true) || !moves_now && are_new {
                 break;
             }
-            if !is_moved {
-                slopes.clear();
+            match moves_now {
+                true => round += 1,
+                false => slopes.clear(),
             }
         }
     }
@@ -158,8 +168,7 @@ pub fn fit<T: Trial>(
     })
 }
 
-/// Slopes that agree with what a move did: Broyden, A class of methods for solving nonlinear simultaneous equations, 1965. To vary each number once more would
-/// take most of the time.
+/// Slopes that agree with what a move did, by Broyden's method: to vary each number once more would take most of the time.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {

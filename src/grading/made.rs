@@ -1,4 +1,5 @@
-//! What a candidate shows on a grid: exactly, but for behaviour that no scene can say, which the textbook's tracer samples.
+//! What a candidate shows in the cells of a grid, means and variances: exactly, or sampled by the textbook's tracer, on the tiny grid and for behaviour that no
+//! scene can say.
 
 use std::{
     cell::OnceCell,
@@ -15,7 +16,7 @@ use super::{
     light::{Average, Look, STEP, is_near},
     score::Model,
     textbook::{Behaviour, Behind, Moments, Textbook, bounds},
-    work::Work,
+    work::{self, Work},
 };
 use crate::{
     area::Area,
@@ -41,8 +42,8 @@ pub struct Made {
     error: Option<Arc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
     behaved: Option<Arc<(Moments, Vec<[f64; 3]>)>>,
-    /// What samples of it show, if it behaves as a right program; made for the first that behaves otherwise.
-    samples: OnceLock<Arc<Moments>>,
+    /// What samples show of it as a right program, and their work; made for the first of those that differ from it in behaviour alone.
+    right_samples: OnceLock<(Arc<Moments>, f64)>,
 }
 
 impl Made {
@@ -54,7 +55,7 @@ impl Made {
             right: Arc::new(moments),
             error: None,
             behaved: None,
-            samples: OnceLock::new(),
+            right_samples: OnceLock::new(),
         }
     }
 
@@ -229,10 +230,14 @@ impl Candidate {
         let (like, changed) = nearest.unzip();
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
-        let sampled = |behaviour, area: Area, samples| {
+        let sample = |behaviour, area: Area, samples| {
             let textbook = Textbook::new(scene(), behaviour, self.average);
             let moments = textbook.moments(area, samples);
-            work.sampled(&textbook, area);
+            (moments, work::of_sampled(&textbook, area))
+        };
+        let sampled = |behaviour, area, samples| {
+            let (moments, cost) = sample(behaviour, area, samples);
+            work.spend(cost);
             moments
         };
         let render = |area| match samples {
@@ -260,9 +265,9 @@ impl Candidate {
         };
         // No scene says what a program does that behaves otherwise. Where its samples show something else than those of a right one, their difference comes on top.
         let behaved = (samples.is_none() && self.behaviour != Behaviour::RIGHT).then(|| {
+            let is_same = changed.is_some_and(|changed| changed.pixels() == 0);
             let is_near = |like: &&Made| {
-                let is_in_place = self.is_seen_where_it_is()
-                    || changed.is_some_and(|changed| changed.pixels() == 0);
+                let is_in_place = self.is_seen_where_it_is() || is_same;
                 like.candidate.behaviour == self.behaviour && is_in_place
             };
             let near = like
@@ -277,13 +282,16 @@ impl Candidate {
             }
             let (mut behaved, mut doubt) = Arc::unwrap_or_clone(behaved);
             let other = sampled(self.behaviour, area, SAMPLES);
-            // What others behave like that trace the same is sampled once.
-            let known = like.filter(|_| changed.is_some_and(|changed| changed.pixels() == 0));
-            let sample = || sampled(Behaviour::RIGHT, area, SAMPLES);
-            let own = match known {
-                Some(like) => like.samples.get_or_init(|| Arc::new(sample())).clone(),
-                None => Arc::new(sample()),
+            // Each of those that share samples pays for them, so that what is tried does not depend on which is the first.
+            let sample = || {
+                let (own, cost) = sample(Behaviour::RIGHT, area, SAMPLES);
+                (Arc::new(own), cost)
             };
+            let (own, cost) = match like.filter(|_| is_same) {
+                Some(like) => like.right_samples.get_or_init(sample).clone(),
+                None => sample(),
+            };
+            work.spend(cost);
             for (from, (x, y)) in area.iter().enumerate() {
                 let at = part.index(x, y);
                 let is_alike = other.mean[from] == own.mean[from]
@@ -316,7 +324,7 @@ impl Candidate {
             right,
             behaved,
             error: like.and_then(|like| like.error.clone()),
-            samples: OnceLock::new(),
+            right_samples: OnceLock::new(),
         })
     }
 

@@ -4,10 +4,10 @@
 //! are named, or wrong for an unknown reason; and how far each object is off.
 //!
 //! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
-//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
-//! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
-//! holds the picture, but for its `empty_pixels`; `select` chooses mistakes, a `patch` being the last of them, and `number_text` writes their numbers. What is
-//! the same for all pictures of a class is in the `class_cache`; `work` is what is spent on one of them.
+//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`,
+//! with its `tiles`, where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds
+//! `numbers`. A `search` holds the picture, but for its `empty_pixels`, a `level` for each grid; `select` chooses mistakes, a `patch` being the last of them, and
+//! `number_text` writes their numbers. What is the same for all pictures of a class is in the `class_cache`; `work` is what is spent on one of them.
 
 mod axes;
 mod candidate;
@@ -18,6 +18,7 @@ mod fit;
 mod grid;
 mod jpeg;
 mod layout;
+mod level;
 mod light;
 mod made;
 mod mistakes;
@@ -30,6 +31,7 @@ mod score;
 mod search;
 mod select;
 mod textbook;
+mod tiles;
 mod work;
 
 use std::{

@@ -1,4 +1,4 @@
-//! Something too many in a picture.
+//! An extra patch of one colour in a picture, which no object of the scene explains.
 
 use glam::DVec2;
 

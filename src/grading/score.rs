@@ -4,7 +4,8 @@
 //! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
 //! errors are taken to have Student's distribution with two degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
 //! 1989). Of two models that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
-//! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`).
+//! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`). `Strays` are the
+//! pixels that no sampling of a model explains.
 
 use std::{
     collections::HashMap,

@@ -1,8 +1,8 @@
-//! A picture that is compared with a scene: what it shows on grids, and how well candidates explain it.
+//! A picture under judgement: its grids, its work, and how well candidates explain it.
 
 use std::{
-    cell::{OnceCell, RefCell},
-    collections::{HashMap, VecDeque},
+    cell::RefCell,
+    collections::VecDeque,
     sync::{Arc, atomic::AtomicBool},
 };
 
@@ -12,12 +12,13 @@ use super::{
     fit::{Fitted, Trial, fit},
     grid::Grid,
     jpeg::Jpeg,
+    level::Level,
     light::Curve,
     made::Made,
     mistakes::{ROWS, Shows},
     parameters::Parameter,
     score::{Model, Score, Strays, gain, score},
-    textbook::{Behaviour, Moments},
+    textbook::Behaviour,
     work::{self, Work},
 };
 use crate::{area::Area, film::Film, scene::Scene};
@@ -32,77 +33,6 @@ const LAST: usize = 2;
 
 /// Of so many pixels in the middle of a picture, those tell of edges.
 const PIXELS_OF_EDGES: u64 = 20_000;
-
-/// A grid over a part of a picture.
-pub struct Level<'a> {
-    pub grid: Grid,
-    film: &'a Film,
-    /// The part's corner in the film.
-    corner: [u32; 2],
-    /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
-    seen: [OnceCell<Vec<[f64; 3]>>; Curve::ALL.len()],
-    /// How many samples a cell has; none if it is computed exactly.
-    samples: Option<usize>,
-    pub jpeg: Option<Jpeg>,
-    coded: OnceCell<Vec<[f64; 3]>>,
-}
-
-impl Level<'_> {
-    /// What the picture shows in the cells, as light that was encoded in a way.
-    pub fn seen(&self, curve: Curve) -> &[[f64; 3]] {
-        self.seen[curve as usize].get_or_init(|| {
-            let [left, top] = self.corner;
-            let pixel = |x, y| self.film.pixel(left + x, top + y);
-            if curve == Curve::Right {
-                return self.grid.reduce(pixel);
-            }
-            // Most pixels have one of a few bytes.
-            let known: RefCell<HashMap<u64, f64>> = RefCell::default();
-            let light = |seen: f64| {
-                let mut known = known.borrow_mut();
-                *known
-                    .entry(seen.to_bits())
-                    .or_insert_with(|| curve.light(seen))
-            };
-            self.grid.reduce(|x, y| pixel(x, y).map(light))
-        })
-    }
-
-    /// What the cells show of something whose pixels are known, all of those of a part.
-    fn reduced(&self, pixels: &Moments, part: Area) -> Moments {
-        let [left, top] = self.corner;
-        let index = |x: u32, y: u32| ((top + y) * part.width + left + x) as usize;
-        let mean = self.grid.reduce(|x, y| pixels.mean[index(x, y)]);
-        let squares = self.grid.reduce(|x, y| {
-            let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
-            [0, 1, 2].map(|i| mean[i] * mean[i] + variance[i])
-        });
-        let pairs = mean.iter().zip(squares);
-        let variance = pairs
-            .map(|(mean, squares)| [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0)))
-            .collect();
-        Moments { mean, variance }
-    }
-
-    /// What a candidate shows on it.
-    pub fn model(&self, made: &Made) -> Model {
-        let mut model = made.model(&self.grid, self.seen(made.candidate.curve));
-        if let Some(jpeg) = self.jpeg {
-            let (width, factor) = (self.grid.width(), self.grid.factor as usize);
-            let own = || jpeg.variances(&model.moments, width, factor);
-            // On cells of several pixels it is about the same for all candidates.
-            let variances = match factor {
-                1 => &own(),
-                _ => self.coded.get_or_init(own),
-            };
-            model.doubt.resize(variances.len(), [0.0; 3]);
-            for (doubt, more) in model.doubt.iter_mut().zip(variances) {
-                *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
-            }
-        }
-        model
-    }
-}
 
 /// A picture that is compared with a scene.
 pub struct Search<'a> {
@@ -139,14 +69,10 @@ impl<'a> Search<'a> {
     ) -> Self {
         let Reference { scene, part, .. } = reference;
         let part = *part;
-        let level = |area: Area, longest, samples| Level {
-            grid: Grid::new(&scene.image, area, longest),
-            film,
-            corner: [area.x - part.x, area.y - part.y],
-            seen: std::array::from_fn(|_| OnceCell::new()),
-            samples,
-            jpeg,
-            coded: OnceCell::new(),
+        let level = |area: Area, longest, samples| {
+            let grid = Grid::new(&scene.image, area, longest);
+            let corner = [area.x - part.x, area.y - part.y];
+            Level::new(grid, film, corner, samples, jpeg)
         };
         let work = Work::new(work::most(part.pixels()), cancel);
         work.spend(reference.work);
@@ -327,22 +253,39 @@ impl<'a> Search<'a> {
 
     /// What shows something else than a candidate for certain; none if it is not known.
     pub fn strays(&self, candidate: &Candidate) -> Option<Strays> {
-        self.strays_on(&self.fine, candidate)
+        self.strays_on(&self.fine, candidate, None)
     }
 
-    fn strays_on(&self, level: &Level, candidate: &Candidate) -> Option<Strays> {
-        let made = self.made(candidate, level, None)?;
+    fn strays_on(
+        &self,
+        level: &Level,
+        candidate: &Candidate,
+        like: Option<&Made>,
+    ) -> Option<Strays> {
+        let made = self.made(candidate, level, like)?;
         self.work.compared(level.grid.count());
         let seen = level.seen(candidate.curve);
         Some(Strays::new(seen, &level.model(&made), level.grid.width()))
     }
 
-    /// Whether it is known that nothing shows something else than a candidate for certain. What cells of the middle grid show for certain, pixels of theirs do.
+    /// Whether it is known that nothing shows something else than a candidate for certain.
     pub fn has_no_strays(&self, candidate: &Candidate) -> bool {
-        [&self.middle, &self.fine].into_iter().all(|level| {
-            self.strays_on(level, candidate)
-                .is_some_and(|strays| strays.is_empty())
-        })
+        self.has_none(candidate, None)
+    }
+
+    /// The same of something that was judged.
+    pub fn explains_all(&self, found: &Found) -> bool {
+        self.has_none(&found.candidate, Some(&found.made))
+    }
+
+    /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its cells is so in a pixel, if what the cells show is exact.
+    fn has_none(&self, candidate: &Candidate, like: Option<&Made>) -> bool {
+        let is_none = |level: &Level| {
+            let strays = self.strays_on(level, candidate, like);
+            strays.is_some_and(|strays| strays.is_empty())
+        };
+        let is_exact = candidate.behaviour == Behaviour::RIGHT && self.fine.jpeg.is_none();
+        (!is_exact || is_none(&self.middle)) && is_none(&self.fine)
     }
 
     /// Whether what was found beside another candidate can be seen.

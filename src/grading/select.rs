@@ -7,6 +7,7 @@
 use super::{
     candidate::{Candidate, Cause, Named},
     fit::absolute,
+    level::Level,
     light::{Average, Curve},
     made::Made,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
@@ -15,7 +16,7 @@ use super::{
     parameters::Owner,
     patch::patch,
     score::least,
-    search::{Found, Level, Search, joined, split},
+    search::{Found, Search, joined, split},
     textbook::Textbook,
 };
 use crate::{
@@ -29,7 +30,7 @@ const MOST_MISTAKES: usize = 4;
 /// So many are fitted and judged at a time, of those that leave least on the coarse grid.
 const FINALISTS: usize = 3;
 
-/// Rounds of fitting numbers to the middle grid. On a coarser one they came near, so squares, which have one valley, are not needed any more.
+/// Rounds of fitting numbers to the middle grid: none by squares, as new numbers come from a fit to a coarser one, and earlier ones from this.
 const ROUNDS: [usize; 2] = [0, 4];
 
 /// So many objects are looked at, those around which most is wrong.
@@ -49,7 +50,7 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     };
     // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
     // alone.
-    let mut is_open = search.has_no_strays(&best.candidate);
+    let mut is_open = search.explains_all(&best);
     while best.candidate.named.len() < MOST_MISTAKES
         && (is_open || !search.is_explained(&best.candidate))
         && search.work.may_go_on()
@@ -132,9 +133,9 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     if let Some((_, row)) = row
         && !is_open
         && let Some(found) = likelier(search, from, row.clone())
-        && let Some(found) = fitted(search, found)
+        && let Some(found) = refined(search, found)
         && found.cost < from.cost
-        && search.has_no_strays(&found.candidate)
+        && search.explains_all(&found)
     {
         return Some(found);
     }
@@ -152,14 +153,14 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     let mut unfitted: Vec<Found> = unfitted.collect();
     unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     let mut judged: Vec<Found> = Vec::new();
-    // What explains all is beaten only by what does so with fewer numbers.
-    let mut enough = usize::MAX;
+    // What explains all is taken to be beaten only by what has fewer numbers: to fit those of all would take most of the time.
+    let mut fewest = usize::MAX;
     for found in unfitted {
-        if found.candidate.fitted() < enough
-            && let Some(found) = fitted(search, found)
+        if found.candidate.fitted() < fewest
+            && let Some(found) = refined(search, found)
         {
-            if !is_open && search.has_no_strays(&found.candidate) {
-                enough = found.candidate.fitted();
+            if !is_open && search.explains_all(&found) {
+                fewest = found.candidate.fitted();
             }
             judged.push(found);
         }
@@ -171,7 +172,6 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     // A row says more than a number that makes as good as the same picture.
     let is_row = |found: &Found| found.candidate.named.last().is_some_and(Named::is_row);
     let enough = least + AS_GOOD * (from.cost - least);
-    let mut judged = judged;
     judged.sort_by(|one, other| {
         let rank = |found: &Found| (!(is_row(found) && found.cost <= enough), found.cost);
         let (one, other) = (rank(one), rank(other));
@@ -185,7 +185,7 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
             false => best.cost < from.cost,
         };
         is_likelier
-            && (are_all_tried || search.has_no_strays(&best.candidate))
+            && (are_all_tried || search.explains_all(best))
             && search.is_seen(best, &from.candidate)
     };
     // The few that were judged are looked at in all pixels, however much work that is.
@@ -207,8 +207,8 @@ fn likelier(search: &Search, from: &Found, candidate: Candidate) -> Option<Found
     (found.score.likelihood > from.score.likelihood).then_some(found)
 }
 
-/// The same with its numbers fitted.
-fn fitted(search: &Search, found: Found) -> Option<Found> {
+/// A candidate that was judged, with its numbers fitted to the middle grid, and judged again.
+fn refined(search: &Search, found: Found) -> Option<Found> {
     let candidate = search.fitted(found.candidate, &search.middle, &found.made, ROUNDS)?;
     search.judged_on(&search.middle, candidate, Some(&found.made))
 }
@@ -339,7 +339,7 @@ fn without_needless(search: &Search, mut found: Found) -> Found {
         let without = Candidate::of(search.scene, &named).and_then(|candidate| {
             let made = search.made(&candidate, &search.coarse, None)?;
             let candidate = search.fitted(candidate, &search.coarse, &made, [3, 1])?;
-            fitted(search, search.judged_on(&search.middle, candidate, None)?)
+            refined(search, search.judged_on(&search.middle, candidate, None)?)
         });
         match without {
             Some(without) if without.cost <= found.cost => found = without,

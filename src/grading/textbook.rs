@@ -11,6 +11,7 @@ use glam::{BVec3, DVec2, DVec3};
 use super::{
     axes::{Axes, radians},
     light::Average,
+    tiles::Tiles,
 };
 use crate::{
     area::Area,
@@ -92,7 +93,7 @@ impl Squares {
     fn is_first(self, x: f64, z: f64) -> bool {
         // Beyond what an i64 holds no square is told from another.
         let odd = |x: f64| x as i64 & 1 == 1;
-        // Processors of the oldest kind have no instruction for this, and it is asked of each ray.
+        // `f64::floor` is a call where a processor need not have an instruction for it, and each ray that meets a board asks.
         let floor = |x: f64| {
             let whole = x as i64;
             whole.wrapping_sub(i64::from(whole as f64 > x))
@@ -255,14 +256,15 @@ impl Textbook {
         let count = places.len() as f64;
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
-            let first = self.color(corner + places[0]);
             // To ask the corners first is more work than a few samples are.
-            let is_asked = places.len() > CORNERS.len() + 1;
-            let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
-            // Squares of the size of half a cell show the same in all corners.
-            let asked = CORNERS.iter().chain(&places[1..places.len().min(8)]);
-            if is_asked && { asked }.all(is_flat) {
-                return (first, [0.0; 3]);
+            if places.len() > CORNERS.len() + 1 {
+                let first = self.color(corner + places[0]);
+                let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
+                // Squares of the size of half a cell show the same in all corners.
+                let probes = CORNERS.iter().chain(places.iter().skip(1).step_by(5));
+                if { probes }.all(is_flat) {
+                    return (first, [0.0; 3]);
+                }
             }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
             for &place in &places {
@@ -452,71 +454,6 @@ pub fn bounds(shape: &Shape, axes: &Axes, is_before: bool) -> Option<[DVec2; 2]>
     }
     // Room for roundings.
     Some([bounds[0] - 1e-6, bounds[1] + 1e-6])
-}
-
-/// The shapes that may be seen in each tile of a picture, in their order.
-struct Tiles {
-    /// The corner of the first tile, and how many tiles there are in a pixel.
-    corner: DVec2,
-    scale: DVec2,
-    columns: usize,
-    rows: usize,
-    /// Where those of each tile begin among all.
-    starts: Vec<u32>,
-    shapes: Vec<u32>,
-}
-
-/// So many tiles are in a row and in a column at most: as many as the cells of the smallest grid, which most scenes are compared on.
-const MOST_TILES: f64 = 32.0;
-
-impl Tiles {
-    fn new(bounds: &[[DVec2; 2]], corner: DVec2, size: DVec2) -> Self {
-        let count = size.ceil().min(DVec2::splat(MOST_TILES));
-        let (columns, rows) = (count.x as usize, count.y as usize);
-        let scale = count / size;
-        // Casts leave nothing below 0, nor of what is no number.
-        let within = |least: f64, most: f64, count: usize| {
-            least.floor() as usize..((most.floor() + 1.0) as usize).min(count)
-        };
-        let tiles = |[least, most]: &[DVec2; 2]| {
-            let [least, most] = [least, most].map(|place| (place - corner) * scale);
-            let columns_of = within(least.x, most.x, columns);
-            within(least.y, most.y, rows)
-                .flat_map(move |row| columns_of.clone().map(move |column| row * columns + column))
-        };
-        let mut starts = vec![0; columns * rows + 1];
-        for tile in bounds.iter().flat_map(tiles) {
-            starts[tile + 1] += 1;
-        }
-        for tile in 0..columns * rows {
-            starts[tile + 1] += starts[tile];
-        }
-        let mut shapes = vec![0; starts[columns * rows] as usize];
-        let mut ends = starts.clone();
-        for (shape, bounds) in (0..).zip(bounds) {
-            for tile in tiles(bounds) {
-                shapes[ends[tile] as usize] = shape;
-                ends[tile] += 1;
-            }
-        }
-        Self {
-            corner,
-            scale,
-            columns,
-            rows,
-            starts,
-            shapes,
-        }
-    }
-
-    /// Those that may be seen at a place.
-    fn at(&self, place: DVec2) -> &[u32] {
-        let tile = (place - self.corner) * self.scale;
-        let column = (tile.x as usize).min(self.columns - 1);
-        let row = (tile.y as usize).min(self.rows - 1);
-        let at = row * self.columns + column;
-        &self.shapes[self.starts[at] as usize..self.starts[at + 1] as usize]
-    }
 }
 
 /// The vertices of a triangle: left and right base end, apex.

@@ -1,6 +1,6 @@
 //! How much work may be spent on a picture.
 //!
-//! Work is counted where it arises, not timed: the same picture gets the same verdict. A unit is that of the exact picture, some 50 ns.
+//! Work is counted where it arises, not timed: the same picture gets the same verdict. A unit is that of the exact picture, some 30 ns.
 
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
@@ -38,6 +38,13 @@ pub fn most(pixels: u64) -> f64 {
 /// The work of an exact picture of so many objects.
 pub fn of_exact(units: u64, objects: usize, pixels: u64) -> f64 {
     units as f64 + WORLD_OBJECT * objects as f64 + CELL * pixels as f64
+}
+
+/// The work of sampling a part of a picture, so much of which was asked of shapes.
+pub fn of_sampled(textbook: &Textbook, part: Area) -> f64 {
+    TEST * textbook.tested() as f64
+        + OBJECT * textbook.objects() as f64
+        + CELL * part.pixels() as f64
 }
 
 impl<'a> Work<'a> {
@@ -111,13 +118,5 @@ impl<'a> Work<'a> {
     /// So many cells are compared.
     pub fn compared(&self, cells: usize) {
         self.spend(CELL * cells as f64);
-    }
-
-    /// What was sampled of a part of a picture.
-    pub fn sampled(&self, textbook: &Textbook, part: Area) {
-        let objects = textbook.objects() as f64;
-        self.spend(
-            TEST * textbook.tested() as f64 + OBJECT * objects + CELL * part.pixels() as f64,
-        );
     }
 }
