@@ -261,8 +261,8 @@ impl Textbook {
                 let first = self.color(corner + places[0]);
                 let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
                 // Squares of the size of half a cell show the same in all corners.
-                let probes = CORNERS.iter().chain(places.iter().skip(1).step_by(5));
-                if { probes }.all(is_flat) {
+                let mut probes = CORNERS.iter().chain(&places[1..8]);
+                if probes.all(is_flat) {
                     return (first, [0.0; 3]);
                 }
             }
