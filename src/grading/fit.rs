@@ -1,8 +1,8 @@
 //! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small differences and absolute values of large ones.
 //!
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
-//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can. Slopes are found by varying each number once, and then updated by what each
-//! move does (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
+//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can. Slopes are found by varying each
+//! number once, and then updated by what each move does (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
 
 /// A round whose first move changes no number by more than this part of its step is the last.
 const CLOSE: f64 = 0.05;
