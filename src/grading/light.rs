@@ -1,6 +1,9 @@
 //! What a program may do to light: average something else, encode it otherwise, mix its channels.
 
-use crate::color::{linear_to_srgb, srgb_to_linear};
+use crate::{
+    color::{Color, linear_to_srgb, srgb_to_linear},
+    exact::ExactPixel,
+};
 
 /// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
 pub const STEP: f64 = 1.0 / 255.0;
@@ -118,4 +121,21 @@ pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
         (linear_to_srgb(one[i]) - linear_to_srgb(other[i])).abs() < 1.5 * STEP
     };
     (0..3).all(is_near)
+}
+
+/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel and its square.
+pub fn numbers(average: Average) -> impl Fn(Color) -> [f64; 6] {
+    move |color| {
+        let [r, g, b] = color.to_linear().map(|light| average.of(light));
+        [r, g, b, r * r, g * g, b * b]
+    }
+}
+
+/// The mean and the variance of an exact pixel.
+pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
+    let [r, g, b, rr, gg, bb] = pixel.mean;
+    let doubt = pixel.bound * pixel.bound;
+    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
+    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
+    ([r, g, b], variances)
 }

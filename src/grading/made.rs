@@ -13,15 +13,13 @@ use super::{
     candidate::Candidate,
     grid::Grid,
     layout::Layout,
-    light::{Average, Look, STEP, is_near},
+    light::{Look, STEP, is_near},
     score::Model,
     textbook::{Behaviour, Behind, Moments, Textbook, bounds},
     work::{self, Work},
 };
 use crate::{
     area::Area,
-    color::Color,
-    exact::ExactPixel,
     scene::{Camera, Scene},
 };
 
@@ -99,23 +97,6 @@ impl Made {
         model.look(&self.candidate.looks, grid, seen);
         model
     }
-}
-
-/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel and its square.
-pub fn numbers(average: Average) -> impl Fn(Color) -> [f64; 6] {
-    move |color| {
-        let [r, g, b] = color.to_linear().map(|light| average.of(light));
-        [r, g, b, r * r, g * g, b * b]
-    }
-}
-
-/// The mean and the variance of an exact pixel.
-pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
-    let [r, g, b, rr, gg, bb] = pixel.mean;
-    let doubt = pixel.bound * pixel.bound;
-    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
-    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
-    ([r, g, b], variances)
 }
 
 impl Model {

@@ -145,7 +145,7 @@ impl<'a> Reference<'a> {
     /// It is cancelled, or too large.
     pub fn new(scene: &'a Scene, part: Area, control: &Control) -> Result<Self, RenderError> {
         let world = World::new_unless(scene, control.cancel)?;
-        let integrator = Integrator::of(&world, made::numbers(Average::Light));
+        let integrator = Integrator::of(&world, light::numbers(Average::Light));
         let none = vec![[0.0; 3]; part.pixels() as usize];
         let all = Mutex::new(Moments {
             mean: none.clone(),
@@ -155,7 +155,7 @@ impl<'a> Reference<'a> {
             let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
             for ((x, y), pixel) in tile.iter().zip(pixels) {
                 let at = part.index(x, y);
-                (all.mean[at], all.variance[at]) = made::moments(pixel);
+                (all.mean[at], all.variance[at]) = light::moments(pixel);
             }
         })?;
         let moments = all.into_inner().unwrap_or_else(PoisonError::into_inner);

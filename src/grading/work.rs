@@ -5,8 +5,7 @@
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
 use super::{
-    light::Average,
-    made::{moments, numbers},
+    light::{Average, moments, numbers},
     textbook::{Moments, Textbook},
 };
 use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};

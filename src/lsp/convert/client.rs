@@ -3,8 +3,11 @@
 use line_index::WideEncoding;
 use serde_json::{Value, json};
 
-use super::converter::{FIX_ALL, QUICK_FIX};
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
+
+/// The kinds of what mends one mistake, and all of them.
+pub const QUICK_FIX: &str = "quickfix";
+pub const FIX_ALL: &str = "source.fixAll";
 
 /// What the client understands.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use line_index::WideEncoding;
 use serde_json::{Value, json};
 
-use super::client::Client;
+use super::client::{Client, FIX_ALL, QUICK_FIX};
 use crate::{
     color::Color,
     diagnostic::{Diagnostic, Edit, Fix, Severity},
@@ -212,10 +212,6 @@ impl Converter<'_> {
         json!({ "label": label, "textEdit": edit })
     }
 }
-
-/// The kinds of what mends one mistake, and all of them.
-pub const QUICK_FIX: &str = "quickfix";
-pub const FIX_ALL: &str = "source.fixAll";
 
 /// The changes of a text: each of a range, or of the whole text if there is none.
 pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {

@@ -5,5 +5,5 @@ mod completion;
 mod converter;
 mod tokens;
 
-pub use client::{Client, capabilities};
-pub use converter::{Converter, FIX_ALL, QUICK_FIX, changes, color};
+pub use client::{Client, FIX_ALL, QUICK_FIX, capabilities};
+pub use converter::{Converter, changes, color};
