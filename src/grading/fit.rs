@@ -116,7 +116,7 @@ pub fn fit<T: Trial>(
                 }
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
-            let (mut moves_now, mut is_first_far) = (false, None);
+            let (mut has_improved, mut is_far) = (false, None);
             // A move that fails with updated slopes is blamed on these: they are found anew before damping is tried.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
@@ -127,7 +127,7 @@ pub fn fit<T: Trial>(
                 let Some(moves) = solve(damped, gradient.clone()) else {
                     break;
                 };
-                is_first_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
+                is_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
                 let moved = numbers.iter().zip(steps).zip(&moves);
                 let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
                 if let Some(other) = trial(&moved) {
@@ -136,7 +136,7 @@ pub fn fit<T: Trial>(
                     if less < left {
                         update(&mut slopes, &moves, &now, &differences);
                         are_new = false;
-                        (moves_now, has_moved) = (true, true);
+                        (has_improved, has_moved) = (true, true);
                         (left, now, shown, numbers) = (less, differences, other, moved);
                         damping *= 0.1;
                         break;
@@ -144,10 +144,10 @@ pub fn fit<T: Trial>(
                 }
                 damping *= 10.0;
             }
-            if is_first_far != Some(true) || !moves_now && are_new {
+            if is_far != Some(true) || !has_improved && are_new {
                 break;
             }
-            match moves_now {
+            match has_improved {
                 true => round += 1,
                 false => slopes.clear(),
             }
