@@ -23,13 +23,6 @@ pub struct Named {
     pub cause: Cause,
 }
 
-impl Named {
-    /// Whether it is a row of the table.
-    pub fn is_row(&self) -> bool {
-        matches!(self.cause, Cause::Row(_) | Cause::ObjectRow(..))
-    }
-}
-
 /// What a mistake does.
 #[derive(Clone, Debug)]
 pub enum Cause {

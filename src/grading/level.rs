@@ -3,6 +3,7 @@
 use std::{
     cell::{OnceCell, RefCell},
     collections::HashMap,
+    sync::Arc,
 };
 
 use super::{grid::Grid, jpeg::Jpeg, light::Curve, made::Made, score::Model, textbook::Moments};
@@ -20,6 +21,8 @@ pub struct Level<'a> {
     pub samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
     coded: OnceCell<Vec<[f64; 3]>>,
+    /// What a right program makes on it.
+    pub right: OnceCell<Arc<Made>>,
 }
 
 impl<'a> Level<'a> {
@@ -39,6 +42,7 @@ impl<'a> Level<'a> {
             samples,
             jpeg,
             coded: OnceCell::new(),
+            right: OnceCell::new(),
         }
     }
 

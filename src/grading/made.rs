@@ -1,10 +1,7 @@
 //! What a candidate shows in the cells of a grid, means and variances: exactly, or sampled by the textbook's tracer, on the tiny grid and for behaviour that no
 //! scene can say.
 
-use std::{
-    cell::OnceCell,
-    sync::{Arc, OnceLock},
-};
+use std::{cell::OnceCell, sync::Arc};
 
 use glam::DVec2;
 
@@ -16,7 +13,7 @@ use super::{
     light::{Look, STEP, is_near},
     score::Model,
     textbook::{Behaviour, Behind, Moments, Textbook, bounds},
-    work::{self, Work},
+    work::Work,
 };
 use crate::{
     area::Area,
@@ -40,8 +37,6 @@ pub struct Made {
     error: Option<Arc<[[f64; 3]]>>,
     /// What it makes, and the variance of these means.
     behaved: Option<Arc<(Moments, Vec<[f64; 3]>)>>,
-    /// What samples show of it as a right program, and their work; made for the first of those that differ from it in behaviour alone.
-    right_samples: OnceLock<(Arc<Moments>, f64)>,
 }
 
 impl Made {
@@ -53,7 +48,6 @@ impl Made {
             right: Arc::new(moments),
             error: None,
             behaved: None,
-            right_samples: OnceLock::new(),
         }
     }
 
@@ -196,34 +190,28 @@ impl Candidate {
         let part = self.layout.sources(grid.cells, grid.size());
         let is_alike = |like: &&Made| {
             let other = &like.candidate;
-            let behaves = samples.is_none()
-                || other.behaviour == self.behaviour && self.is_seen_where_it_is();
-            let is_in_place = other.layout.is_shifted() == self.layout.is_shifted();
-            like.part == part && is_in_place && behaves
+            // Other behaviour is told by samples alone, and may show objects where they are not.
+            let is_in_place =
+                self.behaviour.behind == Behind::Unseen && !self.behaviour.is_squeezed;
+            let behaves = samples.is_none() || other.behaviour == self.behaviour && is_in_place;
+            let are_shifted = other.layout.is_shifted() == self.layout.is_shifted();
+            like.part == part && are_shifted && behaves
         };
         let likes = likes.iter().copied().filter(is_alike);
         let likes =
             likes.filter_map(|like| Some((like, self.changed(&like.candidate, grid, part)?)));
-        let nearest = likes.min_by_key(|(like, changed)| {
-            let behaves = like.candidate.behaviour == self.behaviour;
-            (!behaves, changed.pixels())
-        });
+        let nearest = likes.min_by_key(|(_, changed)| changed.pixels());
         let (like, changed) = nearest.unzip();
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
-        let sample = |behaviour, area: Area, samples| {
+        let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
+            work.sampled(self.scene.objects.len(), samples, area)?;
             let textbook = Textbook::new(scene(), behaviour, self.average);
-            let moments = textbook.moments(area, samples);
-            (moments, work::of_sampled(&textbook, area))
-        };
-        let sampled = |behaviour, area, samples| {
-            let (moments, cost) = sample(behaviour, area, samples);
-            work.spend(cost);
-            moments
+            Some(textbook.moments(area, samples))
         };
         let render = |area| match samples {
             None => work.exact_moments(scene(), self.average, area),
-            Some(samples) => Some(sampled(self.behaviour, area, samples)),
+            Some(samples) => sampled(self.behaviour, area, samples),
         };
         let right = match (like, changed) {
             (Some(like), Some(area)) if area.pixels() == 0 => Arc::clone(&like.right),
@@ -244,68 +232,16 @@ impl Candidate {
             }
             _ => Arc::new(render(part)?),
         };
-        // No scene says what a program does that behaves otherwise. Where its samples show something else than those of a right one, their difference comes on top.
-        let behaved = (samples.is_none() && self.behaviour != Behaviour::RIGHT).then(|| {
-            let is_same = changed.is_some_and(|changed| changed.pixels() == 0);
-            let is_near = |like: &&Made| {
-                let is_in_place = self.is_seen_where_it_is() || is_same;
-                like.candidate.behaviour == self.behaviour && is_in_place
-            };
-            let near = like
-                .filter(is_near)
-                .and_then(|like| Some((like.behaved.clone()?, changed?)));
-            let (behaved, area) = near.unwrap_or_else(|| {
-                let doubt = vec![[0.0; 3]; right.mean.len()];
-                (Arc::new((Moments::clone(&right), doubt)), part)
-            });
-            if area.pixels() == 0 {
-                return behaved;
-            }
-            let (mut behaved, mut doubt) = Arc::unwrap_or_clone(behaved);
-            let other = sampled(self.behaviour, area, SAMPLES);
-            // Each of those that share samples pays for them, so that what is tried does not depend on which is the first.
-            let sample = || {
-                let (own, cost) = sample(Behaviour::RIGHT, area, SAMPLES);
-                (Arc::new(own), cost)
-            };
-            let (own, cost) = match like.filter(|_| is_same) {
-                Some(like) => like.right_samples.get_or_init(sample).clone(),
-                None => sample(),
-            };
-            work.spend(cost);
-            for (from, (x, y)) in area.iter().enumerate() {
-                let at = part.index(x, y);
-                let is_alike = other.mean[from] == own.mean[from]
-                    && other.variance[from] == own.variance[from];
-                let is_flat = other.variance[from] == [0.0; 3];
-                let sum = |i: usize| match is_flat {
-                    true => other.mean[from][i],
-                    false => (right.mean[at][i] + other.mean[from][i] - own.mean[from][i])
-                        .clamp(0.0, 1.0),
-                };
-                let variances = |i: usize| {
-                    (other.variance[from][i] + if is_flat { 0.0 } else { own.variance[from][i] })
-                        / SAMPLES as f64
-                        + MISSED * MISSED
-                };
-                (behaved.mean[at], behaved.variance[at], doubt[at]) = match is_alike {
-                    true => (right.mean[at], right.variance[at], [0.0; 3]),
-                    false => (
-                        [0, 1, 2].map(sum),
-                        other.variance[from],
-                        [0, 1, 2].map(variances),
-                    ),
-                };
-            }
-            Arc::new((behaved, doubt))
-        });
+        let behaved = match samples.is_none() && self.behaviour != Behaviour::RIGHT {
+            true => Some(Arc::new(behaved(&right, &sampled, self.behaviour, part)?)),
+            false => None,
+        };
         Some(Made {
             candidate: self.clone(),
             part,
             right,
             behaved,
             error: like.and_then(|like| like.error.clone()),
-            right_samples: OnceLock::new(),
         })
     }
 
@@ -329,11 +265,6 @@ impl Candidate {
             error: Some(error.collect()),
             ..exact.clone()
         })
-    }
-
-    /// Whether objects are seen only where they are.
-    fn is_seen_where_it_is(&self) -> bool {
-        self.behaviour.behind == Behind::Unseen && !self.behaviour.is_squeezed
     }
 
     /// The part of a part of the picture, before it is laid out, outside of which two candidates show the same; none where that is not known.
@@ -388,4 +319,26 @@ impl Candidate {
             height: bottom.saturating_sub(y),
         })
     }
+}
+
+/// What samples show of a program that behaves otherwise, which no scene can say, and the variance of these means; where samples of a right one show the same,
+/// it is what that shows exactly.
+fn behaved(
+    right: &Moments,
+    sampled: &dyn Fn(Behaviour, Area, usize) -> Option<Moments>,
+    behaviour: Behaviour,
+    part: Area,
+) -> Option<(Moments, Vec<[f64; 3]>)> {
+    let own = sampled(Behaviour::RIGHT, part, SAMPLES)?;
+    let mut behaved = sampled(behaviour, part, SAMPLES)?;
+    let mut doubt = vec![[0.0; 3]; own.mean.len()];
+    for at in 0..own.mean.len() {
+        let is_alike = |one: &[[f64; 3]], other: &[[f64; 3]]| one[at] == other[at];
+        if is_alike(&own.mean, &behaved.mean) && is_alike(&own.variance, &behaved.variance) {
+            (behaved.mean[at], behaved.variance[at]) = (right.mean[at], right.variance[at]);
+        } else {
+            doubt[at] = behaved.variance[at].map(|one| one / SAMPLES as f64 + MISSED * MISSED);
+        }
+    }
+    Some((behaved, doubt))
 }

@@ -4,15 +4,14 @@
 //! are named, or wrong for an unknown reason; and how far each object is off.
 //!
 //! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
-//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`,
-//! with its `tiles`, where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds
-//! `numbers`. A `search` holds the picture, but for its `empty_pixels`, a `level` for each grid; `select` chooses mistakes, a `patch` being the last of them, and
-//! `number_text` writes their numbers. What is the same for all pictures of a class is in the `class_cache`; `work` is what is spent on one of them.
+//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
+//! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
+//! holds the picture, but for its `empty_pixels`, a `level` for each grid; `select` chooses mistakes, a `patch` being the last of them, and `number_text` writes
+//! their numbers. `work` is what is spent on a picture.
 
 mod axes;
 mod candidate;
 mod changes;
-mod class_cache;
 mod empty_pixels;
 mod fit;
 mod grid;
@@ -31,7 +30,6 @@ mod score;
 mod search;
 mod select;
 mod textbook;
-mod tiles;
 mod work;
 
 use std::{
@@ -54,7 +52,6 @@ use crate::{
 
 use self::{
     candidate::Candidate,
-    class_cache::ClassCache,
     empty_pixels::without_empty,
     light::Average,
     made::Made,
@@ -134,7 +131,6 @@ pub struct Reference<'a> {
     right: Arc<Made>,
     /// The work of making it.
     work: f64,
-    shared: ClassCache,
 }
 
 impl<'a> Reference<'a> {
@@ -166,7 +162,6 @@ impl<'a> Reference<'a> {
             part,
             right: Arc::new(Made::new(Candidate::right(scene), part, moments)),
             work,
-            shared: ClassCache::default(),
         })
     }
 

@@ -16,8 +16,8 @@ use crate::color::{Color, linear_to_srgb};
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
 
-/// So many parameters of objects, so many others, and so many rows are tried on the coarse grid.
-pub const FITTED: usize = 4;
+/// So many parameters of objects and so many others are fitted on the coarse grid.
+const FITTED: usize = 4;
 
 /// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
 pub fn numbers(

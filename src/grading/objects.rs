@@ -5,12 +5,14 @@ use glam::{DVec2, DVec3};
 use super::{
     axes::Axes,
     candidate::Candidate,
-    light::Average,
     parameters::Owner,
     search::Search,
-    textbook::{Behaviour, Textbook, corners, vertices},
+    textbook::{corners, vertices},
 };
-use crate::scene::{Scene, Shape};
+use crate::{
+    scene::{Scene, Shape},
+    tracer::World,
+};
 
 /// A move of less than this, in pixels, is none.
 const HALF_PIXEL: f64 = 0.5;
@@ -67,10 +69,13 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
     };
     let strays = search.strays(&plain).unwrap_or_default();
     let grid = &search.fine.grid;
-    let textbook = Textbook::new(&plain.drawn(grid), Behaviour::RIGHT, Average::Light);
+    let world = World::new_unless(&plain.drawn(grid), search.cancel).ok();
     let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
-    let labels = textbook.labels(grid.cells).into_iter();
-    let labels: Vec<Option<usize>> = labels.map(|label| label.map(|at| drawn[at])).collect();
+    let labels = grid
+        .cells
+        .iter()
+        .map(|(x, y)| Some(drawn[world.as_ref()?.object_at(x, y)?]));
+    let labels: Vec<Option<usize>> = labels.collect();
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let cells = grid.cells;
     let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);

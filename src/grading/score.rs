@@ -117,31 +117,11 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
         }
     };
     let known: Vec<Known> = (0..seen.len()).map(known).collect();
-    // What pixels have that are of one colour and right is counted once.
-    let is_plain = |one: &Known| {
-        one.variance == [0.0; 3]
-            && one
-                .difference
-                .iter()
-                .zip(one.rounding)
-                .all(|(d, r)| d * d <= r)
-    };
-    let others: Vec<(usize, Known)> = known
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(|(_, one)| !is_plain(one))
-        .collect();
-    let plain: f64 = known
-        .iter()
-        .filter(|one| is_plain(one))
-        .map(|one| one.density(0.0))
-        .sum();
     // 1/n, which is 1 at most.
     let mut noise: f64 = 1.0;
     for _ in 0..ROUNDS {
         let (mut above, mut below) = (0.0, 0.0);
-        for (_, one) in &others {
+        for one in &known {
             let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(noise));
             for i in 0..3 {
                 let total = one.variance[i] * noise + one.rounding[i];
@@ -159,18 +139,17 @@ pub fn score(seen: &[[f64; 3]], model: &Model) -> Score {
         let own = rounding(model.curve.seen(*light), Curve::Right);
         libm::log(own / rounding(*light, model.curve))
     };
-    let mut likelihood = plain
-        - match model.curve {
-            Curve::Right => 0.0,
-            _ => seen.iter().flatten().map(stretch).sum::<f64>(),
-        };
+    let mut likelihood = match model.curve {
+        Curve::Right => 0.0,
+        _ => -seen.iter().flatten().map(stretch).sum::<f64>(),
+    };
     let mut off = vec![0.0; known.len()];
     let (mut squares, mut expected) = (0.0, 0.0);
     // Of pixels of several colours: the variances of a sample, and the squared differences beyond rounding.
     let (mut of_samples, mut beyond) = (0.0, 0.0);
-    for (at, one) in &others {
+    for (at, one) in known.iter().enumerate() {
         likelihood += one.density(noise);
-        off[*at] = one.off(noise);
+        off[at] = one.off(noise);
         for i in 0..3 {
             let square = one.difference[i] * one.difference[i];
             squares += square;

@@ -106,10 +106,7 @@ impl<'a> Search<'a> {
             let right = Candidate::right(self.scene);
             known.extend(match self.reduced(candidate, level) {
                 Some(same) => vec![same],
-                None => {
-                    let all = [self.shared(candidate, level), self.reduced(&right, level)];
-                    all.into_iter().flatten().collect()
-                }
+                None => self.reduced(&right, level).into_iter().collect(),
             });
         }
         let likes: Vec<&Made> = like
@@ -135,47 +132,14 @@ impl<'a> Search<'a> {
         let is_same = |made: &&Arc<Made>| made.part == fine && made.candidate.traces_as(candidate);
         let reduce = |made: &Made| {
             let moments = level.reduced(made.moments(), fine);
-            Made::new(made.candidate.clone(), level.grid.cells, moments)
+            Arc::new(Made::new(made.candidate.clone(), level.grid.cells, moments))
         };
         let right = &self.reference.right;
         if is_same(&right) {
-            let shared = &self.reference.shared;
-            return shared
-                .get(&level.grid, level.samples, "", || {
-                    (Some(reduce(right)), 0.0)
-                })
-                .0;
+            return Some(Arc::clone(level.right.get_or_init(|| reduce(right))));
         }
         let last = self.last.borrow();
-        last.iter().find(is_same).map(|made| Arc::new(reduce(made)))
-    }
-
-    /// What a program shows that has the scene's own numbers, and one mistake that is a row, is the same for all pictures; most often it differs in a part from
-    /// what a candidate shows.
-    fn shared(&self, candidate: &Candidate, level: &Level) -> Option<Arc<Made>> {
-        let mut rows = candidate.named.iter().filter(|named| named.is_row());
-        let row = rows.next()?;
-        let is_small = level.grid.count() as u64 <= PIXELS_OF_EDGES;
-        (is_small && rows.next().is_none()).then_some(())?;
-        let base = Candidate::right(self.scene).with(row.clone())?;
-        let (one, other) = (&base.scene, &candidate.scene);
-        (one.camera == other.camera && one.image == other.image).then_some(())?;
-        let make = || {
-            let left = work::most(self.fine.grid.count() as u64) - self.reference.work;
-            let work = Work::new(left.max(0.0), self.cancel);
-            let right = self.reduced(&Candidate::right(self.scene), level);
-            let likes: Vec<&Made> = right.iter().map(|right| &**right).collect();
-            let made = base.made(&level.grid, None, &likes, &work);
-            (made, work.spent())
-        };
-        // Programs that err by half a pixel trace the same pixels, and show each of them in another place.
-        let mistake = match base.layout.is_shifted() {
-            true => row.id,
-            false => &row.message,
-        };
-        let (made, work) = self.reference.shared.get(&level.grid, None, mistake, make);
-        self.work.spend(work);
-        made
+        last.iter().find(is_same).map(|made| reduce(made))
     }
 
     /// What a candidate shows on the tiny grid, for others to be compared with it.

@@ -1,5 +1,4 @@
-//! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times; then what is not needed any more
-//! goes.
+//! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times.
 //!
 //! A tiny grid and a coarse one tell which mistakes are worth a look, a finer one fits their numbers and judges them. What shows only where
 //! colours meet is judged on the pixels.
@@ -7,21 +6,19 @@
 use super::{
     candidate::{Candidate, Cause, Named},
     fit::absolute,
-    level::Level,
-    light::{Average, Curve},
+    light::Curve,
     made::Made,
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
     number_text,
-    numbers::{FITTED, numbers},
+    numbers::numbers,
     parameters::Owner,
     patch::patch,
-    score::least,
     search::{Found, Search, joined, split},
-    textbook::Textbook,
 };
 use crate::{
     cancel::{self, Cancelled},
     scene::Scene,
+    tracer::World,
 };
 
 /// So many mistakes are named at most.
@@ -35,9 +32,6 @@ const ROUNDS: [usize; 2] = [0, 4];
 
 /// So many objects are looked at, those around which most is wrong.
 const SUSPECTS: usize = 12;
-
-/// The part of what the best one explains that another may leave to be as good.
-const AS_GOOD: f64 = 1e-3;
 
 /// A sample in the middle of a pixel makes as little noise as two random ones; more than this come of several.
 const ONE: f64 = 3.0;
@@ -58,9 +52,6 @@ pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     {
         best = next;
         is_open = false;
-    }
-    if best.candidate.named.len() > 1 {
-        best = without_needless(search, best);
     }
     let short = shortened(search, best);
     let mut best = with_edges(search, short, None)?;
@@ -126,8 +117,7 @@ fn with_edges(
 fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     let coarse = search.made(&from.candidate, &search.coarse, None)?;
     let suspects = suspects(search, from);
-    let tiny = search.made_to_compare(&from.candidate)?;
-    let mut tried = rows(search, from, [&tiny, &coarse], &suspects);
+    let mut tried = rows(search, from, &coarse, &suspects);
     // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
     let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, row)) = row
@@ -141,44 +131,20 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     }
     // Half of the work that is left is left for judging those that were tried.
     let most = search.work.keep(0.5);
+    let tiny = search.made_to_compare(&from.candidate)?;
     tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
-    let are_all_numbers_tried = search.work.may_go_on();
     search.work.restore(most);
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
     let finalists = tried
         .into_iter()
         .take(FINALISTS)
         .map(|(_, candidate)| candidate);
-    let unfitted = finalists.filter_map(|candidate| likelier(search, from, candidate));
-    let mut unfitted: Vec<Found> = unfitted.collect();
-    unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-    let mut judged: Vec<Found> = Vec::new();
-    // What explains all is taken to be beaten only by what has fewer numbers: to fit those of all would take most of the time.
-    let mut fewest = usize::MAX;
-    for found in unfitted {
-        if found.candidate.fitted() < fewest
-            && let Some(found) = refined(search, found)
-        {
-            if !is_open && search.explains_all(&found) {
-                fewest = found.candidate.fitted();
-            }
-            judged.push(found);
-        }
-    }
-    let least = judged
-        .iter()
-        .map(|found| found.cost)
-        .fold(f64::INFINITY, f64::min);
-    // A row says more than a number that makes as good as the same picture.
-    let is_row = |found: &Found| found.candidate.named.last().is_some_and(Named::is_row);
-    let enough = least + AS_GOOD * (from.cost - least);
-    judged.sort_by(|one, other| {
-        let rank = |found: &Found| (!(is_row(found) && found.cost <= enough), found.cost);
-        let (one, other) = (rank(one), rank(other));
-        one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
-    });
+    let judged = finalists.filter_map(|candidate| likelier(search, from, candidate));
+    let judged = judged.filter_map(|found| refined(search, found));
+    let mut judged: Vec<Found> = judged.collect();
+    judged.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     // Where not all were tried, the best of them need not be the best of all; what explains all is.
-    let are_all_tried = search.work.may_go_on() && are_all_numbers_tried;
+    let are_all_tried = search.work.may_go_on() && !search.work.is_cut();
     let is_better = |best: &Found| {
         let is_likelier = match is_open {
             true => search.gain(&search.middle, from, best) > 0.0,
@@ -213,13 +179,8 @@ fn refined(search: &Search, found: Found) -> Option<Found> {
     search.judged_on(&search.middle, candidate, Some(&found.made))
 }
 
-/// The rows of the table that leave least on the tiny grid, and how much each leaves on the coarse one.
-fn rows(
-    search: &Search,
-    from: &Found,
-    [tiny, coarse]: [&Made; 2],
-    suspects: &[usize],
-) -> Vec<(f64, Candidate)> {
+/// The rows of the table, and how much each leaves on the coarse grid.
+fn rows(search: &Search, from: &Found, coarse: &Made, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
     let mut named: Vec<Named> = rows.map(Row::named).collect();
     for &object in suspects {
@@ -234,20 +195,14 @@ fn rows(
     let candidates = named
         .into_iter()
         .filter_map(|named| from.candidate.with(named));
-    let left = |candidate: Candidate, level: &Level, like: &Made| {
-        let made = search.tried(&candidate, level, Some(like))?;
-        Some((absolute(&search.differences(&made, level)), candidate))
+    let left = |candidate: Candidate| {
+        let made = search.tried(&candidate, &search.coarse, Some(coarse))?;
+        Some((
+            absolute(&search.differences(&made, &search.coarse)),
+            candidate,
+        ))
     };
-    // Samples on the tiny grid are too few to tell a program that behaves otherwise, of which they are not compared with the exact picture.
-    let (behaved, plain): (Vec<_>, Vec<_>) =
-        candidates.partition(|candidate| candidate.behaviour != from.candidate.behaviour);
-    let on_tiny = plain
-        .into_iter()
-        .filter_map(|candidate| left(candidate, &search.tiny, tiny));
-    let on_coarse = least(on_tiny, FITTED).chain(behaved);
-    on_coarse
-        .filter_map(|candidate| left(candidate, &search.coarse, coarse))
-        .collect()
+    candidates.filter_map(left).collect()
 }
 
 /// The objects that may be wrong, those first around which most is.
@@ -260,8 +215,14 @@ fn suspects(search: &Search, from: &Found) -> Vec<usize> {
         image,
         ..candidate.scene.clone()
     };
-    let textbook = Textbook::new(&scene, candidate.behaviour, Average::Light);
-    let labels = textbook.labels(grid.cells);
+    let Ok(world) = World::new_unless(&scene, search.cancel) else {
+        return Vec::new();
+    };
+    let labels: Vec<_> = grid
+        .cells
+        .iter()
+        .map(|(x, y)| world.object_at(x, y))
+        .collect();
     let mut wrong = vec![0.0; search.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
         // An object that grew is wrong beside where it is seen.
@@ -327,24 +288,4 @@ fn level(named: &mut [Named]) {
             number_text::level(parameter, numbers);
         }
     }
-}
-
-/// Without those mistakes that are not needed beside the others.
-fn without_needless(search: &Search, mut found: Found) -> Found {
-    let mut at = 0;
-    // The last was better than what was without it.
-    while at + 1 < found.candidate.named.len() {
-        let mut named = found.candidate.named.clone();
-        named.remove(at);
-        let without = Candidate::of(search.scene, &named).and_then(|candidate| {
-            let made = search.made(&candidate, &search.coarse, None)?;
-            let candidate = search.fitted(candidate, &search.coarse, &made, [3, 1])?;
-            refined(search, search.judged_on(&search.middle, candidate, None)?)
-        });
-        match without {
-            Some(without) if without.cost <= found.cost => found = without,
-            _ => at += 1,
-        }
-    }
-    found
 }

@@ -4,14 +4,11 @@
 //! few samples at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
-use std::cell::{Cell, OnceCell};
-
 use glam::{BVec3, DVec2, DVec3};
 
 use super::{
     axes::{Axes, radians},
     light::Average,
-    tiles::Tiles,
 };
 use crate::{
     area::Area,
@@ -55,15 +52,6 @@ pub enum Squares {
     /// Those where the remainders of floor(x) and floor(z), which may be −1, are equal.
     SignedParts,
 }
-
-/// A cell that shows one colour near its corners and in the first samples shows no other: an edge that passes between them cuts off a corner
-/// of a thousandth of it.
-const CORNERS: [DVec2; 4] = [
-    DVec2::new(0.04, 0.04),
-    DVec2::new(0.96, 0.96),
-    DVec2::new(0.96, 0.04),
-    DVec2::new(0.04, 0.96),
-];
 
 /// How a program behaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,12 +146,8 @@ pub struct Textbook {
     shapes: Vec<Prepared>,
     /// The part of the picture that each lies in, where that is known.
     bounds: Vec<[DVec2; 2]>,
-    tiles: Tiles,
-    /// Each object's first and second colour, the background's last, and what of them is averaged, once it was asked for.
-    colors: Vec<[Color; 2]>,
-    averaged: Vec<OnceCell<[[f64; 3]; 2]>>,
-    average: Average,
-    tested: Cell<u64>,
+    /// What is averaged of each object's first and second colour, the background's last.
+    colors: Vec<[[f64; 3]; 2]>,
 }
 
 impl Textbook {
@@ -210,21 +194,13 @@ impl Textbook {
             };
             of(true).or_else(behind).unwrap_or(EVERYWHERE)
         });
-        let mut bounds: Vec<[DVec2; 2]> = bounds.collect();
-        let sees_nearest =
-            behaviour.visible == Visible::Nearest && behaviour.behind == Behind::Unseen;
-        if sees_nearest && scene.camera.near == 0.0 {
-            hide_boards(scene, &mut bounds);
-        }
-        let mut size = 2.0 * axes.middle;
-        if behaviour.is_squeezed {
-            // Columns are seen that lie as far from the middle as rows do.
-            size.x = size.max_element();
-        }
-        let tiles = Tiles::new(&bounds, axes.middle - size / 2.0, size);
+        let bounds = bounds.collect();
         let objects = scene.objects.iter();
         let colors = objects.map(|object| object.shape.colors());
-        let colors: Vec<[Color; 2]> = colors.chain([[scene.image.background; 2]]).collect();
+        let averaged = |color: Color| color.to_linear().map(|light| average.of(light));
+        let colors = colors
+            .chain([[scene.image.background; 2]])
+            .map(|two| two.map(averaged));
         Self {
             axes,
             behaviour,
@@ -232,22 +208,8 @@ impl Textbook {
             far: scene.camera.far.unwrap_or(f64::INFINITY),
             shapes,
             bounds,
-            tiles,
-            averaged: vec![OnceCell::new(); colors.len()],
-            colors,
-            average,
-            tested: Cell::new(0),
+            colors: colors.collect(),
         }
-    }
-
-    /// How many objects it has.
-    pub fn objects(&self) -> usize {
-        self.shapes.len()
-    }
-
-    /// How often it was asked whether a ray hits a shape.
-    pub fn tested(&self) -> u64 {
-        self.tested.get()
     }
 
     /// What the pixels of a part of the picture show, with so many samples in each.
@@ -256,16 +218,6 @@ impl Textbook {
         let count = places.len() as f64;
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
-            // To ask the corners first is more work than a few samples are.
-            if places.len() > CORNERS.len() + 1 {
-                let first = self.color(corner + places[0]);
-                let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
-                // Squares of the size of half a cell show the same in all corners.
-                let mut probes = CORNERS.iter().chain(&places[1..8]);
-                if probes.all(is_flat) {
-                    return (first, [0.0; 3]);
-                }
-            }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
             for &place in &places {
                 let color = self.color(corner + place);
@@ -282,15 +234,6 @@ impl Textbook {
         Moments { mean, variance }
     }
 
-    /// The object that is seen in the middle of each pixel of a part of the picture.
-    pub fn labels(&self, part: Area) -> Vec<Option<usize>> {
-        let label = |(x, y)| {
-            let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-            self.seen(middle).map(|(object, _)| object)
-        };
-        part.iter().map(label).collect()
-    }
-
     fn color(&self, place: DVec2) -> [f64; 3] {
         let size = 2.0 * self.axes.middle;
         let moved = match self.behaviour.is_squeezed {
@@ -301,21 +244,14 @@ impl Textbook {
             false => place,
         };
         let (object, second) = self.seen(moved).unwrap_or((self.shapes.len(), false));
-        let averaged = self.averaged[object].get_or_init(|| {
-            let of = |color: Color| color.to_linear().map(|light| self.average.of(light));
-            self.colors[object].map(of)
-        });
-        averaged[usize::from(second)]
+        self.colors[object][usize::from(second)]
     }
 
     /// The object that is seen at a place, and whether it is a board's second colour.
     fn seen(&self, place: DVec2) -> Option<(usize, bool)> {
         let ray = self.axes.ray(place);
         let mut best: Option<(usize, f64)> = None;
-        let objects = self.tiles.at(place);
-        self.tested.set(self.tested.get() + objects.len() as u64);
-        for object in objects.iter().map(|&object| object as usize) {
-            let (shape, [least, most]) = (&self.shapes[object], self.bounds[object]);
+        for (object, (shape, [least, most])) in self.shapes.iter().zip(&self.bounds).enumerate() {
             if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
                 continue;
             }
@@ -398,32 +334,6 @@ impl Textbook {
             Prepared::Board { y, .. } => {
                 let t = y / ray.y;
                 counts(t).then_some(t)
-            }
-        }
-    }
-}
-
-/// Of boards on one side of the eye the nearest hides all others, the first of equal ones.
-fn hide_boards(scene: &Scene, bounds: &mut [[DVec2; 2]]) {
-    let mut nearest: [Option<(usize, f64)>; 2] = [None; 2];
-    for (index, object) in scene.objects.iter().enumerate() {
-        let Shape::Checkerboard(board) = &object.shape else {
-            continue;
-        };
-        let height = board.y - scene.camera.eye.y;
-        // A board in the eye's own plane is not seen.
-        if height == 0.0 {
-            bounds[index] = NOWHERE;
-            continue;
-        }
-        let side = &mut nearest[usize::from(height > 0.0)];
-        match *side {
-            Some((_, least)) if height.abs() >= least => bounds[index] = NOWHERE,
-            hidden => {
-                if let Some((hidden, _)) = hidden {
-                    bounds[hidden] = NOWHERE;
-                }
-                *side = Some((index, height.abs()));
             }
         }
     }

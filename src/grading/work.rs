@@ -6,7 +6,7 @@ use std::{cell::Cell, sync::atomic::AtomicBool};
 
 use super::{
     light::{Average, moments, numbers},
-    textbook::{Moments, Textbook},
+    textbook::Moments,
 };
 use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 
@@ -14,10 +14,11 @@ use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 const PICTURE: f64 = 2.6e7;
 const PIXEL: f64 = 41.0;
 
-/// Units of preparing an object for an exact picture, and for a sampled one, of asking whether a ray hits a shape, and of comparing a cell.
+/// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking whether it hits a shape, and of comparing a cell.
 const WORLD_OBJECT: f64 = 20.0;
 const OBJECT: f64 = 6.0;
-const TEST: f64 = 0.1;
+const RAY: f64 = 2.0;
+const TEST: f64 = 0.05;
 const CELL: f64 = 2.0;
 
 /// The work that was spent, and how much may be.
@@ -39,13 +40,6 @@ pub fn of_exact(units: u64, objects: usize, pixels: u64) -> f64 {
     units as f64 + WORLD_OBJECT * objects as f64 + CELL * pixels as f64
 }
 
-/// The work of sampling a part of a picture, so much of which was asked of shapes.
-pub fn of_sampled(textbook: &Textbook, part: Area) -> f64 {
-    TEST * textbook.tested() as f64
-        + OBJECT * textbook.objects() as f64
-        + CELL * part.pixels() as f64
-}
-
 impl<'a> Work<'a> {
     /// None yet.
     pub fn new(most: f64, cancel: &'a AtomicBool) -> Self {
@@ -55,11 +49,6 @@ impl<'a> Work<'a> {
             is_cut: Cell::new(false),
             cancel,
         }
-    }
-
-    /// What was spent.
-    pub fn spent(&self) -> f64 {
-        self.spent.get()
     }
 
     /// Spends so much.
@@ -112,6 +101,16 @@ impl<'a> Work<'a> {
         }
         let (mean, variance) = pixels?.iter().map(moments).unzip();
         Some(Moments { mean, variance })
+    }
+
+    /// A part of a picture of so many objects is to be sampled; none if that takes too much.
+    pub fn sampled(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
+        let (objects, cells) = (objects as f64, part.pixels() as f64);
+        let rays = samples as f64 * cells;
+        let all = objects * OBJECT + rays * (RAY + TEST * objects) + CELL * cells;
+        let is_too_much = self.spent.get() + all > self.most.get();
+        self.is_cut.set(self.is_cut.get() || is_too_much);
+        (!is_too_much).then(|| self.spend(all))
     }
 
     /// So many cells are compared.

@@ -121,6 +121,18 @@ impl World {
         }
     }
 
+    /// The object that is seen in the middle of a pixel.
+    pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
+        let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
+        match self.seen_fast(&point) {
+            Ok(seen) => seen.map(|seen| seen.object),
+            Err(Doubt) => {
+                let among = self.candidates(&point);
+                self.object_among(&point, among.iter().copied()).0
+            }
+        }
+    }
+
     /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.
     pub fn slot_among(
         &self,
