@@ -1,22 +1,20 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are rounded to one decimal after another, until everything is seen within
-//! half a pixel of where it would be. The text with these numbers is read once: it may tie them to others, or break a condition of the language.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are written to one decimal after another, until the text means
+//! something that is seen within half a pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a condition of the language.
 
 use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::edits,
-    fields::{changes, movable},
-    handles::{self, Along, TOLERANCE, handles, outline_point},
+    edits::{Change, changes, edits},
+    handles::{self, Along, TOLERANCE, handles},
     projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
     scene::{self, Camera, Part, Scene, Shape},
-    schema::Value,
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
@@ -70,9 +68,9 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         distance: drag.object.map_or_else(|| camera::distance(scene), |_| 1.0),
     };
     let ideal = view.moved(current)?;
-    let fields = movable(block, current);
-    let is_finite = |field: &(&str, Value)| ideal.value(field.0).is_some_and(|it| it.is_finite());
-    if !fields.iter().all(is_finite) || (drag.object.is_none() && !ideal.is_possible()) {
+    let changes = changes(block, current, ideal);
+    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
+    if !greatest.is_finite() || (drag.object.is_none() && !ideal.is_possible()) {
         return Err("that is too far away".to_owned());
     }
     if !view.agree(ideal, ideal) {
@@ -81,28 +79,30 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if view.agree(ideal, current) {
         return Ok(Dragged::default());
     }
-    let changes = changes(&fields, ideal);
-    let edits = |decimals| edits(analysis, block, current, &changes, decimals);
-    let is_near = |(_, part): &(Vec<Edit>, Part)| part.is_possible() && view.agree(ideal, *part);
-    let greatest = changes.iter().map(|change| change.size());
-    let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
-    let (edits, _) = (first..first + DIGITS)
-        .filter_map(edits)
-        .find(is_near)
-        .or_else(|| edits(first + DIGITS))
-        .ok_or_else(tied)?;
-    let found = part(&read(analysis, &edits)?, drag);
-    let found = found.filter(|found| view.agree(ideal, *found));
-    let found = found.ok_or_else(tied)?;
-    let values = fields.into_iter().filter_map(|(field, before)| {
-        let after = found.value(field).filter(|after| *after != before)?;
-        Some(format!("{name}.{field} = {after}"))
-    });
-    Ok(Dragged {
-        values: values.collect(),
-        edits,
-    })
+    let mut refusal = tied();
+    let first = -1 - libm::log10(greatest).floor() as i32;
+    for decimals in first..=first + DIGITS {
+        let edits = edits(analysis, block, &changes, decimals);
+        let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
+            continue;
+        };
+        let found = read(analysis, &edits).map(|scene| part(&scene, drag));
+        match found {
+            Ok(Some(found)) if view.agree(ideal, found) => {
+                let value = |change: &Change| {
+                    let after = found.value(change.name)?;
+                    let is_new = after != change.from;
+                    is_new.then(|| format!("{name}.{} = {after}", change.name))
+                };
+                let values = changes.iter().filter_map(value).collect();
+                return Ok(Dragged { edits, values });
+            }
+            Ok(_) => refusal = tied(),
+            Err(why) => refusal = why,
+        }
+    }
+    Err(refusal)
 }
 
 /// What is dragged: the camera or an object; none if there is no such object.
@@ -201,28 +201,28 @@ impl Viewpoint<'_> {
 
     /// Where the handles of an object are seen; that of a radius on the side where it is moved to.
     fn marks(&self, shape: &Shape) -> Vec<(&'static str, Option<DVec2>)> {
-        let mut handles = handles(shape, &self.projection);
-        if let (Shape::Sphere(sphere), "radius", [_, radius]) =
-            (shape, self.drag.handle, &mut handles[..])
-        {
-            let towards = self.projection.ray(self.drag.to);
-            radius.at = outline_point(sphere, self.projection.eye, towards);
-        }
+        let towards = match self.drag.handle {
+            "radius" => self.projection.ray(self.drag.to),
+            _ => self.projection.right,
+        };
+        let mut handles = handles(shape, &self.projection, towards);
         // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
-        if let (Shape::Checkerboard(board), [y]) = (shape, &mut handles[..]) {
-            y.at = self.held().map(|at| at.with_y(board.y));
+        if let (Shape::Checkerboard(board), [(_, at)]) = (shape, &mut handles[..]) {
+            *at = self.held().map(|at| at.with_y(board.y));
         }
-        let seen = |at: Option<DVec3>| at.and_then(|at| self.projection.point(at));
+        let seen = |at: DVec3| self.projection.point(at);
         handles
             .into_iter()
-            .map(|it| (it.name, seen(it.at)))
+            .map(|(name, at)| (name, at.and_then(seen)))
             .collect()
     }
 
     /// Where the first handle of the dragged object is before the drag.
     fn held(&self) -> Option<DVec3> {
         let object = self.scene.objects.get(self.drag.object?)?;
-        handles(&object.shape, &self.projection).first()?.at
+        handles(&object.shape, &self.projection, DVec3::ZERO)
+            .first()?
+            .1
     }
 
     /// Whether a point lies in the picture, or so near to it that it may come to be seen.

@@ -87,8 +87,8 @@ pub fn overlays(scene: &Scene, further: Option<usize>) -> Overlays {
         lines.take(MOST_OBJECTS).collect()
     };
     let outline = |(index, object): (usize, &Object)| {
-        let seen = |handle: Handle| (handle.name, handle.at.and_then(|at| projection.point(at)));
-        let handles = handles(&object.shape, &projection).into_iter();
+        let seen = |(name, at): Handle| (name, at.and_then(|at| projection.point(at)));
+        let handles = handles(&object.shape, &projection, projection.right).into_iter();
         Outline {
             object: index,
             lines: outline(&projection, &object.shape),
@@ -168,10 +168,8 @@ fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Opti
 /// The square of a checkerboard that the view axis meets.
 fn square(projection: &Projection, board: &Checkerboard) -> Vec<Line> {
     let shape = Shape::Checkerboard(*board);
-    let met = handles(&shape, projection)
-        .pop()
-        .and_then(|handle| handle.at);
-    met.map_or_else(Vec::new, |met| {
+    let met = handles(&shape, projection, projection.right).pop();
+    met.and_then(|(_, at)| at).map_or_else(Vec::new, |met| {
         let side = board.square;
         let corner = (met / side).floor() * side;
         let at = |i: f64, k: f64| DVec3::new(corner.x + i * side, board.y, corner.z + k * side);
