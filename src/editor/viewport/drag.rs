@@ -55,7 +55,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
-    let dragged = part(scene, drag).zip(block(analysis, scene, drag));
+    let dragged = part(scene, drag.object).zip(block(analysis, scene, drag));
     let (current, (block, name)) = dragged.ok_or_else(|| match drag.object {
         Some(index) => format!("there is no object {index}"),
         None => "the text has no camera".to_owned(),
@@ -79,6 +79,10 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if view.agree(ideal, current) {
         return Ok(Dragged::default());
     }
+    // A text is read quickly without the other objects.
+    let objects = scene.objects.iter().enumerate();
+    let others = objects.filter(|(index, _)| Some(*index) != drag.object);
+    let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
     let mut refusal = tied();
     let first = -1 - libm::log10(greatest).floor() as i32;
@@ -87,9 +91,11 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
             continue;
         };
-        let found = read(analysis, &edits).map(|scene| part(&scene, drag));
-        match found {
+        let alone = read(analysis, [&edits, &without_others]);
+        match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found) => {
+                // The others may depend on the same numbers.
+                read(analysis, [&edits, &[]])?;
                 let value = |change: &Change| {
                     let after = found.value(change.name)?;
                     let is_new = after != change.from;
@@ -105,9 +111,9 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     Err(refusal)
 }
 
-/// What is dragged: the camera or an object; none if there is no such object.
-fn part(scene: &Scene, drag: &Drag<'_>) -> Option<Part> {
-    Some(match drag.object {
+/// An object or the camera; none if there is no such object.
+fn part(scene: &Scene, object: Option<usize>) -> Option<Part> {
+    Some(match object {
         None => Part::Camera(scene.camera),
         Some(index) => Part::Shape(scene.objects.get(index)?.shape),
     })
@@ -131,13 +137,10 @@ fn block<'a, 's>(
 }
 
 /// The scene that a text means after some edits.
-fn read(analysis: &Analysis<'_>, edits: &[Edit]) -> Result<Scene, String> {
+fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let source = analysis.source();
-    let text = apply(
-        &Fix::new("", edits.iter().cloned()),
-        SourceId::File,
-        source.text(),
-    );
+    let fix = Fix::new("", edits.concat());
+    let text = apply(&fix, SourceId::File, source.text());
     let reading = scene::read(&Sources::new(Source::from_text(source.name(), text)));
     let mut diagnostics = reading.diagnostics.iter();
     reading.scene.ok_or_else(|| {
@@ -187,11 +190,10 @@ impl Viewpoint<'_> {
             (Part::Shape(ideal), Part::Shape(found)) => {
                 let marks = self.marks(&ideal).into_iter().zip(self.marks(&found));
                 marks.into_iter().all(|((name, ideal), (_, found))| {
-                    let is_seen = |at: &DVec2| self.is_near(*at) || name == self.drag.handle;
-                    match (ideal.filter(is_seen), found) {
-                        (None, _) => name != self.drag.handle,
-                        (Some(ideal), Some(found)) => ideal.distance(found) <= TOLERANCE,
-                        (Some(_), None) => false,
+                    let is_held = name == self.drag.handle;
+                    match ideal {
+                        Some(ideal) if is_held || self.is_near(ideal) => are_near(ideal, found),
+                        _ => !is_held,
                     }
                 })
             }
@@ -245,10 +247,14 @@ impl Viewpoint<'_> {
         ];
         let mut depths = [0.5, 1.0, 2.0].map(|part| part * self.distance).into_iter();
         depths.all(|depth| {
-            points.into_iter().all(|point| {
-                let seen = found.point(ideal.at_depth(point, depth));
-                seen.is_some_and(|seen| seen.distance(point) <= TOLERANCE)
-            })
+            points
+                .into_iter()
+                .all(|point| are_near(point, found.point(ideal.at_depth(point, depth))))
         })
     }
+}
+
+/// Whether something is seen within half a pixel of where it should be.
+fn are_near(ideal: DVec2, found: Option<DVec2>) -> bool {
+    found.is_some_and(|found| found.distance(ideal) <= TOLERANCE)
 }

@@ -51,8 +51,7 @@ pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
         .collect()
 }
 
-/// The edits that change fields of a block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more.
-/// None if two of them want different things of one number.
+/// The edits that change fields of a block, in order, with numbers written to so many decimals. None if two of them want different things of one number.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
@@ -172,13 +171,9 @@ impl<'s> Writer<'_, 's> {
 
     /// A number that has changed by an amount, with as many decimals as there are to be; the old one where the amount has none of them.
     fn number(&self, old: f64, by: f64, unit: Option<Unit>) -> String {
-        let decimals = match unit {
-            Some(Unit::Radians) => self.decimals + 2,
-            _ => self.decimals,
-        };
-        let new = match round(by, decimals) == 0.0 {
+        let new = match round(by, self.decimals) == 0.0 {
             true => old,
-            false => round(old + by, decimals),
+            false => round(old + by, self.decimals),
         };
         spelled(new, unit)
     }
@@ -188,9 +183,7 @@ impl<'s> Writer<'_, 's> {
 fn is_number(tree: &tree::Value<'_>) -> bool {
     match &tree.kind {
         ValueKind::Number(_) | ValueKind::Angle { .. } => true,
-        ValueKind::Negation { operand, .. } => {
-            matches!(operand.kind, ValueKind::Number(_) | ValueKind::Angle { .. })
-        }
+        ValueKind::Negation { operand, .. } => is_number(operand),
         _ => false,
     }
 }

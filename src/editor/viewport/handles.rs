@@ -24,6 +24,16 @@ pub enum Along {
     Floor,
 }
 
+impl Along {
+    /// An axis, or `floor`, by its name.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "floor" => Some(Self::Floor),
+            _ => AXES.iter().position(|axis| *axis == name).map(Self::Axis),
+        }
+    }
+}
+
 const CORNERS: [&str; 3] = ["v0", "v1", "v2"];
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -33,11 +43,10 @@ const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
 /// The handles of an object; that of a sphere's radius is on the side of a direction.
 pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
-    let Projection { eye, ahead, .. } = *projection;
     match shape {
         Shape::Sphere(sphere) => vec![
             ("center", Some(sphere.center)),
-            ("radius", outline_point(sphere, eye, towards)),
+            ("radius", outline_point(sphere, projection.eye, towards)),
         ],
         Shape::Box(Cuboid { min, max, .. }) => {
             let center = min.midpoint(*max);
@@ -66,9 +75,8 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
             }
         },
         Shape::Checkerboard(board) => {
-            let depth = (board.y - eye.y) / ahead.y;
-            let met = (eye + ahead * depth).with_y(board.y);
-            vec![("y", (depth > 0.0 && met.is_finite()).then_some(met))]
+            let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
+            vec![("y", met.map(|met| met.with_y(board.y)))]
         }
     }
 }
@@ -122,9 +130,8 @@ pub fn moved(
             let at = at.filter(|at| projection.depth(*at) > 0.0);
             let at =
                 at.ok_or_else(|| format!("the handle `{handle}` is not in front of the eye"))?;
-            let axis = handle.rsplit('_').next();
-            let axis = AXES.iter().position(|known| Some(*known) == axis);
-            let along = axis.map(Along::Axis).or(along);
+            let own = handle.rsplit('_').next().and_then(Along::named);
+            let along = own.or(along);
             shift(shape, handle, moved_point(at, to, along, projection)? - at);
         }
     }
@@ -169,29 +176,27 @@ fn moved_point(
     along: Option<Along>,
     projection: &Projection,
 ) -> Result<DVec3, String> {
-    let Projection { eye, ahead, .. } = *projection;
-    let in_plane = |normal: DVec3| {
-        let ray = projection.ray(to);
-        (
-            eye + ray * ((point - eye).dot(normal) / ray.dot(normal)),
-            to,
-        )
-    };
     let (moved, goal) = match along {
-        None => in_plane(ahead),
-        Some(Along::Floor) => in_plane(DVec3::Y),
+        None => (projection.on_plane(to, point, projection.ahead), to),
+        Some(Along::Floor) => (projection.on_plane(to, point, DVec3::Y), to),
         Some(Along::Axis(axis)) => along_axis(point, to, DVec3::AXES[axis], projection),
     };
-    match projection.point(moved) {
+    let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
+    match seen {
+        Some((moved, seen)) if seen.distance(goal) <= TOLERANCE => Ok(moved),
         // Very far away, numbers have too few digits.
-        Some(seen) if seen.distance(goal) > TOLERANCE => Err("that is too far away".to_owned()),
-        Some(_) => Ok(moved),
+        Some(_) => Err("that is too far away".to_owned()),
         None => Err("what it moves along is not seen there".to_owned()),
     }
 }
 
 /// A point moved along an axis, to where it is seen nearest to a point of the picture; and where that is.
-fn along_axis(point: DVec3, to: DVec2, axis: DVec3, projection: &Projection) -> (DVec3, DVec2) {
+fn along_axis(
+    point: DVec3,
+    to: DVec2,
+    axis: DVec3,
+    projection: &Projection,
+) -> (Option<DVec3>, DVec2) {
     // The plane of the eye and the axis through the point cuts the picture in a line; its normal, in the camera's axes, has that line's coefficients.
     let plane = unit((point - projection.eye).cross(axis)).0;
     let normal = DVec2::new(plane.dot(projection.right), -plane.dot(projection.top));
@@ -201,7 +206,7 @@ fn along_axis(point: DVec3, to: DVec2, axis: DVec3, projection: &Projection) -> 
     // p + s a lies on the ray t where (p + s a) × t = 0.
     let across = axis.cross(ray);
     let step = -(point - projection.eye).cross(ray).dot(across) / across.length_squared();
-    (point + axis * step, nearest)
+    (Some(point + axis * step), nearest)
 }
 
 /// The radius with which a sphere's outline passes through a point of the picture.
@@ -248,12 +253,10 @@ fn spun(
     projection: &Projection,
 ) -> Result<Angle, String> {
     let normal = unit(triangle.normal).0;
-    let ray = projection.ray(to);
-    let depth = (triangle.centroid - projection.eye).dot(normal) / ray.dot(normal);
-    if !(depth > 0.0 && depth.is_finite()) {
-        return Err("the plane of the triangle is not seen there".to_owned());
-    }
-    let wanted = projection.eye + ray * depth - triangle.centroid;
+    let wanted = projection
+        .on_plane(to, triangle.centroid, normal)
+        .ok_or("the plane of the triangle is not seen there")?
+        - triangle.centroid;
     let current = apex - triangle.centroid;
     let (sine, cosine) = (current.cross(wanted).dot(normal), current.dot(wanted));
     let turn = trig::atan2(sine, cosine).in_degrees();

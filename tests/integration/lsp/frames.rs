@@ -18,6 +18,12 @@ checkerboard {}
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
 
+/// The scene with another size.
+fn sized(width: &str, height: &str) -> String {
+    let size = format!("width {width}  height {height}");
+    SCENE.replace("width 83  height 61", &size)
+}
+
 /// The code of the error that a request has got.
 fn code(talk: &Talk, request: i32) -> &Value {
     &talk.said(request).expect("an answer")["error"]["code"]
@@ -50,11 +56,6 @@ fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
 
 #[test]
 fn a_frame_has_the_pixels_of_a_render() {
-    let exact = SCENE.replace("multi_jittered", "exact");
-    let scattered = SCENE.replace("multi_jittered", "scatter");
-    // So many that a slice is a small part of the picture.
-    let many = SCENE.replace("per_pixel 9", "per_pixel 2000");
-    let wide = SCENE.replace("width 83  height 61", "width 100_000  height 2");
     let table = r#"
         scene -> {} ->
         scene -> { "scale": 1, "samples": null } ->
@@ -69,22 +70,18 @@ fn a_frame_has_the_pixels_of_a_render() {
         wide -> {} ->
     "#;
     for [name, params, sets] in rows(table) {
-        let text = match name {
-            "exact" => &exact,
-            "scattered" => &scattered,
-            "many" => &many,
-            "wide" => &wide,
-            _ => SCENE,
+        let (text, size) = match name {
+            "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
+            "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
+            // So many that a slice is a small part of the picture.
+            "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
+            "wide" => (sized("100_000", "2"), [100_000, 2]),
+            _ => (SCENE.to_owned(), [83, 61]),
         };
         let params: Value = serde_json::from_str(params).expect("JSON");
-        let frame = Talk::new(text).ask("pinhole/frame", params);
-        assert!(shown(&frame) == rendered(text, sets), "{name} {sets}");
+        let frame = Talk::new(&text).ask("pinhole/frame", params);
+        assert!(shown(&frame) == rendered(&text, sets), "{name} {sets}");
         assert_eq!(frame["version"], 0);
-        let size = if name == "wide" {
-            [100_000, 2]
-        } else {
-            [83, 61]
-        };
         assert_eq!(frame["size"], json!(size));
     }
 }
@@ -103,10 +100,8 @@ fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
     assert_eq!(frame["version"], 1);
     assert!(shown(&frame) == rendered(&changed, ""));
 
-    talk.tell(
-        "textDocument/didClose",
-        json!({ "textDocument": { "uri": URI } }),
-    );
+    let close = json!({ "textDocument": { "uri": URI } });
+    talk.tell("textDocument/didClose", close);
     let closed = talk.refused("pinhole/frame", json!({}));
     assert_eq!(closed, "the document is not open");
 }
@@ -127,9 +122,7 @@ fn a_frame_is_superseded_by_the_same_request_alone() {
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
     // Ten thousand slices, which would take minutes.
-    let text = SCENE
-        .replace("width 83  height 61", "width 1000  height 1000")
-        .replace("per_pixel 9", "per_pixel 10_000");
+    let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
     let mut talk = Talk::new(&text);
     let frame = talk.post("pinhole/frame", json!({}));
     let hover = |talk: &mut Talk| {
@@ -172,30 +165,34 @@ fn there_is_no_frame_of_a_text_with_errors() {
 
 #[test]
 fn what_is_too_much_for_a_frame_is_refused() {
-    let large = SCENE.replace("width 83  height 61", "width 1_048_576  height 1_048_576");
-    let mut talk = Talk::new(&large);
-    assert_eq!(
-        talk.refused("pinhole/frame", json!({})),
-        "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`"
-    );
-    let frame = talk.ask("pinhole/frame", json!({ "scale": 65536, "samples": 1 }));
+    let large = sized("1_048_576", "1_048_576");
+    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
+    let zero = ": invalid value: integer `0`";
+    for (text, params, message) in [
+        (
+            &*large,
+            json!({}),
+            "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`",
+        ),
+        (
+            &many,
+            json!({}),
+            "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`",
+        ),
+        (SCENE, json!({ "scale": 0 }), &format!("`scale`{zero}")),
+        (SCENE, json!({ "scale": 0.5 }), "`scale`: "),
+        (SCENE, json!({ "scale": -1 }), "`scale`: "),
+        (SCENE, json!({ "scale": 1e300 }), "`scale`: "),
+        (SCENE, json!({ "samples": 0 }), &format!("`samples`{zero}")),
+        (SCENE, json!({ "samples": "4" }), "`samples`: "),
+    ] {
+        let found = Talk::new(text).refused("pinhole/frame", params);
+        assert!(found.starts_with(message), "{found}");
+    }
+    let params = json!({ "scale": 65536, "samples": 1 });
+    let frame = Talk::new(&large).ask("pinhole/frame", params);
     assert_eq!(
         (&frame["width"], &frame["size"]),
         (&json!(16), &json!([1_048_576, 1_048_576]))
     );
-    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
-    let mut talk = Talk::new(&many);
-    assert_eq!(
-        talk.refused("pinhole/frame", json!({})),
-        "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`"
-    );
-    for (name, wrong) in [
-        ("scale", json!([0, 0.5, -1, 1e300])),
-        ("samples", json!([0, "4"])),
-    ] {
-        for value in wrong.as_array().expect("a list") {
-            let message = talk.refused("pinhole/frame", json!({ name: value }));
-            assert!(message.starts_with(&format!("`{name}`")), "{message}");
-        }
-    }
 }

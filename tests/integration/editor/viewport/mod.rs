@@ -36,23 +36,13 @@ fn scene_of(text: &str) -> Scene {
     scene.unwrap_or_else(|| panic!("{text}: {:?}", reading.diagnostics))
 }
 
-fn along(word: &str) -> Option<Along> {
-    match word {
-        "x" => Some(Along::Axis(0)),
-        "y" => Some(Along::Axis(1)),
-        "z" => Some(Along::Axis(2)),
-        "floor" => Some(Along::Floor),
-        _ => None,
-    }
-}
-
 fn object<'a>(handle: &'a str, to: [f64; 2], word: &str) -> Drag<'a> {
     Drag {
         object: Some(0),
         handle,
         from: DVec2::from(to),
         to: DVec2::from(to),
-        along: along(word),
+        along: Along::named(word),
     }
 }
 
