@@ -7,10 +7,11 @@ use std::{
 
 use serde_json::{Value, json};
 
-pub const URI: &str = "file:///home/somebody/a%20scene.scn";
-
 /// What carries the texts of messages.
 pub trait Carrier {
+    /// The document that the conversation is about.
+    const URI: &'static str;
+
     fn write(&mut self, text: &str);
     fn read(&mut self) -> String;
 }
@@ -18,8 +19,8 @@ pub trait Carrier {
 pub struct Client<C> {
     pub carrier: C,
     requests: i32,
-    /// Notifications that nobody has asked for yet.
-    told: Vec<Value>,
+    /// What was said, and not asked for yet.
+    pub heard: Vec<Value>,
 }
 
 impl<C: Carrier> Client<C> {
@@ -27,7 +28,7 @@ impl<C: Carrier> Client<C> {
         Self {
             carrier,
             requests: 0,
-            told: Vec::new(),
+            heard: Vec::new(),
         }
     }
 
@@ -44,24 +45,30 @@ impl<C: Carrier> Client<C> {
     }
 
     /// Asks, and does not wait for the answer.
-    pub fn request(&mut self, method: &str, params: Value) -> i32 {
+    pub fn request(&mut self, method: &str, mut params: Value) -> i32 {
+        if method.starts_with("textDocument/") || method.starts_with("pinhole/") {
+            params["textDocument"] = json!({ "uri": C::URI });
+        }
         self.requests += 1;
         let id = self.requests;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
         id
     }
 
-    /// The whole response to a request, before which nothing but notifications may come.
-    pub fn response(&mut self, id: i32) -> Value {
-        loop {
+    /// The next message of a kind, since the last one that was asked for.
+    fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
+        while !self.heard.iter().any(&is_meant) {
             let message = self.read();
             assert_eq!(message["jsonrpc"], "2.0", "{message}");
-            if message["method"].is_null() {
-                assert_eq!(message["id"], id, "{message}");
-                return message;
-            }
-            self.told.push(message);
+            self.heard.push(message);
         }
+        let place = self.heard.iter().position(is_meant);
+        self.heard.remove(place.expect("it was heard"))
+    }
+
+    /// The whole response to a request.
+    pub fn response(&mut self, id: i32) -> Value {
+        self.next(|message| message["id"] == id)
     }
 
     pub fn respond(&mut self, method: &str, params: Value) -> Value {
@@ -76,16 +83,16 @@ impl<C: Carrier> Client<C> {
         response["result"].clone()
     }
 
-    /// The parameters of the next notification of this name, since the last one that was asked for.
+    /// The message of the error that a request gets.
+    pub fn refused(&mut self, method: &str, params: Value) -> String {
+        let response = self.respond(method, params);
+        let message = response["error"]["message"].as_str();
+        message.expect("it is refused").to_owned()
+    }
+
+    /// The parameters of the next notification of this name.
     pub fn told(&mut self, method: &str) -> Value {
-        let mut told = self.told.iter();
-        let place = told.position(|it| it["method"] == method);
-        let mut message = place.map_or(Value::Null, |place| self.told.remove(place));
-        while message["method"] != method {
-            self.told.extend((!message.is_null()).then_some(message));
-            message = self.read();
-        }
-        message["params"].take()
+        self.next(|message| message["method"] == method)["params"].take()
     }
 
     /// What is wrong with the text that it is told of next.
@@ -93,13 +100,24 @@ impl<C: Carrier> Client<C> {
         self.told("textDocument/publishDiagnostics")
     }
 
-    /// Opens a text, after what comes before that: what is said to be wrong with it.
-    pub fn open(&mut self, capabilities: Value, uri: &str, text: &str) -> Value {
+    /// Opens a text, after what comes before that.
+    pub fn open(&mut self, capabilities: Value, text: &str) {
         self.ask("initialize", json!({ "capabilities": capabilities }));
         self.tell("initialized", json!({}));
-        let document = json!({ "uri": uri, "languageId": "scn", "version": 1, "text": text });
+        let document = json!({ "uri": C::URI, "languageId": "scn", "version": 1, "text": text });
         self.tell("textDocument/didOpen", json!({ "textDocument": document }));
-        self.diagnostics()
+    }
+
+    /// Tells of a change that makes a version of the text.
+    pub fn change(&mut self, version: usize, change: Value) {
+        let document = json!({ "uri": C::URI, "version": version });
+        let params = json!({ "textDocument": document, "contentChanges": [change] });
+        self.tell("textDocument/didChange", params);
+    }
+
+    pub fn close(&mut self) {
+        let document = json!({ "uri": C::URI });
+        self.tell("textDocument/didClose", json!({ "textDocument": document }));
     }
 }
 
@@ -119,6 +137,8 @@ impl Pipes {
 }
 
 impl Carrier for Pipes {
+    const URI: &'static str = "file:///home/somebody/a%20scene.scn";
+
     fn write(&mut self, text: &str) {
         self.put(&format!("Content-Length: {}\r\n\r\n{text}", text.len()));
     }
@@ -154,26 +174,6 @@ impl Client<Pipes> {
             child,
             output,
         })
-    }
-
-    /// The result of a request about the document, with these further parameters.
-    pub fn about(&mut self, method: &str, mut params: Value) -> Value {
-        params["textDocument"] = json!({ "uri": URI });
-        self.ask(&format!("textDocument/{method}"), params)
-    }
-
-    /// The result of a request about a place.
-    pub fn at(&mut self, method: &str, line: u32, character: u32) -> Value {
-        let position = json!({ "line": line, "character": character });
-        self.about(method, json!({ "position": position }))
-    }
-
-    /// Tells of a change that makes a version of the text.
-    pub fn change(&mut self, version: usize, range: Value, text: &str) {
-        let document = json!({ "uri": URI, "version": version });
-        let changes = json!([{ "range": range, "text": text }]);
-        let params = json!({ "textDocument": document, "contentChanges": changes });
-        self.tell("textDocument/didChange", params);
     }
 
     /// Takes its leave, as it should be.

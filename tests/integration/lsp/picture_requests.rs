@@ -22,7 +22,7 @@ fn range(line: u32, start: u32, end: u32) -> Value {
 
 #[test]
 fn what_is_seen_at_a_point_is_told_with_its_place_in_the_text() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let mut pick = |point: Value| talk.ask("pinhole/pick", json!({ "point": point }));
     let ball = json!({ "index": 0, "kind": "sphere", "name": "Ball", "range": range(4, 0, 52), "selection": range(4, 7, 11) });
     assert_eq!(
@@ -45,19 +45,29 @@ fn what_is_seen_at_a_point_is_told_with_its_place_in_the_text() {
         let message = talk.refused("pinhole/pick", json!({ "point": wrong }));
         assert!(message.starts_with("`point`"), "{message}");
     }
-    talk.change("sphere {");
-    for request in ["pick", "overlays", "drag", "samples", "frame"] {
-        let answer = talk.ask(&format!("pinhole/{request}"), json!({}));
-        assert_eq!(answer, Value::Null);
+    let broken = [
+        "",
+        "camera {",
+        "sphere { center (0, 0, 0) }",
+        &SCENE.replace("eye", "eys"),
+    ];
+    for (index, broken) in broken.into_iter().enumerate() {
+        talk.change(2 * index + 2, json!({ "text": broken }));
+        for request in ["pick", "overlays", "drag", "samples", "frame"] {
+            let answer = talk.ask(&format!("pinhole/{request}"), json!({}));
+            assert_eq!(answer, Value::Null);
+        }
+        talk.change(2 * index + 3, json!({ "text": SCENE }));
+        let frame = talk.ask("pinhole/frame", json!({ "scale": 8 }));
+        assert!(frame["png"].is_string());
     }
-    talk.change(SCENE);
     let unknown = talk.refused("pinhole/paint", json!({}));
     assert_eq!(unknown, "`pinhole/paint` is not known here");
 }
 
 #[test]
 fn overlays_lie_where_their_things_are_seen() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let found = talk.ask("pinhole/overlays", json!({}));
     for (path, expected) in [
         ("/size", json!([200, 100])),
@@ -114,7 +124,8 @@ fn overlays_lie_where_their_things_are_seen() {
 
     // Of very many objects those that one can tell apart.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
-    talk.change(&(SCENE.to_owned() + &many.collect::<String>()));
+    let text = SCENE.to_owned() + &many.collect::<String>();
+    talk.change(2, json!({ "text": text }));
     for (further, count, last) in [
         (None, 1000, 999),
         (Some(1400), 1001, 1400),
@@ -132,7 +143,7 @@ fn overlays_lie_where_their_things_are_seen() {
 
 #[test]
 fn a_drag_is_answered_with_edits_of_the_text() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let params = json!({ "object": 0, "handle": "center", "from": [100, 50], "to": [140, 50] });
     assert_eq!(
         talk.ask("pinhole/drag", params),
@@ -158,7 +169,7 @@ fn a_drag_is_answered_with_edits_of_the_text() {
 
 #[test]
 fn the_samples_of_a_pixel_are_those_of_its_frame() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let points = json!([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]);
     for (column, color) in [(139, "#808000"), (141, "#000000")] {
         let found = talk.ask("pinhole/samples", json!({ "pixel": [column, 49] }));
@@ -167,12 +178,14 @@ fn the_samples_of_a_pixel_are_those_of_its_frame() {
             json!({ "points": points, "colors": vec![color; 4], "color": color })
         );
     }
-    talk.change(&SCENE.replace("method regular", "method exact"));
+    let exact = SCENE.replace("method regular", "method exact");
+    talk.change(2, json!({ "text": exact }));
     let mut found = talk.ask("pinhole/samples", json!({ "pixel": [140, 49] }));
     let edge = found["color"].take();
     assert_eq!(found, json!({ "points": [], "colors": [], "color": null }));
     assert!(edge != "#000000" && edge != "#808000", "{edge}");
-    talk.change(&SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000"));
+    let many = SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000");
+    talk.change(3, json!({ "text": many }));
     for (pixel, message) in [
         ([1, 1], "1000000000 samples of a pixel would take too long"),
         ([200, 0], "`pixel` is no pixel of the picture"),

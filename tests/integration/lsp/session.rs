@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::client::{Client, Pipes, URI};
+use super::client::{Carrier, Client, Pipes};
+
+const URI: &str = Pipes::URI;
 
 const SCENE: &str = "let ball = (0, 1, 0)
 camera { eye (0, 1, 5)  lookat ball  d 1 }
@@ -31,11 +33,10 @@ fn range(line: u32, start: u32, end: u32) -> Value {
     json!({ "start": place(line, start), "end": place(line, end) })
 }
 
-/// A request's parameters about a place in the document, besides others.
+/// A request's parameters about a place, besides others.
 fn at(line: u32, character: u32, others: Value) -> Value {
     let mut params = others;
     params["position"] = place(line, character);
-    params["textDocument"] = json!({ "uri": URI });
     params
 }
 
@@ -50,7 +51,8 @@ fn each<'v>(list: &'v Value, key: &str) -> Vec<&'v str> {
 #[test]
 fn a_scene_is_written_with_every_answer() {
     let mut client = Client::start();
-    let diagnostics = client.open(editor(), URI, SCENE);
+    client.open(editor(), SCENE);
+    let diagnostics = client.diagnostics();
     assert_eq!(diagnostics, json!({ "uri": URI, "version": 1, "diagnostics": [] }));
 
     let uses = [range(1, 31, 35), range(2, 21, 25)];
@@ -80,10 +82,10 @@ fn a_scene_is_written_with_every_answer() {
         ("documentColor", json!({}), "/0/range", olive.clone()),
         ("colorPresentation", json!({ "color": teal, "range": olive }), "/0/textEdit", json!({ "range": olive, "newText": "teal" })),
     ] {
-        let answer = client.about(method, params);
+        let answer = client.ask(&format!("textDocument/{method}"), params);
         assert_eq!(answer.pointer(path), Some(&expected), "{method}");
     }
-    let found = client.about("semanticTokens/full", json!({}));
+    let found = client.ask("textDocument/semanticTokens/full", json!({}));
     assert_eq!(found["data"].as_array().expect("a list")[..20], tokens.as_array().expect("a list")[..]);
     let refused = client.respond("textDocument/rename", at(0, 4, json!({ "newName": "olive" })));
     let reason = json!({ "code": -32803, "message": "`olive` is a colour of the language" });
@@ -104,9 +106,13 @@ fn found(diagnostics: &Value, code: &str) -> Value {
 #[test]
 fn texts_change_while_one_types() {
     let mut client = Client::start();
-    client.open(editor(), URI, SCENE);
+    client.open(editor(), SCENE);
+    client.diagnostics();
     // A mistyped field is put in behind the colour, where the text has a character of four bytes before it.
-    client.change(2, range(2, 38, 38), "  /* 🎱 */ radus 2  co");
+    client.change(
+        2,
+        json!({ "range": range(2, 38, 38), "text": "  /* 🎱 */ radus 2  co" }),
+    );
     let told = client.diagnostics();
     assert_eq!(told["version"], 2);
     let mut radus = found(&told, "unknown_field");
@@ -123,7 +129,8 @@ fn texts_change_while_one_types() {
 
     let mut actions = |at: u32, context: Value| {
         let range = range(2, at, at);
-        client.about("codeAction", json!({ "range": range, "context": context }))
+        let params = json!({ "range": range, "context": context });
+        client.ask("textDocument/codeAction", params)
     };
     let offered = actions(53, json!({ "diagnostics": [] }));
     let edits = |action: &Value| {
@@ -145,13 +152,12 @@ fn texts_change_while_one_types() {
     let expected = json!([{ "range": range(2, 54, 54), "newText": "i" }]);
     assert_eq!(edits(&all[0])["edits"], expected);
 
-    let completions = client.at("completion", 2, 50 + 11);
+    let completions = client.ask("textDocument/completion", at(2, 50 + 11, json!({})));
     assert_eq!(each(&completions, "label"), ["radius"]);
     assert_eq!(completions[0]["textEdit"]["newText"], "radius ${1:1}");
     assert_eq!(completions[0]["insertTextFormat"], 2);
 
-    let close = json!({ "textDocument": { "uri": URI } });
-    client.tell("textDocument/didClose", close);
+    client.close();
     let none = json!({ "uri": URI, "diagnostics": [] });
     assert_eq!(client.diagnostics(), none);
     let gone = client.respond("textDocument/hover", at(0, 0, json!({})));
@@ -163,17 +169,17 @@ fn texts_change_while_one_types() {
 #[test]
 fn a_scene_is_typed_letter_by_letter() {
     let mut client = Client::start();
-    client.open(editor(), URI, "");
+    client.open(editor(), "");
     let (mut line, mut character) = (0, 0);
     for (index, letter) in SCENE.chars().enumerate() {
         let place = range(line, character, character);
-        client.change(index + 2, place, &letter.to_string());
+        client.change(index + 2, json!({ "range": place, "text": letter }));
         match letter {
             '\n' => (line, character) = (line + 1, 0),
             _ => character += 1,
         }
-        client.at("completion", line, character);
-        client.about("semanticTokens/full", json!({}));
+        client.ask("textDocument/completion", at(line, character, json!({})));
+        client.ask("textDocument/semanticTokens/full", json!({}));
     }
     let mut told = client.diagnostics();
     while told["version"] != SCENE.chars().count() + 1 {
@@ -187,14 +193,15 @@ fn a_scene_is_typed_letter_by_letter() {
 fn a_client_of_few_words_gets_plain_answers() {
     let mut client = Client::start();
     let text = "/* 🎱 */ sphere { radius 1  radius 2  center (0, 0, 0) }";
-    let diagnostics = client.open(json!({}), URI, text);
+    client.open(json!({}), text);
+    let diagnostics = client.diagnostics();
     let twice = found(&diagnostics, "duplicate_field");
     // Columns are units of UTF-16.
     assert_eq!(twice["range"], range(0, 28, 34));
     let first =
         json!([{ "location": { "uri": URI, "range": range(0, 18, 24) }, "message": "first here" }]);
     assert_eq!(twice["relatedInformation"], first);
-    let completions = client.at("completion", 0, 37);
+    let completions = client.ask("textDocument/completion", at(0, 37, json!({})));
     assert_eq!(completions[0]["label"], "color");
     assert_eq!(completions[0]["textEdit"]["newText"], "color olive");
     assert_eq!(completions[0]["insertTextFormat"], 1);
@@ -223,17 +230,16 @@ fn a_conversation_begins_and_ends_as_it_should() {
     let kinds =
         "keyword property variable class function enumMember number operator comment".split(' ');
     assert_eq!(legend["tokenTypes"], json!(kinds.collect::<Vec<_>>()));
-    let document = json!({ "textDocument": { "uri": URI } });
     for (method, params, code) in [
         ("initialize", json!({ "capabilities": {} }), -32600),
         ("workspace/symbol", json!({ "query": "" }), -32601),
-        (hover, document.clone(), -32602),
+        (hover, json!({}), -32602),
     ] {
         assert_eq!(refused(&mut client, method, params), code);
     }
     client.tell("$/setTrace", json!({ "value": "off" }));
     assert_eq!(client.ask("shutdown", Value::Null), Value::Null);
-    assert_eq!(refused(&mut client, hover, document), -32600);
+    assert_eq!(refused(&mut client, hover, json!({})), -32600);
     client.tell("exit", Value::Null);
     assert_eq!(client.end(), (Some(0), String::new()));
 }
@@ -254,10 +260,7 @@ fn nonsense_is_passed_over() {
     // A response to nothing is not answered.
     client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
-    client.tell(
-        "textDocument/didChange",
-        json!({ "textDocument": { "uri": URI, "version": 2 }, "contentChanges": [] }),
-    );
+    client.change(2, json!({ "text": "" }));
     client.tell("textDocument/didOpen", json!([]));
     client.ask("shutdown", Value::Null);
     client.tell("exit", Value::Null);
@@ -310,19 +313,18 @@ fn what_is_no_request_is_refused() {
 
 #[test]
 fn memory_is_not_taken_for_what_is_only_announced() {
-    for length in ["99999999999999", "2000000000"] {
+    for (length, expected) in [
+        ("99999999999999", "is announced"),
+        ("2000000000", "is announced"),
+        // It is as long as may be, and ends early.
+        ("1000000000", "after 2 of 1000000000 bytes"),
+    ] {
         let mut client = Client::start();
         client
             .carrier
             .put(&format!("Content-Length: {length}\r\n\r\n{{}}"));
         let (status, log) = client.end();
         assert_eq!(status, Some(1));
-        assert!(log.contains("is announced"), "{log}");
+        assert!(log.contains(expected), "{log}");
     }
-    // It is as long as may be, and ends early.
-    let mut client = Client::start();
-    client.carrier.put("Content-Length: 1000000000\r\n\r\n{}");
-    let (status, log) = client.end();
-    assert_eq!(status, Some(1));
-    assert!(log.contains("after 2 of 1000000000 bytes"), "{log}");
 }

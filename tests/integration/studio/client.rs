@@ -10,7 +10,8 @@ use std::{
 use pinhole::scene::SMALLEST;
 use serde_json::Value;
 use tungstenite::{
-    Message, WebSocket, client::client, handshake::client::generate_key, http::Request,
+    Message, WebSocket,
+    client::{IntoClientRequest, client},
 };
 
 use crate::{
@@ -95,17 +96,13 @@ impl Studio {
     /// A page, to which nothing but the file was told yet.
     pub fn page(&self) -> (Client<Page>, Value) {
         let host = self.host();
-        let request = Request::builder()
-            .uri(format!("ws://{host}/socket"))
-            .header("Host", &host)
-            .header("Origin", format!("http://{host}"))
-            .header("Cookie", self.cookie())
-            .header("Connection", "Upgrade")
-            .header("Upgrade", "websocket")
-            .header("Sec-WebSocket-Version", "13")
-            .header("Sec-WebSocket-Key", generate_key())
-            .body(())
-            .unwrap();
+        let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
+        for (name, value) in [
+            ("Origin", format!("http://{host}")),
+            ("Cookie", self.cookie()),
+        ] {
+            request.headers_mut().insert(name, value.parse().unwrap());
+        }
         let (socket, _) = client(request, self.stream()).unwrap();
         let mut page = Client::new(Page(socket));
         let file = page.told("studio/file");
@@ -124,6 +121,8 @@ impl Drop for Studio {
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Carrier for Page {
+    const URI: &'static str = "studio:///scene.scn";
+
     fn write(&mut self, text: &str) {
         self.0.send(Message::text(text)).unwrap();
     }

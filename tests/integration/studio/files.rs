@@ -76,18 +76,6 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
 }
 
 #[test]
-fn a_page_hears_of_what_other_editors_save() {
-    let (folder, studio) = studio();
-    let (mut page, _) = studio.page();
-    for text in ["// 1", "// 2", SCENE] {
-        // By another name first, as many editors do it.
-        folder.write("other", text);
-        fs::rename(folder.path("other"), folder.path("a.scn")).unwrap();
-        assert_eq!(page.told("studio/file")["text"], text);
-    }
-}
-
-#[test]
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();

@@ -12,8 +12,8 @@ use proptest::{
     prelude::*,
 };
 
-use super::{dragged, near, scene_of, seen};
-use crate::editor::sources;
+use super::{dragged, near, seen};
+use crate::scenes::{read, sources};
 
 /// A scene with one object in front of the camera.
 fn any_scene() -> impl Strategy<Value = String> {
@@ -153,8 +153,8 @@ proptest! {
         let handles = handles(&before);
         let handle = handles[which % handles.len()];
         let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word) };
-        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
-        let mut after = scene_of(&changed);
+        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
         // The camera may be tied to what was moved.
         after.camera = before.camera;
@@ -199,8 +199,8 @@ proptest! {
         let Some(before) = reading.scene else { return Ok(()) };
         let [from, to] = [from, to].map(|point| point_of(&before, point));
         let moved = Drag { object: None, handle, from, to, along: None };
-        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
-        let after = scene_of(&changed);
+        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);
         prop_assert_eq!(after.image, before.image);
         if let (View::Lookat(point), "orbit") = (before.camera.view, handle)

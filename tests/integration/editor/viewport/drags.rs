@@ -1,8 +1,10 @@
 //! Each handle and each way in which a number can be written, in rows.
 
 use glam::{DVec2, DVec3};
+use pinhole::editor::viewport::Drag;
 
-use super::{camera, dragged, near, object, scene_of, seen};
+use super::{dragged, near, object, seen};
+use crate::scenes::read;
 
 /// A camera that looks along −z from (0, 0, 10): a metre at z = 0 has 40 pixels, y = 0 is row 50.
 const LEVEL: &str =
@@ -73,7 +75,7 @@ fn a_number_changes_where_it_is_written() {
     ] {
         let text = format!("{LEVEL}\n{scene}");
         let found = match dragged(&text, object(handle, to, word)) {
-            Ok((text, _)) => text[LEVEL.len() + 1..].to_owned(),
+            Ok(text) => text[LEVEL.len() + 1..].to_owned(),
             Err(why) => why,
         };
         match expected.contains('{') {
@@ -97,7 +99,7 @@ fn a_board_is_raised_and_lowered() {
     ] {
         let text = |y: &str| format!("{view}\ncheckerboard {{ y {y} }}");
         let found = dragged(&text("0"), object("y", to, ""));
-        assert_eq!(found.map(|(text, _)| text), Ok(text(y)));
+        assert_eq!(found, Ok(text(y)));
     }
 }
 
@@ -130,8 +132,9 @@ fn the_pointer_moves_the_camera() {
         ("eye (0, 1, 8) lookat (0, 1, 0)", "pan", [[200.0, 0.0], [200.0, f64::INFINITY]], "the pointer is nowhere", None),
     ] {
         let text = format!("{rest}camera {{ {before} }}");
-        let found = match dragged(&text, camera(handle, from, to)) {
-            Ok((text, _)) => text,
+        let [from, to] = [from, to].map(DVec2::from);
+        let found = match dragged(&text, Drag { object: None, handle, from, to, along: None }) {
+            Ok(text) => text,
             Err(why) => {
                 assert_eq!(why, after);
                 continue;
@@ -140,11 +143,10 @@ fn the_pointer_moves_the_camera() {
         assert_eq!(found, format!("{rest}camera {{ {after} }}"), "{before} {handle}");
         if let Some(point) = seen_point {
             let point = DVec3::from(point);
-            let [before, after] = [&text, &found].map(|text| seen(&scene_of(text), point));
-            let pointer = DVec2::from(to) - DVec2::from(from);
-            assert!((after - before).dot(pointer) > 0.0, "{found} {handle}: {before} {after}");
+            let [before, after] = [&text, &found].map(|text| seen(&read(text), point));
+            assert!((after - before).dot(to - from) > 0.0, "{found} {handle}: {before} {after}");
             if handle == "pan" && point.z == 0.0 && point.y == 0.8 {
-                near(after, DVec2::from(to), &found);
+                near(after, to, &found);
             }
         }
     }
