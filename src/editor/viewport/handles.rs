@@ -115,32 +115,24 @@ pub fn moved(
         return Err(format!("a {kind} of this form has no handle `{handle}`"));
     };
     let mut moved = *shape;
-    match (&mut moved, handle) {
-        (Shape::Sphere(sphere), "radius") => sphere.radius = radius(sphere, to, projection)?,
-        (Shape::Triangle(triangle), "normal" | "spin") => {
-            let [.., apex] = vertices(triangle);
+    match (&mut moved, handle, at) {
+        (Shape::Sphere(sphere), "radius", _) => sphere.radius = radius(sphere, to, projection)?,
+        (Shape::Triangle(triangle), "normal" | "spin", Some(at)) => {
             if let Outline::Centered(own) = &mut triangle.outline {
                 match handle {
                     "normal" => own.normal = turned_normal(own, to, projection)?,
-                    _ => own.spin = spun(own, apex, to, projection)?,
+                    _ => own.spin = spun(own, at, to, projection)?,
                 }
             }
         }
-        (shape, _) => {
-            let at = at.filter(|at| projection.depth(*at) > 0.0);
-            let at =
-                at.ok_or_else(|| format!("the handle `{handle}` is not in front of the eye"))?;
+        (shape, _, Some(at)) if projection.depth(at) > 0.0 => {
             let own = handle.rsplit('_').next().and_then(Along::named);
             let along = own.or(along);
             shift(shape, handle, moved_point(at, to, along, projection)? - at);
         }
+        _ => return Err(format!("the handle `{handle}` is not in front of the eye")),
     }
-    match moved {
-        Shape::Box(Cuboid { min, max, .. }) if !min.cmplt(max).all() => {
-            Err("the box would have no extent".to_owned())
-        }
-        _ => Ok(moved),
-    }
+    Ok(moved)
 }
 
 /// Moves what a handle holds.

@@ -56,7 +56,7 @@ fn a_number_changes_where_it_is_written() {
         ("box { min (0, 0, 0) max (1, 1, 1) }", "center", [160.0, 30.0], "", "box { min (0.93, -0.02, 0) max (1.93, 0.98, 1) }"),
         ("box { min (0, 0, -1) max (1, 1, 1) }", "max_x", [180.0, 80.0], "", "box { min (0, 0, -1) max (2, 1, 1) }"),
         ("box { center (0, 0, 0) size (1, 1, 1) }", "max_x", [140.0, 80.0], "", "box { center (0.25, 0, 0) size (1.5, 1, 1) }"),
-        ("box { center (0, 0, 0) size (1, 1, 1) }", "max_x", [60.0, 80.0], "", "no extent"),
+        ("box { center (0, 0, 0) size (1, 1, 1) }", "max_x", [60.0, 80.0], "", "the scene would not be right any more: "),
         ("box { center (0, 0, 0) }", "min_y", [100.0, 90.0], "", "box { center (0, -0.12, 0)  size (0.5, 1.75, 2) }"),
         // Triangles in both forms.
         ("triangle { centroid (0, 0, 0) normal (0, 0, 2) }", "centroid", [140.0, 50.0], "", "triangle { centroid (1, 0, 0) normal (0, 0, 2) }"),
