@@ -3,7 +3,11 @@
 //! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not depend on the rectangle that is asked for, and
 //! no clock is needed, which a web worker's Rust does not have. A frame that is not wanted any more is dropped between two slices.
 
-use std::collections::{HashMap, VecDeque};
+use std::{
+    collections::{HashMap, VecDeque},
+    mem,
+    num::NonZero,
+};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use lsp_server::RequestId;
@@ -16,7 +20,6 @@ use super::{
 };
 use crate::{
     area::Area,
-    cancel,
     film::{self, Film},
     render::{Control, RenderError, render_as_asked},
     sampling::Sampling,
@@ -64,17 +67,12 @@ struct Begun {
 impl Wanted {
     /// Reads the parameters of a request.
     pub fn new(params: &Value) -> Result<Self, Refusal> {
-        let invalid = |name| {
-            let message = format!("`{name}` is a whole number of at least 1");
-            Err(Refusal::invalid(message))
-        };
-        let scale = optional(params, "scale")?.unwrap_or(1);
-        let samples = optional(params, "samples")?;
-        match (scale, samples) {
-            (0, _) => invalid("scale"),
-            (_, Some(0)) => invalid("samples"),
-            _ => Ok(Self { scale, samples }),
-        }
+        let scale: Option<NonZero<u32>> = optional(params, "scale")?;
+        let samples: Option<NonZero<u64>> = optional(params, "samples")?;
+        Ok(Self {
+            scale: scale.map_or(1, NonZero::get),
+            samples: samples.map(NonZero::get),
+        })
     }
 
     fn sampler(&self, scene: &Scene) -> Sampler {
@@ -90,18 +88,16 @@ impl Wanted {
 }
 
 impl Frames {
-    /// Takes a frame in. Returns the request that it supersedes.
-    pub fn push(&mut self, id: RequestId, uri: Uri, wanted: Wanted) -> Option<RequestId> {
-        let is_same = |frame: &Frame| frame.uri == uri && frame.wanted == wanted;
-        let place = self.0.iter().position(is_same);
-        let superseded = place.and_then(|place| self.0.remove(place));
+    /// Takes a frame in. Returns the requests that it supersedes.
+    pub fn push(&mut self, id: RequestId, uri: Uri, wanted: Wanted) -> Vec<RequestId> {
+        let superseded = self.remove(|frame| frame.uri == uri && frame.wanted == wanted);
         self.0.push_back(Frame {
             id,
             uri,
             wanted,
             begun: None,
         });
-        superseded.map(|frame| frame.id)
+        superseded
     }
 
     /// Whether any is to be made.
@@ -111,22 +107,19 @@ impl Frames {
 
     /// Drops the frame that a request asked for. Says whether there was one.
     pub fn cancel(&mut self, id: &RequestId) -> bool {
-        let before = self.0.len();
-        self.0.retain(|frame| frame.id != *id);
-        self.0.len() < before
+        !self.remove(|frame| frame.id == *id).is_empty()
     }
 
     /// Drops the frames of a text, or of all if it is none. Returns who asked for them.
     pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
-        let mut dropped = Vec::new();
-        self.0.retain(|frame| {
-            let is_kept = uri.is_some_and(|uri| frame.uri != *uri);
-            if !is_kept {
-                dropped.push(frame.id.clone());
-            }
-            is_kept
-        });
-        dropped
+        self.remove(|frame| uri.is_none_or(|uri| frame.uri == *uri))
+    }
+
+    fn remove(&mut self, is_meant: impl Fn(&Frame) -> bool) -> Vec<RequestId> {
+        let frames = mem::take(&mut self.0).into_iter();
+        let (removed, kept): (VecDeque<_>, _) = frames.partition(is_meant);
+        self.0 = kept;
+        removed.into_iter().map(|frame| frame.id).collect()
     }
 
     /// Who asked for the oldest one.
@@ -205,15 +198,10 @@ impl Begun {
 
     /// Makes the next slice.
     fn advance(&mut self, world: &World) -> Result<(), RenderError> {
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel: &cancel::NEVER,
-        };
         let Some(part) = self.slices.pop_front() else {
             return Ok(());
         };
-        let made = render_as_asked(world, &self.sampling, part, &control)?;
+        let made = render_as_asked(world, &self.sampling, part, &Control::default())?;
         self.film.put(part, made.film().pixels());
         Ok(())
     }

@@ -10,12 +10,9 @@ use super::{
     params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
 };
-use crate::{
-    editor::{
-        Analysis,
-        viewport::{self, Along, Drag, Vanishing},
-    },
-    source::Span,
+use crate::editor::{
+    Analysis,
+    viewport::{self, Along, Drag, Vanishing},
 };
 
 /// What the names of our own requests begin with.
@@ -44,8 +41,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
 fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let at = point(params, "point")?;
     let (scene, world) = version.world(1);
-    let seen = viewport::pick(scene, world, at);
-    let (hit, color) = seen.unzip();
+    let (hit, color) = viewport::pick(scene, world, at).unzip();
     let hit = hit.flatten();
     Ok(json!({
         "object": hit.map(|hit| object(hit.object, converter, version)),
@@ -59,13 +55,12 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
 /// An object of the scene, and where it stands in the text.
 fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
     let object = &version.scene.objects[index];
-    let range = |span: Span| json!(converter.range(span));
     json!({
         "index": index,
         "kind": object.shape.kind(),
         "name": object.name,
-        "range": range(object.span),
-        "selection": range(version.selections[index]),
+        "range": converter.range(object.span),
+        "selection": converter.range(version.selections[index]),
     })
 }
 
@@ -111,23 +106,16 @@ fn drag(
         Some(_) => to,
         None => point(params, "from")?,
     };
-    let along = match along.as_deref() {
-        None => None,
-        Some("x") => Some(Along::Axis(0)),
-        Some("y") => Some(Along::Axis(1)),
-        Some("z") => Some(Along::Axis(2)),
-        Some("floor") => Some(Along::Floor),
-        Some(other) => {
-            let message = format!("`along` is x, y, z or floor, and not `{other}`");
-            return Err(Refusal::invalid(message));
-        }
-    };
+    let along = along.map(|name| {
+        let message = || format!("`along` is x, y, z or floor, and not `{name}`");
+        Along::named(&name).ok_or_else(|| Refusal::invalid(message()))
+    });
     let drag = Drag {
         object,
         handle: &handle,
         from,
         to,
-        along,
+        along: along.transpose()?,
     };
     let dragged = viewport::drag(analysis, &version.scene, &drag).map_err(Refusal::failed)?;
     let edits = converter.text_edits(dragged.edits);
@@ -142,18 +130,15 @@ fn samples(params: &Value, version: &mut SceneVersion) -> Answer {
     }
     let (scene, world) = version.world(1);
     let found = viewport::samples(scene, world, pixel).map_err(Refusal::failed)?;
-    let points = found.samples.iter().map(|(point, _)| point.to_array());
-    let colors = found.samples.iter().map(|(_, color)| color.to_string());
-    Ok(json!({
-        "points": points.collect::<Vec<_>>(),
-        "colors": colors.collect::<Vec<_>>(),
-        "color": found.color.to_string(),
-    }))
+    let samples = found.samples.iter();
+    let (points, colors): (Vec<_>, Vec<_>) = samples
+        .map(|(point, color)| (point.to_array(), color.to_string()))
+        .unzip();
+    Ok(json!({ "points": points, "colors": colors, "color": found.color.to_string() }))
 }
 
 fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
     let point: Option<[f64; 2]> = optional(params, name)?;
-    let point = point.filter(|point| point.iter().all(|x| x.is_finite()));
     let refusal = || Refusal::invalid(format!("`{name}` is a point of the picture, as [x, y]"));
     point.map(DVec2::from).ok_or_else(refusal)
 }

@@ -160,7 +160,7 @@ impl Server {
                 (Some(_), "frame") => match Wanted::new(params) {
                     Ok(wanted) => {
                         let superseded = self.frames.push(id, uri, wanted);
-                        said.extend(superseded.map(cancelled));
+                        said.extend(superseded.into_iter().map(cancelled));
                     }
                     Err(refusal) => said.push(response(id, Err(refusal))),
                 },

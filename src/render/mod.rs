@@ -25,7 +25,7 @@ use thiserror::Error;
 
 use crate::{
     area::Area,
-    cancel::Cancelled,
+    cancel::{self, Cancelled},
     film::{Film, Pixel, TooLarge},
     sampling::Sampling,
     tracer::World,
@@ -49,11 +49,10 @@ pub struct Control<'a> {
 /// As many threads as there are processors, nobody who is told, to the end.
 impl Default for Control<'_> {
     fn default() -> Self {
-        static NEVER: AtomicBool = AtomicBool::new(false);
         Self {
             threads: None,
             progress: &|_| {},
-            cancel: &NEVER,
+            cancel: &cancel::NEVER,
         }
     }
 }

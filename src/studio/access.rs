@@ -73,25 +73,30 @@ impl Access {
 
     /// What a request gets.
     pub fn answer(&self, request: &Request) -> Answer {
-        if let Some(refusal) = self.refusal(request) {
-            return Answer::Response(refusal);
-        }
-        if let Some(token) = request.target.strip_prefix("/?token=") {
-            return Answer::Response(self.exchange(token));
-        }
-        if !self.has_cookie(request) {
-            return forbidden("Open the address that `pinhole studio` has printed.");
-        }
-        match request.target.as_str() {
-            "/" => Answer::Response(index()),
-            "/studio.js" => file("text/javascript", SCRIPT),
-            "/studio.css" => file("text/css", STYLE),
-            "/socket" if !request.has("origin") => {
-                forbidden("A web socket says which page asks for it.")
+        let target = request.target.as_str();
+        Answer::Response(if let Some(refusal) = self.refusal(request) {
+            refusal
+        } else if let Some(token) = target.strip_prefix("/?token=") {
+            self.exchange(token)
+        } else if !self.has_cookie(request) {
+            forbidden("Open the address that `pinhole studio` has printed.")
+        } else {
+            match target {
+                "/" => index(),
+                "/studio.js" => Response::new("200 OK", "text/javascript", SCRIPT.to_vec()),
+                "/studio.css" => Response::new("200 OK", "text/css", STYLE.to_vec()),
+                "/socket" if !request.has("origin") => {
+                    forbidden("A web socket says which page asks for it.")
+                }
+                "/socket" => match socket_key(request) {
+                    Some(key) => return Answer::Socket(key.to_owned()),
+                    None => Response::text("426 Upgrade Required", "This is a web socket.")
+                        .with("Upgrade", "websocket")
+                        .with("Sec-WebSocket-Version", "13"),
+                },
+                _ => Response::text("404 Not Found", "There is no such page."),
             }
-            "/socket" => socket(request),
-            _ => Answer::Response(Response::text("404 Not Found", "There is no such page.")),
-        }
+        })
     }
 
     /// Why a request is refused whoever sends it: it is not for this host, not from its page, or not for reading.
@@ -101,19 +106,17 @@ impl Access {
             // Browsers leave the usual port out.
             host == format!("{name}:{}", self.port) || (self.port == 80 && host == *name)
         });
-        if !is_own {
-            let what = "This is not the address of this page.";
-            return Some(Response::text("403 Forbidden", what));
-        }
         let is_from_here = request.header("origin") == Some(&format!("http://{host}"));
-        if request.has("origin") && !is_from_here {
-            return Some(Response::text(
-                "403 Forbidden",
-                "Another page asks for this.",
-            ));
+        if !is_own {
+            Some(forbidden("This is not the address of this page."))
+        } else if request.has("origin") && !is_from_here {
+            Some(forbidden("Another page asks for this."))
+        } else if request.method != "GET" {
+            let refusal = Response::text("405 Method Not Allowed", "Use GET.");
+            Some(refusal.with("Allow", "GET"))
+        } else {
+            None
         }
-        (request.method != "GET")
-            .then(|| Response::text("405 Method Not Allowed", "Use GET.").with("Allow", "GET"))
     }
 
     /// The cookie for a token.
@@ -123,19 +126,14 @@ impl Access {
         if is_first {
             *once = None;
         }
-        match is_first || is_equal(token, &self.token) {
-            true => self.admission(),
-            false => {
-                let what = "This address is from an earlier run, used already, or incomplete. Open the one that `pinhole studio` has printed.";
-                Response::text("403 Forbidden", what)
-            }
+        if !is_first && !is_equal(token, &self.token) {
+            return forbidden(
+                "This address is from an earlier run, used already, or incomplete. Open the one that `pinhole studio` has printed.",
+            );
         }
-    }
-
-    /// The address is left for one without the token, so that it is not shown, copied or kept in the history.
-    fn admission(&self) -> Response {
         let (name, secret) = (self.cookie(), &self.secret);
         let cookie = format!("{name}={secret}; Path=/; HttpOnly; SameSite=Strict");
+        // The address is left for one without the token, so that it is not shown, copied or kept in the history.
         Response::text("303 See Other", "This way.")
             .with("Location", "/")
             .with("Set-Cookie", cookie)
@@ -180,33 +178,18 @@ fn index() -> Response {
         .with("Content-Security-Policy", policy)
 }
 
-fn forbidden(what: &str) -> Answer {
-    Answer::Response(Response::text("403 Forbidden", what))
+fn forbidden(what: &str) -> Response {
+    Response::text("403 Forbidden", what)
 }
 
-fn file(kind: &str, bytes: &[u8]) -> Answer {
-    Answer::Response(Response::new("200 OK", kind, bytes.to_vec()))
-}
-
-fn socket(request: &Request) -> Answer {
+/// The key of a request for a web socket, if it is one.
+fn socket_key(request: &Request) -> Option<&str> {
     let is = |name, wanted: &str| {
-        let words = request.header(name).unwrap_or_default().split(',');
-        words
-            .map(str::trim)
-            .any(|word| word.eq_ignore_ascii_case(wanted))
+        let mut words = request.header(name).unwrap_or_default().split(',');
+        words.any(|word| word.trim().eq_ignore_ascii_case(wanted))
     };
     let is_socket = is("upgrade", "websocket")
         && is("connection", "upgrade")
         && is("sec-websocket-version", "13");
-    match request.header("sec-websocket-key") {
-        Some(key) if is_socket => Answer::Socket(key.to_owned()),
-        _ => {
-            let refused = Response::text("426 Upgrade Required", "This is a web socket.");
-            Answer::Response(
-                refused
-                    .with("Upgrade", "websocket")
-                    .with("Sec-WebSocket-Version", "13"),
-            )
-        }
-    }
+    request.header("sec-websocket-key").filter(|_| is_socket)
 }

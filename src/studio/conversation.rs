@@ -7,7 +7,7 @@ use std::{
     io,
     net::TcpStream,
     sync::{
-        Arc,
+        Arc, Weak,
         atomic::{AtomicBool, Ordering},
         mpsc::{self, Receiver, Sender},
     },
@@ -22,11 +22,7 @@ use tungstenite::{
     protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
 };
 
-use super::{
-    download,
-    pages::{Event, Pages},
-    scene_file::NotSaved,
-};
+use super::{download, pages::Pages, scene_file::NotSaved};
 use crate::lsp::{
     Refusal, Server,
     messages::{self, Malformed},
@@ -46,7 +42,7 @@ pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Res
         .max_message_size(Some(LONGEST))
         .max_frame_size(Some(LONGEST));
     stream.set_read_timeout(Some(WAIT))?;
-    let (sender, events) = mpsc::channel();
+    let (sender, messages) = mpsc::channel();
     let number = pages.join(sender.clone());
     let mut conversation = Conversation {
         number,
@@ -54,8 +50,8 @@ pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Res
         pages: Arc::clone(pages),
         server: Server::new(|_| {}),
         sender,
-        events,
-        rendering: None,
+        messages,
+        rendering: (Value::Null, Weak::new()),
     };
     let ended = conversation.run();
     conversation.cancel(None);
@@ -72,21 +68,18 @@ struct Conversation {
     pages: Arc<Pages>,
     server: Server,
     /// For threads that work for it.
-    sender: Sender<Event>,
-    events: Receiver<Event>,
-    /// The number of the request for the picture's file that is being made, and what gives it up.
-    rendering: Option<(Value, Arc<AtomicBool>)>,
+    sender: Sender<String>,
+    /// Messages for the page.
+    messages: Receiver<String>,
+    /// The number of the last request for a picture's file, and while that is being made what gives it up.
+    rendering: (Value, Weak<AtomicBool>),
 }
 
 impl Conversation {
     fn run(&mut self) -> Result<(), Error> {
         while self.server.ended().is_none() {
-            while let Ok(event) = self.events.try_recv() {
-                let (Event::Tell(text) | Event::Rendered(text)) = &event;
-                self.send(text.clone())?;
-                if let Event::Rendered(_) = event {
-                    self.rendering = None;
-                }
+            while let Ok(text) = self.messages.try_recv() {
+                self.send(text)?;
             }
             match self.read() {
                 Ok(Some(Frame::Text(text))) => self.hear(&text)?,
@@ -184,28 +177,29 @@ impl Conversation {
     fn render(&mut self, request: Request) -> Result<(), Error> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
-        if self.rendering.is_some() {
+        if self.rendering.1.strong_count() > 0 {
             return self.say(failed("another picture is being made"));
         }
         let cancel = Arc::new(AtomicBool::new(false));
-        let (of_work, sender) = (Arc::clone(&cancel), self.sender.clone());
+        self.rendering = (json!(id), Arc::downgrade(&cancel));
+        let sender = self.sender.clone();
         let work = move || {
-            let answer = download::answer(request, &of_work);
-            let _ = sender.send(Event::Rendered(messages::written(&answer)));
+            let answer = download::answer(request, &cancel);
+            // It is over before the page knows of it, and asks for the next one.
+            drop(cancel);
+            let _ = sender.send(messages::written(&answer));
         };
         let thread = thread::Builder::new().name("picture".to_owned());
         match thread.spawn(work) {
-            Ok(_) => {
-                self.rendering = Some((json!(id), cancel));
-                Ok(())
-            }
+            Ok(_) => Ok(()),
             Err(error) => self.say(failed(&format!("no thread can be had: {error}"))),
         }
     }
 
     /// Gives the picture's file up that a request asked for, or any.
     fn cancel(&self, wanted: Option<&Value>) {
-        if let Some((id, cancel)) = &self.rendering
+        let (id, cancel) = &self.rendering;
+        if let Some(cancel) = cancel.upgrade()
             && wanted.is_none_or(|wanted| wanted == id)
         {
             cancel.store(true, Ordering::SeqCst);

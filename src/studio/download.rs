@@ -89,12 +89,11 @@ fn rendered<P: film::Pixel>(scene: &Scene, cancel: &AtomicBool) -> Result<Film<P
     let world = World::new_unless(scene, cancel)?;
     let (width, height) = (scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, width, height);
+    let whole = Area::whole(width, height);
     let control = Control {
-        threads: None,
-        progress: &|_| {},
         cancel,
+        ..Control::default()
     };
-    let rendered =
-        render::render_as_asked(&world, &sampling, Area::whole(width, height), &control)?;
+    let rendered = render::render_as_asked(&world, &sampling, whole, &control)?;
     Ok(rendered.into_film())
 }

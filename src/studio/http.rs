@@ -43,28 +43,27 @@ impl Request {
             if head.len() > LONGEST_HEAD {
                 return None;
             }
-            if let Some(request) = Self::parse(&head)? {
+            if let Some(request) = Self::parse(&head).ok()? {
                 return Some(request);
             }
         }
     }
 
-    /// The request that these bytes begin with; the inner value is none while its head is not complete.
-    #[expect(clippy::option_option, reason = "broken, and not there yet")]
-    fn parse(bytes: &[u8]) -> Option<Option<Self>> {
+    /// The request that these bytes begin with; none while its head is not complete.
+    fn parse(bytes: &[u8]) -> Result<Option<Self>, httparse::Error> {
         let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
         let mut parsed = httparse::Request::new(&mut headers);
-        let httparse::Status::Complete(length) = parsed.parse(bytes).ok()? else {
-            return Some(None);
+        let httparse::Status::Complete(length) = parsed.parse(bytes)? else {
+            return Ok(None);
         };
         let headers = parsed.headers.iter();
         let headers = headers.map(|header| {
             let value = String::from_utf8_lossy(header.value).into_owned();
             (header.name.to_ascii_lowercase(), value)
         });
-        Some(Some(Self {
-            method: parsed.method?.to_owned(),
-            target: parsed.path?.to_owned(),
+        Ok(Some(Self {
+            method: parsed.method.unwrap_or_default().to_owned(),
+            target: parsed.path.unwrap_or_default().to_owned(),
             headers: headers.collect(),
             rest: bytes[length..].to_vec(),
         }))

@@ -12,15 +12,6 @@ use serde_json::json;
 use super::scene_file::{NotSaved, SceneFile};
 use crate::lsp::messages;
 
-/// What other threads have for a page.
-#[derive(Debug)]
-pub enum Event {
-    /// There is a message for it.
-    Tell(String),
-    /// Its picture's file is made, or not: the answer.
-    Rendered(String),
-}
-
 /// The pages that are open, and the file that they share.
 #[derive(Debug)]
 pub struct Pages(Mutex<Shared>);
@@ -28,7 +19,7 @@ pub struct Pages(Mutex<Shared>);
 #[derive(Debug)]
 struct Shared {
     file: SceneFile,
-    pages: Vec<(u64, Sender<Event>)>,
+    pages: Vec<(u64, Sender<String>)>,
     /// How many pages there were.
     joined: u64,
 }
@@ -51,7 +42,7 @@ impl Pages {
     }
 
     /// Adds a page, which is told about the file. Returns its number.
-    pub fn join(&self, sender: Sender<Event>) -> u64 {
+    pub fn join(&self, sender: Sender<String>) -> u64 {
         let mut shared = self.lock();
         shared.joined += 1;
         let number = shared.joined;
@@ -75,9 +66,9 @@ impl Pages {
     ) -> Result<(), NotSaved> {
         let mut shared = self.lock();
         let was_new = shared.file.path().is_none();
-        let is_known = shared.file.held().text() == Some(text);
+        let before = shared.file.held().clone();
         shared.file.save(text, base, name)?;
-        if was_new || !is_known {
+        if was_new || *shared.file.held() != before {
             shared.tell(|page| was_new || page != number);
         }
         drop(shared);
@@ -96,9 +87,9 @@ impl Pages {
         };
         let pages = Arc::clone(self);
         let follow = move || {
-            while let Some(content) = latest.take() {
+            while latest.take().is_some() {
                 let mut shared = pages.lock();
-                if shared.file.look(content) {
+                if shared.file.look() {
                     shared.tell(|_| true);
                 }
             }
@@ -112,22 +103,20 @@ impl Pages {
 }
 
 impl Shared {
-    fn about_file(&self) -> String {
-        let params = json!({
-            "name": self.file.name(),
-            "text": self.file.held().text(),
-            "reason": self.file.held().reason(),
-            "saved": self.file.path().is_some(),
-        });
-        messages::written(&Notification::new("studio/file".to_owned(), params).into())
-    }
-
     /// Tells pages about the file as it is now.
     fn tell(&self, is_meant: impl Fn(u64) -> bool) {
-        let message = self.about_file();
+        let held = self.file.held().as_ref();
+        let params = json!({
+            "name": self.file.name(),
+            "text": held.ok(),
+            "reason": held.err(),
+            "saved": self.file.path().is_some(),
+        });
+        let message =
+            messages::written(&Notification::new("studio/file".to_owned(), params).into());
         for (_, sender) in self.pages.iter().filter(|(page, _)| is_meant(*page)) {
             // One that has gone is about to leave.
-            let _ = sender.send(Event::Tell(message.clone()));
+            let _ = sender.send(message.clone());
         }
     }
 }

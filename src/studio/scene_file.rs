@@ -4,7 +4,6 @@ use std::{
     fs, io,
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
-    time::Instant,
 };
 
 use crate::{
@@ -16,6 +15,9 @@ use crate::{
 /// What reads a file, up to the length that scenes have.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
+/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
+pub type Held = Result<Option<String>, String>;
+
 /// A scene's file, or a new scene that has none yet.
 #[derive(Debug)]
 pub struct SceneFile {
@@ -25,49 +27,7 @@ pub struct SceneFile {
     path: Option<PathBuf>,
     /// What was there when it was looked at last.
     held: Held,
-    /// When a page has saved it last.
-    saved: Option<Instant>,
 }
-
-/// What there is at a path.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Held {
-    /// A text.
-    Text(String),
-    /// No file.
-    Nothing,
-    /// Something that is not to be overwritten: why it cannot be read as a text.
-    Unreadable(String),
-}
-
-impl Held {
-    fn new(bytes: io::Result<Vec<u8>>) -> Self {
-        match bytes.map(String::from_utf8) {
-            Ok(Ok(text)) => Self::Text(text),
-            Ok(Err(_)) => Self::Unreadable(NO_TEXT.to_owned()),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Self::Nothing,
-            Err(error) => Self::Unreadable(error.to_string()),
-        }
-    }
-
-    /// The text, if it is one.
-    pub fn text(&self) -> Option<&str> {
-        match self {
-            Self::Text(text) => Some(text),
-            _ => None,
-        }
-    }
-
-    /// Why there is something and no text, in words.
-    pub fn reason(&self) -> Option<&str> {
-        match self {
-            Self::Unreadable(reason) => Some(reason),
-            _ => None,
-        }
-    }
-}
-
-const NO_TEXT: &str = "it is not a text in UTF-8";
 
 /// Why a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
@@ -78,21 +38,25 @@ pub enum NotSaved {
     Refused(String),
 }
 
+impl From<io::Error> for NotSaved {
+    fn from(error: io::Error) -> Self {
+        Self::Refused(error.to_string())
+    }
+}
+
 impl SceneFile {
     /// The file at a path.
     ///
     /// # Errors
     ///
-    /// It cannot be read, or holds no text.
-    pub fn open(path: &Path, read: Read) -> io::Result<Self> {
-        let text = String::from_utf8(read(path)?)
-            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, NO_TEXT))?;
+    /// Why it cannot be read, or holds no text.
+    pub fn open(path: &Path, read: Read) -> Result<Self, String> {
+        let text = text(read(path)).map_err(|error| error.to_string())?;
         Ok(Self {
             read,
             folder: PathBuf::new(),
             path: Some(path.to_owned()),
-            held: Held::Text(text),
-            saved: None,
+            held: Ok(Some(text)),
         })
     }
 
@@ -102,8 +66,7 @@ impl SceneFile {
             read,
             folder,
             path: None,
-            held: Held::Text(SMALLEST.to_owned()),
-            saved: None,
+            held: Ok(Some(SMALLEST.to_owned())),
         }
     }
 
@@ -129,20 +92,23 @@ impl SceneFile {
         &self.held
     }
 
-    /// Takes in what is there now. Says whether that is new.
-    pub fn look(&mut self, content: Content) -> bool {
+    /// Looks at what is there now: what a watch has seen may be older than what a page has saved since. Says whether it is new.
+    pub fn look(&mut self) -> bool {
         let Some(path) = self.path() else {
             return false;
         };
-        // What was seen may be older than what a page has saved since.
-        let is_old = self.saved.is_some_and(|saved| content.since < saved);
-        let held = Held::new(match is_old {
-            true => (self.read)(path),
-            false => content.bytes,
-        });
+        let held = self.found(path);
         let is_new = self.held != held;
         self.held = held;
         is_new
+    }
+
+    fn found(&self, path: &Path) -> Held {
+        match text((self.read)(path)) {
+            Ok(text) => Ok(Some(text)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error.to_string()),
+        }
     }
 
     /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has.
@@ -156,40 +122,37 @@ impl SceneFile {
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<(), NotSaved> {
-        let refused = |error: io::Error| NotSaved::Refused(error.to_string());
         match &self.path {
-            Some(_) if name.is_some_and(|name| name != self.name()) => {
-                let message = format!("this scene is in {}", self.name());
-                return Err(NotSaved::Refused(message));
-            }
             Some(path) => {
-                let found = Held::new((self.read)(path));
-                if let Some(reason) = found.reason() {
-                    let message = format!("{} cannot be read: {reason}", self.name());
-                    return Err(NotSaved::Refused(message));
+                let own = self.name();
+                if name.is_some_and(|name| name != own) {
+                    return Err(NotSaved::Refused(format!("this scene is in {own}")));
                 }
-                if found.text() != Some(text) {
-                    if found.text() != base {
-                        return Err(NotSaved::Changed(found.text().map(str::to_owned)));
+                let unread = |why| NotSaved::Refused(format!("{own} cannot be read: {why}"));
+                let found = self.found(path).map_err(unread)?;
+                if found.as_deref() != Some(text) {
+                    if found.as_deref() != base {
+                        return Err(NotSaved::Changed(found));
                     }
-                    film::write_whole(path, &AtomicBool::new(false), |file| {
-                        file.write_all(text.as_bytes())
-                    })
-                    .map_err(refused)?;
+                    write(path, text)?;
                 }
             }
             None => {
                 let name = name.unwrap_or_default();
-                check_name(name).map_err(|message| NotSaved::Refused(message.to_owned()))?;
+                check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
-                create(&path, text).map_err(refused)?;
+                create(&path, text)?;
                 self.path = Some(path);
             }
         }
-        self.held = Held::Text(text.to_owned());
-        self.saved = Some(Instant::now());
+        self.held = Ok(Some(text.to_owned()));
         Ok(())
     }
+}
+
+fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
+    let no_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
+    String::from_utf8(bytes?).map_err(no_text)
 }
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.
@@ -221,17 +184,18 @@ fn is_device(name: &str) -> bool {
 /// Makes a file, whole or not at all, where there is none.
 fn create(path: &Path, text: &str) -> io::Result<()> {
     // It holds the name until the text is there; who had it before keeps it.
-    fs::OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(path)?;
-    let written = film::write_whole(path, &AtomicBool::new(false), |file| {
-        file.write_all(text.as_bytes())
-    });
+    fs::File::create_new(path)?;
+    let written = write(path, text);
     if written.is_err() {
         let _ = fs::remove_file(path);
     }
     written
+}
+
+fn write(path: &Path, text: &str) -> io::Result<()> {
+    film::write_whole(path, &AtomicBool::new(false), |file| {
+        file.write_all(text.as_bytes())
+    })
 }
 
 #[cfg(test)]

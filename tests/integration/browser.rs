@@ -1,8 +1,10 @@
 //! The report's page in a real browser, which has to be there: `cargo test -- --ignored browser`, with Chromium on the path.
 
-use std::{fs, path::Path, process::Command};
+use std::{path::Path, process::Command};
 
-use serde_json::Value;
+use serde_json::{Value, json};
+
+use crate::program::Folder;
 
 const SCENE: &str =
     "image { width 96 height 64 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
@@ -44,78 +46,65 @@ addEventListener("load", () => {
 
 /// The answers in a window so wide, in a dark one or not.
 fn asked(page: &Path, width: u32, is_dark: bool) -> Value {
+    let profile = page.with_extension("profile");
     let mut browser = Command::new("chromium");
     browser
         .args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"])
         .arg(format!("--window-size={width},900"))
-        .arg(format!(
-            "--user-data-dir={}",
-            page.with_extension("profile").display()
-        ));
+        .arg(format!("--user-data-dir={}", profile.display()));
     if is_dark {
         browser.arg("--blink-settings=preferredColorScheme=0");
     }
-    let output = browser
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .expect("Chromium is on the path");
-    let dom = String::from_utf8(output.stdout).unwrap();
-    let answer = dom
-        .split_once("<pre id=\"found\">")
-        .expect("the page was loaded")
-        .1;
-    let answer = answer.split_once("</pre>").unwrap().0;
-    serde_json::from_str(
-        &answer
-            .replace("&gt;", ">")
-            .replace("&lt;", "<")
-            .replace("&amp;", "&"),
-    )
-    .unwrap()
+    let address = format!("file://{}", page.display());
+    let output = browser.arg(address).output();
+    let dom = String::from_utf8(output.expect("Chromium is on the path").stdout).unwrap();
+    let answer = dom.split_once("<pre id=\"found\">");
+    let (answer, _) = answer.unwrap().1.split_once("</pre>").unwrap();
+    let signs = [("&gt;", ">"), ("&lt;", "<"), ("&amp;", "&")];
+    let answer = signs
+        .iter()
+        .fold(answer.to_owned(), |text, (from, to)| text.replace(from, to));
+    serde_json::from_str(&answer).unwrap()
 }
 
 #[test]
 #[ignore = "needs Chromium"]
 fn a_browser_shows_the_whole_page() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("a.scn"), SCENE).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-        .args([
-            "report", "a.scn", "-o", "out", "--runs", "2", "--budget", "3",
-        ])
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{output:?}");
-    let html = fs::read_to_string(folder.path().join("out/index.html")).unwrap();
-    let page = folder.path().join("asked.html");
-    fs::write(&page, html.replacen("</body>", QUESTIONS, 1)).unwrap();
+    let folder = Folder::with([("a.scn", SCENE)]);
+    let reported = folder.run("report a.scn -o out --runs 2 --budget 3");
+    assert_eq!(reported.status, 0, "{}", reported.errors);
+    let html = folder.text("out/index.html");
+    folder.write("asked.html", html.replacen("</body>", QUESTIONS, 1));
     for (width, is_dark) in [(1280, false), (420, false), (1280, true)] {
-        let found = asked(&page, width, is_dark);
-        let what = format!("{width}, {is_dark}: {found:#}");
-        assert_eq!(found["wide"], 0, "{what}");
-        assert_eq!(
-            (&found["images"], &found["broken"]),
-            (&11.into(), &0.into()),
-            "{what}"
-        );
-        assert_eq!(found["cut"], Value::Array(Vec::new()), "{what}");
-        let charts = found["charts"].as_array().unwrap();
-        assert_eq!(charts.len(), 2);
-        for chart in charts {
-            assert!(chart["texts"].as_u64().unwrap() > 15, "{what}");
-            assert_eq!(chart["outside"], Value::Array(Vec::new()), "{what}");
-            assert_eq!(chart["upon"], Value::Array(Vec::new()), "{what}");
-        }
+        let found = asked(&folder.path("asked.html"), width, is_dark);
         let (ink, paper) = match is_dark {
-            false => (["rgb(17, 17, 17)"; 2], "rgb(255, 255, 255)"),
-            true => (["rgb(221, 221, 221)"; 2], "rgb(24, 24, 24)"),
+            false => ("rgb(17, 17, 17)", "rgb(255, 255, 255)"),
+            true => ("rgb(221, 221, 221)", "rgb(24, 24, 24)"),
         };
-        assert_eq!([&found["page"][0], &found["chart"][0]], ink, "{what}");
-        assert_eq!(
-            [&found["page"][1], &found["chart"][1]],
-            [paper; 2],
-            "{what}"
-        );
+        for (path, expected) in [
+            ("/wide", json!(0)),
+            ("/images", json!(11)),
+            ("/broken", json!(0)),
+            ("/cut", json!([])),
+            ("/page", json!([ink, paper])),
+            ("/chart", json!([ink, paper])),
+            ("/charts/0/outside", json!([])),
+            ("/charts/0/upon", json!([])),
+            ("/charts/1/outside", json!([])),
+            ("/charts/1/upon", json!([])),
+            ("/charts/2", Value::Null),
+        ] {
+            let found_there = found.pointer(path).unwrap_or(&Value::Null);
+            assert_eq!(
+                *found_there, expected,
+                "{path}, {width}, {is_dark}: {found:#}"
+            );
+        }
+        for chart in 0..2 {
+            assert!(
+                found["charts"][chart]["texts"].as_u64() > Some(15),
+                "{found:#}"
+            );
+        }
     }
 }

@@ -32,8 +32,8 @@ pub fn distance(scene: &Scene) -> f64 {
     let seen = seen.map(|(hit, ..)| hit).find(|hit| hit.visible);
     let nearest = || {
         let objects = scene.objects.iter();
-        // The first handle of an object is its middle.
-        let middles = objects.filter_map(|object| handles(&object.shape, &projection).first()?.at);
+        let handles = objects.map(|object| handles(&object.shape, &projection, projection.right));
+        let middles = handles.filter_map(|handles| handles.first()?.1);
         let distances = middles.map(from_eye).filter(|distance| *distance > 0.0);
         distances.reduce(f64::min)
     };

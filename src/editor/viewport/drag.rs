@@ -1,22 +1,20 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are rounded to one decimal after another, until everything is seen within
-//! half a pixel of where it would be. The text with these numbers is read once: it may tie them to others, or break a condition of the language.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are written to one decimal after another, until the text means
+//! something that is seen within half a pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a condition of the language.
 
 use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::edits,
-    fields::{changes, movable},
-    handles::{self, Along, TOLERANCE, handles, outline_point},
+    edits::{Change, changes, edits},
+    handles::{self, Along, TOLERANCE, handles},
     projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
     scene::{self, Camera, Part, Scene, Shape},
-    schema::Value,
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
@@ -57,7 +55,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
-    let dragged = part(scene, drag).zip(block(analysis, scene, drag));
+    let dragged = part(scene, drag.object).zip(block(analysis, scene, drag));
     let (current, (block, name)) = dragged.ok_or_else(|| match drag.object {
         Some(index) => format!("there is no object {index}"),
         None => "the text has no camera".to_owned(),
@@ -70,9 +68,9 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         distance: drag.object.map_or_else(|| camera::distance(scene), |_| 1.0),
     };
     let ideal = view.moved(current)?;
-    let fields = movable(block, current);
-    let is_finite = |field: &(&str, Value)| ideal.value(field.0).is_some_and(|it| it.is_finite());
-    if !fields.iter().all(is_finite) || (drag.object.is_none() && !ideal.is_possible()) {
+    let changes = changes(block, current, ideal);
+    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
+    if !greatest.is_finite() || (drag.object.is_none() && !ideal.is_possible()) {
         return Err("that is too far away".to_owned());
     }
     if !view.agree(ideal, ideal) {
@@ -81,33 +79,41 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if view.agree(ideal, current) {
         return Ok(Dragged::default());
     }
-    let changes = changes(&fields, ideal);
-    let edits = |decimals| edits(analysis, block, current, &changes, decimals);
-    let is_near = |(_, part): &(Vec<Edit>, Part)| part.is_possible() && view.agree(ideal, *part);
-    let greatest = changes.iter().map(|change| change.size());
-    let first = -1 - libm::log10(greatest.fold(0.0, f64::max)).floor() as i32;
+    // A text is read quickly without the other objects.
+    let objects = scene.objects.iter().enumerate();
+    let others = objects.filter(|(index, _)| Some(*index) != drag.object);
+    let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
-    let (edits, _) = (first..first + DIGITS)
-        .filter_map(edits)
-        .find(is_near)
-        .or_else(|| edits(first + DIGITS))
-        .ok_or_else(tied)?;
-    let found = part(&read(analysis, &edits)?, drag);
-    let found = found.filter(|found| view.agree(ideal, *found));
-    let found = found.ok_or_else(tied)?;
-    let values = fields.into_iter().filter_map(|(field, before)| {
-        let after = found.value(field).filter(|after| *after != before)?;
-        Some(format!("{name}.{field} = {after}"))
-    });
-    Ok(Dragged {
-        values: values.collect(),
-        edits,
-    })
+    let mut refusal = tied();
+    let first = -1 - libm::log10(greatest).floor() as i32;
+    for decimals in first..=first + DIGITS {
+        let edits = edits(analysis, block, &changes, decimals);
+        let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
+            continue;
+        };
+        let alone = read(analysis, [&edits, &without_others]);
+        match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
+            Ok(Some(found)) if view.agree(ideal, found) => {
+                // The others may depend on the same numbers.
+                read(analysis, [&edits, &[]])?;
+                let value = |change: &Change| {
+                    let after = found.value(change.name)?;
+                    let is_new = after != change.from;
+                    is_new.then(|| format!("{name}.{} = {after}", change.name))
+                };
+                let values = changes.iter().filter_map(value).collect();
+                return Ok(Dragged { edits, values });
+            }
+            Ok(_) => refusal = tied(),
+            Err(why) => refusal = why,
+        }
+    }
+    Err(refusal)
 }
 
-/// What is dragged: the camera or an object; none if there is no such object.
-fn part(scene: &Scene, drag: &Drag<'_>) -> Option<Part> {
-    Some(match drag.object {
+/// An object or the camera; none if there is no such object.
+fn part(scene: &Scene, object: Option<usize>) -> Option<Part> {
+    Some(match object {
         None => Part::Camera(scene.camera),
         Some(index) => Part::Shape(scene.objects.get(index)?.shape),
     })
@@ -131,13 +137,10 @@ fn block<'a, 's>(
 }
 
 /// The scene that a text means after some edits.
-fn read(analysis: &Analysis<'_>, edits: &[Edit]) -> Result<Scene, String> {
+fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let source = analysis.source();
-    let text = apply(
-        &Fix::new("", edits.iter().cloned()),
-        SourceId::File,
-        source.text(),
-    );
+    let fix = Fix::new("", edits.concat());
+    let text = apply(&fix, SourceId::File, source.text());
     let reading = scene::read(&Sources::new(Source::from_text(source.name(), text)));
     let mut diagnostics = reading.diagnostics.iter();
     reading.scene.ok_or_else(|| {
@@ -187,11 +190,10 @@ impl Viewpoint<'_> {
             (Part::Shape(ideal), Part::Shape(found)) => {
                 let marks = self.marks(&ideal).into_iter().zip(self.marks(&found));
                 marks.into_iter().all(|((name, ideal), (_, found))| {
-                    let is_seen = |at: &DVec2| self.is_near(*at) || name == self.drag.handle;
-                    match (ideal.filter(is_seen), found) {
-                        (None, _) => name != self.drag.handle,
-                        (Some(ideal), Some(found)) => ideal.distance(found) <= TOLERANCE,
-                        (Some(_), None) => false,
+                    let is_held = name == self.drag.handle;
+                    match ideal {
+                        Some(ideal) if is_held || self.is_near(ideal) => are_near(ideal, found),
+                        _ => !is_held,
                     }
                 })
             }
@@ -201,28 +203,28 @@ impl Viewpoint<'_> {
 
     /// Where the handles of an object are seen; that of a radius on the side where it is moved to.
     fn marks(&self, shape: &Shape) -> Vec<(&'static str, Option<DVec2>)> {
-        let mut handles = handles(shape, &self.projection);
-        if let (Shape::Sphere(sphere), "radius", [_, radius]) =
-            (shape, self.drag.handle, &mut handles[..])
-        {
-            let towards = self.projection.ray(self.drag.to);
-            radius.at = outline_point(sphere, self.projection.eye, towards);
-        }
+        let towards = match self.drag.handle {
+            "radius" => self.projection.ray(self.drag.to),
+            _ => self.projection.right,
+        };
+        let mut handles = handles(shape, &self.projection, towards);
         // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
-        if let (Shape::Checkerboard(board), [y]) = (shape, &mut handles[..]) {
-            y.at = self.held().map(|at| at.with_y(board.y));
+        if let (Shape::Checkerboard(board), [(_, at)]) = (shape, &mut handles[..]) {
+            *at = self.held().map(|at| at.with_y(board.y));
         }
-        let seen = |at: Option<DVec3>| at.and_then(|at| self.projection.point(at));
+        let seen = |at: DVec3| self.projection.point(at);
         handles
             .into_iter()
-            .map(|it| (it.name, seen(it.at)))
+            .map(|(name, at)| (name, at.and_then(seen)))
             .collect()
     }
 
     /// Where the first handle of the dragged object is before the drag.
     fn held(&self) -> Option<DVec3> {
         let object = self.scene.objects.get(self.drag.object?)?;
-        handles(&object.shape, &self.projection).first()?.at
+        handles(&object.shape, &self.projection, DVec3::ZERO)
+            .first()?
+            .1
     }
 
     /// Whether a point lies in the picture, or so near to it that it may come to be seen.
@@ -245,10 +247,14 @@ impl Viewpoint<'_> {
         ];
         let mut depths = [0.5, 1.0, 2.0].map(|part| part * self.distance).into_iter();
         depths.all(|depth| {
-            points.into_iter().all(|point| {
-                let seen = found.point(ideal.at_depth(point, depth));
-                seen.is_some_and(|seen| seen.distance(point) <= TOLERANCE)
-            })
+            points
+                .into_iter()
+                .all(|point| are_near(point, found.point(ideal.at_depth(point, depth))))
         })
     }
+}
+
+/// Whether something is seen within half a pixel of where it should be.
+fn are_near(ideal: DVec2, found: Option<DVec2>) -> bool {
+    found.is_some_and(|found| found.distance(ideal) <= TOLERANCE)
 }

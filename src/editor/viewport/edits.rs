@@ -3,27 +3,61 @@
 //! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
 //! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
 
-use glam::DVec3;
-
-use super::fields::Change;
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
     scene::{Part, operate},
-    schema::Value,
+    schema::{self, Value},
     source::{SourceId, Span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// The edits that change fields of a part's block, in order, with numbers written to so many decimals: those of angles in degrees, and radians to two more. And
-/// what becomes of the part, unless a number that changes stands behind several of its fields. None if two of them want different things of one number.
+/// A field that has to change.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// The field.
+    pub name: &'static str,
+    /// The value that it has.
+    pub from: Value,
+    /// The amount that is to be added to it.
+    pub by: Value,
+}
+
+impl Change {
+    /// The greatest number in the amount; of an angle, in degrees.
+    pub fn size(&self) -> f64 {
+        match self.by {
+            Value::Vector(vector) => vector.abs().max_element(),
+            by => amount(by, None).abs(),
+        }
+    }
+}
+
+/// The fields of a block in which its part differs from what it is to be; of a box those of the form that the text has.
+pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
+    let other_form = match block.fields.iter().any(|field| field.name.text == "min") {
+        true => ["center", "size"],
+        false => ["min", "max"],
+    };
+    let fields = block.kind.and_then(|kind| schema::block(kind.text));
+    let fields = fields.into_iter().flat_map(|row| row.fields);
+    let changes = fields.filter_map(|&schema::Field { name, .. }| {
+        let from = current.value(name)?;
+        let by = operate(Operator::Subtract, ideal.value(name)?, from)?;
+        Some(Change { name, from, by })
+    });
+    changes
+        .filter(|change| change.size() != 0.0 && !other_form.contains(&change.name))
+        .collect()
+}
+
+/// The edits that change fields of a block, in order, with numbers written to so many decimals. None if two of them want different things of one number.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
-    mut part: Part,
     changes: &[Change],
     decimals: i32,
-) -> Option<(Vec<Edit>, Part)> {
+) -> Option<Vec<Edit>> {
     let mut writer = Writer {
         analysis,
         decimals,
@@ -31,30 +65,23 @@ pub fn edits<'s>(
     };
     let mut added = Vec::new();
     for &Change { name, from, by } in changes {
-        let value = match block.fields.iter().find(|field| field.name.text == name) {
-            Some(field) => operate(Operator::Add, from, writer.change(&field.value, by))?,
-            None => {
-                let value = writer.sum(from, by);
-                added.push(format!("{name} {}", spelled_sum(value)));
-                value
-            }
-        };
-        part = part.with(name, value)?;
+        match block.fields.iter().find(|field| field.name.text == name) {
+            Some(field) => writer.change(&field.value, by)?,
+            None => added.push(format!("{name} {}", writer.sum(from, by))),
+        }
     }
     let mut edits = writer.edits;
     if !added.is_empty() {
-        edits.extend(Edit::add_fields(
-            block.span,
-            analysis.model.sources(),
-            &added,
-        ));
+        let sources = analysis.model.sources();
+        edits.extend(Edit::add_fields(block.span, sources, &added));
     }
     edits.sort_by_key(|edit| edit.span);
     edits.dedup();
-    let apart = |pair: &[Edit]| pair[0].span.end <= pair[1].span.start;
-    let same = |pair: &[Edit]| pair[0].span == pair[1].span;
-    let is_right = edits.windows(2).all(|pair| apart(pair) && !same(pair));
-    is_right.then_some((edits, part))
+    let apart = |pair: &[Edit]| {
+        let [a, b] = [0, 1].map(|index| pair[index].span);
+        a.end <= b.start && a != b
+    };
+    edits.windows(2).all(apart).then_some(edits)
 }
 
 struct Writer<'a, 's> {
@@ -64,8 +91,8 @@ struct Writer<'a, 's> {
 }
 
 impl<'s> Writer<'_, 's> {
-    /// Changes a value by an amount. Returns by how much it has changed, which is rounded.
-    fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Value {
+    /// Changes a value by an amount; none if it has no amounts.
+    fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
         match (&tree.kind, by) {
             (ValueKind::Parentheses(inner), _) => self.change(inner, by),
@@ -73,21 +100,22 @@ impl<'s> Writer<'_, 's> {
                 Some(definition) => self.change(&definition.value, by),
                 None => self.offset(tree.span, by),
             },
-            (ValueKind::Tuple(elements), Value::Vector(mut by)) if elements.len() == 3 => {
-                for (axis, element) in elements.iter().enumerate() {
-                    if by[axis] != 0.0 {
-                        by[axis] =
-                            amount(self.change(&element.value, Value::Number(by[axis])), None);
-                    }
-                }
-                Value::Vector(by)
+            (ValueKind::Tuple(elements), Value::Vector(by)) => {
+                let mut numbers = elements.iter().zip(by.to_array());
+                numbers.try_for_each(|(it, by)| self.change(&it.value, Value::Number(by)))
             }
-            (_, Value::Number(_) | Value::Angle(_)) if is_number(tree) => {
-                self.literal(tree, tree.span, by)
+            _ if is_number(tree) => {
+                let unit = unit(tree);
+                let old = amount(model.value(tree, None)?, unit);
+                let text = self.number(old, amount(by, unit), unit);
+                if text != spelled(old, unit) {
+                    self.edits.push(Edit::new(tree.span, text));
+                }
+                Some(())
             }
             (ValueKind::Chain { rest, .. }, _) => match rest.last() {
                 Some(step) if !step.operator.is_of_product() && is_literal(&step.operand) => {
-                    self.last(step, by)
+                    self.change_last(step, by)
                 }
                 _ => self.offset(tree.span, by),
             },
@@ -95,94 +123,59 @@ impl<'s> Writer<'_, 's> {
         }
     }
 
-    /// Changes the literal that a sum ends in.
-    fn last(&mut self, step: &Step<'s>, by: Value) -> Value {
-        match (step.operator, by) {
-            (Operator::Subtract, Value::Vector(by)) => {
-                match self.change(&step.operand, Value::Vector(-by)) {
-                    Value::Vector(by) => Value::Vector(-by),
-                    other => other,
-                }
-            }
-            (_, Value::Vector(_)) => self.change(&step.operand, by),
-            _ => self.literal(&step.operand, step.sign.to(step.operand.span), by),
-        }
-    }
-
-    /// Changes a number or an angle; the place may begin with the operator before it, of a sum.
-    fn literal(&mut self, tree: &tree::Value<'s>, place: Span, by: Value) -> Value {
-        let written = self.analysis.slice(place);
-        let operator = match place == tree.span {
-            true => None,
-            false => written.chars().next(),
+    /// Changes the literal that a sum ends in: of a number the sign is the operator.
+    fn change_last(&mut self, step: &Step<'s>, by: Value) -> Option<()> {
+        let (sign, other) = match step.operator {
+            Operator::Subtract => (-1.0, '+'),
+            _ => (1.0, '-'),
         };
-        let sign = match operator {
-            Some('-') => -1.0,
-            _ => 1.0,
-        };
-        let unit = unit(tree);
-        let value = self.analysis.model.value(tree, None);
-        let old = sign * value.map_or(0.0, |value| amount(value, unit));
-        let new = self.rounded(old, old + amount(by, unit), unit);
-        if new != old {
-            let digits = spelled(new.abs(), unit);
-            self.edits.push(match operator {
-                None => Edit::new(place, spelled(new, unit)),
-                Some(_) if (new < 0.0) == (sign < 0.0) => Edit::new(tree.span, digits),
-                Some(_) if new < 0.0 => Edit::new(place, format!("- {digits}")),
-                Some(_) => Edit::new(place, format!("+ {digits}")),
-            });
+        let by = operate(Operator::Multiply, Value::Number(sign), by)?;
+        self.change(&step.operand, by)?;
+        if let Some(edit) = self.edits.last_mut()
+            && edit.span == step.operand.span
+            && let Some(digits) = edit.text.strip_prefix('-')
+        {
+            *edit = Edit::new(step.sign.to(edit.span), format!("{other} {digits}"));
         }
-        value_of(new - old, unit)
+        Some(())
     }
 
     /// Adds an offset behind an expression.
-    fn offset(&mut self, behind: Span, by: Value) -> Value {
-        let zero = match by {
-            Value::Vector(_) => Value::Vector(DVec3::ZERO),
-            Value::Angle(_) => value_of(0.0, Some(Unit::Degrees)),
-            _ => Value::Number(0.0),
-        };
-        let by = self.sum(zero, by);
-        if by != zero {
-            let text = spelled_sum(by);
+    fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
+        let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
+        let text = self.sum(zero, by);
+        if text != self.sum(zero, zero) {
             let text = match text.strip_prefix('-') {
                 Some(digits) => format!(" - {digits}"),
                 None => format!(" + {text}"),
             };
-            self.edits
-                .push(Edit::insert(SourceId::File, behind.end, text));
+            let edit = Edit::insert(SourceId::File, behind.end, text);
+            self.edits.push(edit);
         }
-        by
+        Some(())
     }
 
     /// A value that has changed by an amount; an angle in degrees.
-    fn sum(&self, from: Value, by: Value) -> Value {
+    fn sum(&self, from: Value, by: Value) -> String {
         match (from, by) {
-            (Value::Vector(mut from), Value::Vector(by)) => {
-                for axis in 0..3 {
-                    from[axis] = self.rounded(from[axis], from[axis] + by[axis], None);
-                }
-                Value::Vector(from)
+            (Value::Vector(from), Value::Vector(by)) => {
+                let [x, y, z] = [0, 1, 2].map(|axis| self.number(from[axis], by[axis], None));
+                format!("({x}, {y}, {z})")
             }
             _ => {
                 let unit = matches!(from, Value::Angle(_)).then_some(Unit::Degrees);
-                let old = amount(from, unit);
-                value_of(self.rounded(old, old + amount(by, unit), unit), unit)
+                self.number(amount(from, unit), amount(by, unit), unit)
             }
         }
     }
 
-    /// The new number with as many decimals as there are to be; the old one where the difference has none of them.
-    fn rounded(&self, old: f64, new: f64, unit: Option<Unit>) -> f64 {
-        let decimals = match unit {
-            Some(Unit::Radians) => self.decimals + 2,
-            _ => self.decimals,
-        };
-        match round(new - old, decimals) == 0.0 {
+    /// A number that has changed by an amount, with as many decimals as there are to be; the old one where the amount has none of them.
+    fn number(&self, old: f64, by: f64, unit: Option<Unit>) -> String {
+        let new = match round(by, self.decimals) == 0.0 {
             true => old,
-            false => round(new, decimals),
-        }
+            false => round(old + by, self.decimals),
+        };
+        spelled(new, unit)
     }
 }
 
@@ -190,16 +183,14 @@ impl<'s> Writer<'_, 's> {
 fn is_number(tree: &tree::Value<'_>) -> bool {
     match &tree.kind {
         ValueKind::Number(_) | ValueKind::Angle { .. } => true,
-        ValueKind::Negation { operand, .. } => {
-            matches!(operand.kind, ValueKind::Number(_) | ValueKind::Angle { .. })
-        }
+        ValueKind::Negation { operand, .. } => is_number(operand),
         _ => false,
     }
 }
 
 /// Whether a value is written in numbers, at least in part, so that it can take up any change.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
-    is_number(tree) || matches!(&tree.kind, ValueKind::Tuple(elements) if elements.len() == 3)
+    is_number(tree) || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
 /// The unit of a number.
@@ -218,23 +209,6 @@ fn amount(value: Value, unit: Option<Unit>) -> f64 {
         (Value::Angle(angle), Some(Unit::Radians)) => angle.in_radians(),
         (Value::Angle(angle), _) => angle.in_degrees(),
         _ => 0.0,
-    }
-}
-
-/// A number, or an angle of so many of its unit.
-fn value_of(amount: f64, unit: Option<Unit>) -> Value {
-    unit.map_or(Value::Number(amount), |unit| Value::Angle(unit.of(amount)))
-}
-
-/// A sum with all its digits.
-fn spelled_sum(value: Value) -> String {
-    match value {
-        Value::Vector(vector) => {
-            let [x, y, z] = vector.to_array().map(|number| spelled(number, None));
-            format!("({x}, {y}, {z})")
-        }
-        Value::Angle(angle) => spelled(angle.in_degrees(), Some(Unit::Degrees)),
-        number => spelled(amount(number, None), None),
     }
 }
 

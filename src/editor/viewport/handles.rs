@@ -5,19 +5,15 @@ use glam::{DVec2, DVec3};
 use super::projection::Projection;
 use crate::{
     math::{Angle, trig},
-    scene::{CenteredTriangle, Outline, Shape, Sphere, Triangle},
+    scene::{CenteredTriangle, Cuboid, Outline, Shape, Sphere},
     tracer::vertices,
 };
 
 /// So far, in pixels, something may be seen from where it should be.
 pub const TOLERANCE: f64 = 0.5;
 
-/// A handle, and where it is in the world; nowhere if it cannot be seen from where the eye is.
-#[derive(Clone, Copy, Debug)]
-pub struct Handle {
-    pub name: &'static str,
-    pub at: Option<DVec3>,
-}
+/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye is.
+pub type Handle = (&'static str, Option<DVec3>);
 
 /// What a point moves along, other than the plane through it that is parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,58 +24,59 @@ pub enum Along {
     Floor,
 }
 
+impl Along {
+    /// An axis, or `floor`, by its name.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "floor" => Some(Self::Floor),
+            _ => AXES.iter().position(|axis| *axis == name).map(Self::Axis),
+        }
+    }
+}
+
 const CORNERS: [&str; 3] = ["v0", "v1", "v2"];
+
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The faces of a box: of each axis the one of least coordinates, and the other.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
-/// The handles of an object.
-pub fn handles(shape: &Shape, projection: &Projection) -> Vec<Handle> {
-    let handle = |(name, at): (&'static str, DVec3)| Handle { name, at: Some(at) };
+/// The handles of an object; that of a sphere's radius is on the side of a direction.
+pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
     match shape {
         Shape::Sphere(sphere) => vec![
-            handle(("center", sphere.center)),
-            Handle {
-                name: "radius",
-                at: outline_point(sphere, projection.eye, projection.right),
-            },
+            ("center", Some(sphere.center)),
+            ("radius", outline_point(sphere, projection.eye, towards)),
         ],
-        Shape::Box(cuboid) => {
-            let center = cuboid.min.midpoint(cuboid.max);
-            let faces = FACES.iter().enumerate().map(|(face, name)| {
+        Shape::Box(Cuboid { min, max, .. }) => {
+            let center = min.midpoint(*max);
+            let mut handles = vec![("center", Some(center))];
+            for (face, name) in FACES.into_iter().enumerate() {
                 let mut at = center;
-                at[face / 2] = [cuboid.min, cuboid.max][face % 2][face / 2];
-                (*name, at)
-            });
-            let center = [("center", center)].into_iter();
-            center.chain(faces).map(handle).collect()
+                at[face / 2] = [min, max][face % 2][face / 2];
+                handles.push((name, Some(at)));
+            }
+            handles
         }
         Shape::Triangle(triangle) => match triangle.outline {
-            Outline::Centered(CenteredTriangle {
-                centroid,
-                normal,
-                sides,
-                ..
-            }) => {
+            Outline::Centered(own) => {
                 let [.., apex] = vertices(triangle);
-                let tip = centroid + unit(normal).0 * sides.z;
-                let handles = [("centroid", centroid), ("normal", tip), ("spin", apex)];
-                handles.map(handle).into()
+                let tip = own.centroid + unit(own.normal).0 * own.sides.z;
+                vec![
+                    ("centroid", Some(own.centroid)),
+                    ("normal", Some(tip)),
+                    ("spin", Some(apex)),
+                ]
             }
             Outline::Vertices(corners) => {
-                let corners = CORNERS.into_iter().zip(corners);
-                let center = [("center", triangle.outline.centroid())];
-                corners.chain(center).map(handle).collect()
+                let corners = CORNERS.into_iter().zip(corners.map(Some));
+                let center = [("center", Some(triangle.outline.centroid()))];
+                corners.chain(center).collect()
             }
         },
         Shape::Checkerboard(board) => {
-            let Projection { eye, ahead, .. } = *projection;
-            let depth = (board.y - eye.y) / ahead.y;
-            let met = (depth > 0.0).then(|| (eye + ahead * depth).with_y(board.y));
-            vec![Handle {
-                name: "y",
-                at: met.filter(|met| met.is_finite()),
-            }]
+            let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
+            vec![("y", met.map(|met| met.with_y(board.y)))]
         }
     }
 }
@@ -112,66 +109,56 @@ pub fn moved(
     along: Option<Along>,
     projection: &Projection,
 ) -> Result<Shape, String> {
-    let mut handles = handles(shape, projection).into_iter();
-    let Some(Handle { name, at }) = handles.find(|known| known.name == handle) else {
+    let mut handles = handles(shape, projection, projection.right).into_iter();
+    let Some((_, at)) = handles.find(|(known, _)| *known == handle) else {
         let kind = shape.kind();
         return Err(format!("a {kind} of this form has no handle `{handle}`"));
     };
-    let at = || at.ok_or_else(|| format!("the handle `{name}` is not in front of the eye"));
-    let shift = |along| Ok::<_, String>(moved_point(at()?, to, along, projection)? - at()?);
     let mut moved = *shape;
-    match (&mut moved, name) {
-        (Shape::Sphere(sphere), "radius") => {
-            let (axis, distance) = unit(sphere.center - projection.eye);
-            let (ray, _) = unit(projection.ray(to));
-            sphere.radius = ray.cross(axis).length() * distance;
-            // From the surface, or from inside, no outline is seen.
-            if ray.dot(axis) <= 0.0 || sphere.radius >= distance {
-                return Err("the outline of a sphere cannot come so far".to_owned());
+    match (&mut moved, handle, at) {
+        (Shape::Sphere(sphere), "radius", _) => sphere.radius = radius(sphere, to, projection)?,
+        (Shape::Triangle(triangle), "normal" | "spin", Some(at)) => {
+            if let Outline::Centered(own) = &mut triangle.outline {
+                match handle {
+                    "normal" => own.normal = turned_normal(own, to, projection)?,
+                    _ => own.spin = spun(own, at, to, projection)?,
+                }
             }
         }
-        (Shape::Sphere(sphere), _) => sphere.center += shift(along)?,
-        (Shape::Box(cuboid), "center") => {
-            let shift = shift(along)?;
-            cuboid.min += shift;
-            cuboid.max += shift;
+        (shape, _, Some(at)) if projection.depth(at) > 0.0 => {
+            let own = handle.rsplit('_').next().and_then(Along::named);
+            let along = own.or(along);
+            shift(shape, handle, moved_point(at, to, along, projection)? - at);
         }
-        (Shape::Box(cuboid), face) => {
-            let face = FACES.iter().position(|name| *name == face).unwrap_or(0);
-            let axis = face / 2;
-            let shift = shift(Some(Along::Axis(axis)))?[axis];
-            match face % 2 {
-                0 => cuboid.min[axis] += shift,
-                _ => cuboid.max[axis] += shift,
+        _ => return Err(format!("the handle `{handle}` is not in front of the eye")),
+    }
+    Ok(moved)
+}
+
+/// Moves what a handle holds.
+fn shift(shape: &mut Shape, handle: &str, by: DVec3) {
+    match shape {
+        Shape::Sphere(sphere) => sphere.center += by,
+        Shape::Box(cuboid) => {
+            if !handle.starts_with("max") {
+                cuboid.min += by;
             }
-            if cuboid.min[axis] >= cuboid.max[axis] {
-                let axis = ["x", "y", "z"][axis];
-                return Err(format!("the box would have no extent along {axis}"));
-            }
-        }
-        (Shape::Triangle(triangle), "spin") => {
-            let spin = spun(triangle, to, projection)?;
-            if let Outline::Centered(centered) = &mut triangle.outline {
-                centered.spin = spin;
+            if !handle.starts_with("min") {
+                cuboid.max += by;
             }
         }
-        (Shape::Triangle(triangle), _) => match (&mut triangle.outline, name) {
-            (Outline::Centered(centered), "normal") => {
-                centered.normal = turned_normal(centered, to, projection)?;
-            }
-            (Outline::Centered(centered), _) => centered.centroid += shift(along)?,
-            (Outline::Vertices(corners), name) => {
-                let shift = shift(along)?;
-                for (corner, known) in corners.iter_mut().zip(CORNERS) {
-                    if name == "center" || name == known {
-                        *corner += shift;
+        Shape::Triangle(triangle) => match &mut triangle.outline {
+            Outline::Centered(own) => own.centroid += by,
+            Outline::Vertices(corners) => {
+                for (corner, name) in corners.iter_mut().zip(CORNERS) {
+                    if handle == "center" || handle == name {
+                        *corner += by;
                     }
                 }
             }
         },
-        (Shape::Checkerboard(board), _) => board.y += shift(Some(Along::Axis(1)))?.y,
+        Shape::Checkerboard(board) => board.y += by.y,
     }
-    Ok(moved)
 }
 
 /// A point moved to where it is seen at a point of the picture, or as near to that as what it moves along allows.
@@ -181,23 +168,17 @@ fn moved_point(
     along: Option<Along>,
     projection: &Projection,
 ) -> Result<DVec3, String> {
-    let ray = projection.ray(to);
     let (moved, goal) = match along {
-        None => match projection.depth(point) {
-            depth if depth > 0.0 => (projection.eye + ray * depth, to),
-            _ => return Err("it is not in front of the eye".to_owned()),
-        },
-        Some(Along::Floor) => match (point.y - projection.eye.y) / ray.y {
-            depth if depth > 0.0 => ((projection.eye + ray * depth).with_y(point.y), to),
-            _ => return Err("the plane that it moves in is not seen there".to_owned()),
-        },
-        Some(Along::Axis(axis)) => along_axis(point, to, DVec3::AXES[axis], projection)?,
+        None => (projection.on_plane(to, point, projection.ahead), to),
+        Some(Along::Floor) => (projection.on_plane(to, point, DVec3::Y), to),
+        Some(Along::Axis(axis)) => along_axis(point, to, DVec3::AXES[axis], projection),
     };
-    // Very far away, numbers have too few digits.
-    let seen = projection.point(moved);
-    match seen.is_some_and(|seen| seen.distance(goal) <= TOLERANCE) {
-        true => Ok(moved),
-        false => Err("that is too far away".to_owned()),
+    let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
+    match seen {
+        Some((moved, seen)) if seen.distance(goal) <= TOLERANCE => Ok(moved),
+        // Very far away, numbers have too few digits.
+        Some(_) => Err("that is too far away".to_owned()),
+        None => Err("what it moves along is not seen there".to_owned()),
     }
 }
 
@@ -207,7 +188,7 @@ fn along_axis(
     to: DVec2,
     axis: DVec3,
     projection: &Projection,
-) -> Result<(DVec3, DVec2), String> {
+) -> (Option<DVec3>, DVec2) {
     // The plane of the eye and the axis through the point cuts the picture in a line; its normal, in the camera's axes, has that line's coefficients.
     let plane = unit((point - projection.eye).cross(axis)).0;
     let normal = DVec2::new(plane.dot(projection.right), -plane.dot(projection.top));
@@ -217,11 +198,18 @@ fn along_axis(
     // p + s a lies on the ray t where (p + s a) × t = 0.
     let across = axis.cross(ray);
     let step = -(point - projection.eye).cross(ray).dot(across) / across.length_squared();
-    let moved = point + axis * step;
-    match moved.is_finite() {
-        true if projection.depth(moved) > 0.0 => Ok((moved, nearest)),
-        true => Err("the axis does not come so far in the picture".to_owned()),
-        false => Err("the axis is seen end-on".to_owned()),
+    (Some(point + axis * step), nearest)
+}
+
+/// The radius with which a sphere's outline passes through a point of the picture.
+fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, String> {
+    let (axis, distance) = unit(sphere.center - projection.eye);
+    let (ray, _) = unit(projection.ray(to));
+    let radius = ray.cross(axis).length() * distance;
+    // From the surface, or from inside, no outline is seen.
+    match ray.dot(axis) > 0.0 && radius < distance {
+        true => Ok(radius),
+        false => Err("the outline of a sphere cannot come so far".to_owned()),
     }
 }
 
@@ -250,22 +238,21 @@ fn turned_normal(
 }
 
 /// The spin with which the apex is seen in the direction of a point of the picture from the centroid.
-fn spun(triangle: &Triangle, to: DVec2, projection: &Projection) -> Result<Angle, String> {
-    let Outline::Centered(centered) = triangle.outline else {
-        return Err("a triangle with vertices has no spin".to_owned());
-    };
-    let normal = unit(centered.normal).0;
-    let ray = projection.ray(to);
-    let depth = (centered.centroid - projection.eye).dot(normal) / ray.dot(normal);
-    if !(depth > 0.0 && depth.is_finite()) {
-        return Err("the plane of the triangle is not seen there".to_owned());
-    }
-    let [.., apex] = vertices(triangle);
-    let wanted = projection.eye + ray * depth - centered.centroid;
-    let current = apex - centered.centroid;
+fn spun(
+    triangle: &CenteredTriangle,
+    apex: DVec3,
+    to: DVec2,
+    projection: &Projection,
+) -> Result<Angle, String> {
+    let normal = unit(triangle.normal).0;
+    let wanted = projection
+        .on_plane(to, triangle.centroid, normal)
+        .ok_or("the plane of the triangle is not seen there")?
+        - triangle.centroid;
+    let current = apex - triangle.centroid;
     let (sine, cosine) = (current.cross(wanted).dot(normal), current.dot(wanted));
     let turn = trig::atan2(sine, cosine).in_degrees();
-    Ok(within_half_turn(centered.spin, turn))
+    Ok(within_half_turn(triangle.spin, turn))
 }
 
 /// An angle and so many degrees more; by whole turns less where that is more than half a turn.

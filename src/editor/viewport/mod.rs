@@ -4,12 +4,11 @@
 //! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
 //!
 //! `projection` leads from the world to the picture and back. `handles` knows where an object's handles are and how one moves the object, `camera`
-//! how the pointer moves the camera; `fields` makes values of fields of either, and `edits` writes these into the text. `drag` is all of that together.
+//! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together.
 
 mod camera;
 mod drag;
 mod edits;
-mod fields;
 mod handles;
 mod overlays;
 mod pick;

@@ -87,8 +87,8 @@ pub fn overlays(scene: &Scene, further: Option<usize>) -> Overlays {
         lines.take(MOST_OBJECTS).collect()
     };
     let outline = |(index, object): (usize, &Object)| {
-        let seen = |handle: Handle| (handle.name, handle.at.and_then(|at| projection.point(at)));
-        let handles = handles(&object.shape, &projection).into_iter();
+        let seen = |(name, at): Handle| (name, at.and_then(|at| projection.point(at)));
+        let handles = handles(&object.shape, &projection, projection.right).into_iter();
         Outline {
             object: index,
             lines: outline(&projection, &object.shape),
@@ -125,13 +125,12 @@ fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
     };
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
     let edges = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(j, k)| {
-        [0, 1].map(|i| {
-            let mut corner = DVec3::ZERO;
-            for (axis, which) in [(axis, i), (second, j), (third, k)] {
-                corner[axis] = [min, max][which][axis];
-            }
-            corner
-        })
+        let mut from = min;
+        from[second] = [min, max][j][second];
+        from[third] = [min, max][k][third];
+        let mut to = from;
+        to[axis] = max[axis];
+        [from, to]
     });
     edges.into()
 }
@@ -167,20 +166,11 @@ fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Opti
 
 /// The square of a checkerboard that the view axis meets.
 fn square(projection: &Projection, board: &Checkerboard) -> Vec<Line> {
-    let shape = Shape::Checkerboard(*board);
-    let met = handles(&shape, projection)
-        .pop()
-        .and_then(|handle| handle.at);
+    let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
     met.map_or_else(Vec::new, |met| {
         let side = board.square;
-        let corner = (met / side).floor() * side;
-        let at = |i: f64, k: f64| DVec3::new(corner.x + i * side, board.y, corner.z + k * side);
-        projection.line(&[
-            at(0.0, 0.0),
-            at(1.0, 0.0),
-            at(1.0, 1.0),
-            at(0.0, 1.0),
-            at(0.0, 0.0),
-        ])
+        let corner = ((met / side).floor() * side).with_y(board.y);
+        let [x, z] = [DVec3::X * side, DVec3::Z * side];
+        projection.line(&[corner, corner + x, corner + x + z, corner + z, corner])
     })
 }

@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use crate::{
     area::Area,
-    cancel,
     color::Color,
     math::SimdWidth,
     render::{Control, render_as_asked},
@@ -47,18 +46,13 @@ pub struct PixelSamples {
 ///
 /// Why the pixel cannot be rendered, in a sentence.
 pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSamples, String> {
-    let control = Control {
-        threads: None,
-        progress: &|_| {},
-        cancel: &cancel::NEVER,
-    };
     let (picture, pixel) = (world.picture(), Area::pixel(x, y));
     let sampling = Sampling::new(&scene.sampler, picture.width, picture.height);
     let count = sampling.count(x, y);
     if count > MOST_TRACED {
         return Err(format!("{count} samples of a pixel would take too long"));
     }
-    let rendered = render_as_asked(world, &sampling, pixel, &control);
+    let rendered = render_as_asked(world, &sampling, pixel, &Control::default());
     let rendered = rendered.map_err(|error| error.to_string())?;
     let mut points = Points::default();
     let shown = 0..count.min(MOST_SAMPLES);

@@ -73,6 +73,13 @@ impl Projection {
         self.eye + self.ray(point) * depth
     }
 
+    /// Where the ray through a point of the picture meets the plane through a point of the world; none if that is not in front of the eye.
+    pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
+        let ray = self.ray(at);
+        let depth = (through - self.eye).dot(normal) / ray.dot(normal);
+        (depth > 0.0 && depth.is_finite()).then(|| self.eye + ray * depth)
+    }
+
     /// What is seen of a line through some points: several lines where parts of it are not in front of the eye, or too far outside of the picture.
     pub fn line(&self, points: &[DVec3]) -> Vec<Line> {
         let far = points

@@ -20,33 +20,33 @@ fn renamed(text: &str, new: &str) -> Result<String, String> {
 
 #[test]
 fn every_use_of_a_definition_is_found_from_everywhere() {
-    for place in [
-        "let $0ball",
-        "let ba$0ll",
-        "= ball$0 +",
-        "+ ball$0",
-        "{ radius ball$0 }",
+    let ball: &[usize] = &[4, 21, 28, 54];
+    for (place, expected) in [
+        ("let $0ball", ball),
+        ("let ba$0ll", ball),
+        ("= ball$0 +", ball),
+        ("+ ball$0", ball),
+        ("{ radius ball$0 }", ball),
+        // The object of the same name is another one.
+        ("sphere $0ball", &[40]),
     ] {
         let text = SCENE.replacen(&place.replace("$0", ""), place, 1);
         at_cursor(&text, |analysis, at| {
             let found = occurrences(analysis, at);
-            let places: Vec<usize> = found.iter().map(|found| found.span.start).collect();
-            assert_eq!(places, [4, 21, 28, 54], "{place}");
-            assert!(found[0].is_definition && !found[1].is_definition);
-            assert_eq!(definition(analysis, at).map(|span| span.start), Some(4));
+            assert!(
+                found.iter().map(|it| &it.span.start).eq(expected),
+                "{place}"
+            );
+            assert!(
+                found
+                    .iter()
+                    .map(|it| it.is_definition)
+                    .eq(expected.iter().map(|at| at == &expected[0]))
+            );
+            let definition = definition(analysis, at).map(|span| span.start);
+            assert_eq!(definition, Some(expected[0]));
         })
     }
-    // The object of the same name is another one.
-    at_cursor(
-        &SCENE.replace("sphere ball", "sphere $0ball"),
-        |analysis, at| {
-            let places: Vec<usize> = occurrences(analysis, at)
-                .iter()
-                .map(|found| found.span.start)
-                .collect();
-            assert_eq!(places, [40]);
-        },
-    )
 }
 
 #[test]

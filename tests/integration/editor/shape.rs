@@ -4,15 +4,12 @@ use std::time::{Duration, Instant};
 
 use pinhole::{
     color::Color,
-    diagnostic::apply,
-    editor::{
-        Analysis, FoldKind, Symbol, fixes, folds, formatting, hints, presentations, swatches,
-        symbols,
-    },
+    diagnostic::{Edit, apply},
+    editor::{FoldKind, Symbol, fixes, folds, formatting, hints, presentations, swatches, symbols},
     source::{SourceId, Span},
 };
 
-use super::{at_cursor, of_whole, sources, under};
+use super::{at_cursor, of_whole, under};
 use crate::table::{lines, list, rows};
 
 #[test]
@@ -23,13 +20,9 @@ fn the_outline_has_definitions_blocks_and_fields() {
     of_whole(text, |analysis| {
         let mut outline = Vec::new();
         for symbol in symbols(analysis) {
+            let children = symbol.children.iter();
             outline.push(shown(&symbol));
-            outline.extend(
-                symbol
-                    .children
-                    .iter()
-                    .map(|child| format!("  {}", shown(child))),
-            );
+            outline.extend(children.map(|child| format!("  {}", shown(child))));
         }
         let expected = [
             "Definition a 1",
@@ -156,21 +149,25 @@ fn remarks_say_what_the_text_does_not() {
 
 #[test]
 fn the_layout_is_one_change_of_what_differs() {
-    let changes = |text: &str| {
-        let sources = sources(text);
-        let found = formatting(&Analysis::new(&sources));
-        found.map(|changes| {
-            let changes = changes.into_iter();
-            let shown = changes.map(|edit| (edit.span.start, edit.span.end, edit.text));
-            shown.collect::<Vec<_>>()
-        })
-    };
-    assert_eq!(changes("let a = 1\nlet b = 2\n"), Some(Vec::new()));
-    assert_eq!(
-        changes("let a  =  1+1\nlet b = 2"),
-        Some(vec![(6, 23, "= 1 + 1\nlet b = 2\n".to_owned())])
-    );
-    assert_eq!(changes("let a = "), None);
+    for (text, expected) in [
+        ("let a = 1\nlet b = 2\n", Some(None)),
+        (
+            "let a  =  1+1\nlet b = 2",
+            Some(Some((6, 23, "= 1 + 1\nlet b = 2\n"))),
+        ),
+        ("let a = ", None),
+    ] {
+        let found = of_whole(text, formatting);
+        let shown = |edit: &Edit| (edit.span.start, edit.span.end, edit.text.clone());
+        let found = found.map(|changes| changes.iter().map(shown).collect::<Vec<_>>());
+        let expected =
+            expected.map(|change| change.map(|(start, end, text)| (start, end, text.to_owned())));
+        assert_eq!(
+            found,
+            expected.map(|change| change.into_iter().collect()),
+            "{text}"
+        );
+    }
 }
 
 #[test]

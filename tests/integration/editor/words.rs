@@ -58,11 +58,8 @@ fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
         match item {
             Item::Definition(definition) => {
                 words.insert(definition.keyword, SemanticKind::Keyword);
-                words.extend(
-                    definition
-                        .name
-                        .map(|name| (name.span, SemanticKind::Variable)),
-                );
+                let name = definition.name;
+                words.extend(name.map(|name| (name.span, SemanticKind::Variable)));
                 values(&definition.value, false, &mut words);
             }
             Item::Block(block) => {
@@ -111,25 +108,18 @@ fn places_and_trees_agree() {
     let mut files = 0;
     let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
     for path in folders.into_iter().flat_map(scenes) {
-        let Some((text, words)) = fs::read_to_string(&path)
-            .ok()
-            .and_then(|text| Some((text.clone(), of_tree(&text)?)))
-        else {
+        // Some are no text.
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let Some(words) = of_tree(&text).filter(|words| !words.is_empty()) else {
             continue;
         };
         files += 1;
         of_whole(&text, |analysis| {
             let tokens = semantic_tokens(analysis).into_iter();
-            let tokens: BTreeMap<Span, SemanticKind> =
-                tokens.map(|token| (token.span, token.kind)).collect();
+            let tokens: BTreeMap<_, _> = tokens.map(|token| (token.span, token.kind)).collect();
             for (span, kind) in words {
-                assert_eq!(
-                    tokens.get(&span),
-                    Some(&kind),
-                    "{} {:?}",
-                    path.display(),
-                    under(analysis, span)
-                );
+                let (found, word) = (tokens.get(&span), under(analysis, span));
+                assert_eq!(found, Some(&kind), "{} {word:?}", path.display());
             }
         })
     }

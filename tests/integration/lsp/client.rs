@@ -1,4 +1,4 @@
-//! A plain client: it writes messages, and reads every byte that comes back.
+//! A plain client: it writes messages, and reads every one that comes back.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -7,106 +7,73 @@ use std::{
 
 use serde_json::{Value, json};
 
-pub const URI: &str = "file:///home/somebody/a%20scene.scn";
+/// What carries the texts of messages.
+pub trait Carrier {
+    /// The document that the conversation is about.
+    const URI: &'static str;
 
-pub struct Client {
-    child: Child,
-    input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
-    requests: i32,
-    /// The last diagnostics that came before a response.
-    told: Value,
+    fn write(&mut self, text: &str);
+    fn read(&mut self) -> String;
 }
 
-impl Client {
-    /// The server, to which nothing was said yet.
-    pub fn start() -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
-            .arg("lsp")
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .expect("the server starts");
-        let input = child.stdin.take();
-        let output = child.stdout.take().expect("it was asked for");
+pub struct Client<C> {
+    pub carrier: C,
+    requests: i32,
+    /// What was said, and not asked for yet.
+    pub heard: Vec<Value>,
+}
+
+impl<C: Carrier> Client<C> {
+    pub fn new(carrier: C) -> Self {
         Self {
-            child,
-            input,
-            output: BufReader::new(output),
+            carrier,
             requests: 0,
-            told: Value::Null,
+            heard: Vec::new(),
         }
     }
 
-    /// The server with a text open, and what it says to that.
-    pub fn open(capabilities: Value, text: &str) -> (Self, Value) {
-        let mut client = Self::start();
-        let diagnostics = client.begin(capabilities, text);
-        (client, diagnostics)
-    }
-
-    /// Opens a text, after what comes before that: what the server says to it.
-    pub fn begin(&mut self, capabilities: Value, text: &str) -> Value {
-        self.ask(
-            "initialize",
-            json!({ "processId": null, "rootUri": null, "capabilities": capabilities }),
-        );
-        self.tell("initialized", json!({}));
-        let document = json!({ "uri": URI, "languageId": "scn", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
-        let diagnostics = self.read();
-        assert_eq!(diagnostics["method"], "textDocument/publishDiagnostics");
-        diagnostics["params"].clone()
-    }
-
-    pub fn write(&mut self, text: &str) {
-        let input = self.input.as_mut().expect("it is open");
-        input.write_all(text.as_bytes()).expect("the server reads");
-        input.flush().expect("the server reads");
-    }
-
     pub fn send(&mut self, message: &Value) {
-        let text = message.to_string();
-        self.write(&format!("Content-Length: {}\r\n\r\n{text}", text.len()));
+        self.carrier.write(&message.to_string());
     }
 
-    /// The next message; everything up to it belongs to it.
     pub fn read(&mut self) -> Value {
-        let mut header = String::new();
-        self.output.read_line(&mut header).expect("a header");
-        let length = header
-            .strip_prefix("Content-Length: ")
-            .unwrap_or_else(|| panic!("not a header: {header:?}"));
-        let length: usize = length.trim_end().parse().expect("a length");
-        let mut empty = String::new();
-        self.output.read_line(&mut empty).expect("the header's end");
-        assert_eq!(empty, "\r\n");
-        let mut text = vec![0; length];
-        self.output.read_exact(&mut text).expect("the message");
-        serde_json::from_slice(&text).expect("JSON")
+        serde_json::from_str(&self.carrier.read()).expect("JSON")
     }
 
     pub fn tell(&mut self, method: &str, params: Value) {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    /// The whole response to a request.
-    pub fn respond(&mut self, method: &str, params: Value) -> Value {
+    /// Asks, and does not wait for the answer.
+    pub fn request(&mut self, method: &str, mut params: Value) -> i32 {
+        if method.starts_with("textDocument/") || method.starts_with("pinhole/") {
+            params["textDocument"] = json!({ "uri": C::URI });
+        }
         self.requests += 1;
         let id = self.requests;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
-        let mut response = self.read();
-        while response["method"] == "textDocument/publishDiagnostics" {
-            self.told = response["params"].clone();
-            response = self.read();
+        id
+    }
+
+    /// The next message of a kind, since the last one that was asked for.
+    fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
+        while !self.heard.iter().any(&is_meant) {
+            let message = self.read();
+            assert_eq!(message["jsonrpc"], "2.0", "{message}");
+            self.heard.push(message);
         }
-        assert_eq!(
-            (&response["id"], &response["jsonrpc"]),
-            (&id.into(), &"2.0".into()),
-            "{response}"
-        );
-        response
+        let place = self.heard.iter().position(is_meant);
+        self.heard.remove(place.expect("it was heard"))
+    }
+
+    /// The whole response to a request.
+    pub fn response(&mut self, id: i32) -> Value {
+        self.next(|message| message["id"] == id)
+    }
+
+    pub fn respond(&mut self, method: &str, params: Value) -> Value {
+        let id = self.request(method, params);
+        self.response(id)
     }
 
     /// The result of a request.
@@ -116,37 +83,97 @@ impl Client {
         response["result"].clone()
     }
 
-    /// The result of a request about the document, with these further parameters.
-    pub fn about(&mut self, method: &str, params: Value) -> Value {
-        let mut params = params;
-        params["textDocument"] = json!({ "uri": URI });
-        self.ask(&format!("textDocument/{method}"), params)
+    /// The message of the error that a request gets.
+    pub fn refused(&mut self, method: &str, params: Value) -> String {
+        let response = self.respond(method, params);
+        let message = response["error"]["message"].as_str();
+        message.expect("it is refused").to_owned()
     }
 
-    /// The result of a request about a place.
-    pub fn at(&mut self, method: &str, line: u32, character: u32) -> Value {
-        self.about(
-            method,
-            json!({ "position": { "line": line, "character": character } }),
-        )
+    /// The parameters of the next notification of this name.
+    pub fn told(&mut self, method: &str) -> Value {
+        self.next(|message| message["method"] == method)["params"].take()
+    }
+
+    /// What is wrong with the text that it is told of next.
+    pub fn diagnostics(&mut self) -> Value {
+        self.told("textDocument/publishDiagnostics")
+    }
+
+    /// Opens a text, after what comes before that.
+    pub fn open(&mut self, capabilities: Value, text: &str) {
+        self.ask("initialize", json!({ "capabilities": capabilities }));
+        self.tell("initialized", json!({}));
+        let document = json!({ "uri": C::URI, "languageId": "scn", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
     /// Tells of a change that makes a version of the text.
-    pub fn change(&mut self, version: usize, range: Value, text: &str) {
-        let document = json!({ "uri": URI, "version": version });
-        let changes = json!([{ "range": range, "text": text }]);
-        let params = json!({ "textDocument": document, "contentChanges": changes });
+    pub fn change(&mut self, version: usize, change: Value) {
+        let document = json!({ "uri": C::URI, "version": version });
+        let params = json!({ "textDocument": document, "contentChanges": [change] });
         self.tell("textDocument/didChange", params);
     }
 
-    /// What is wrong with a version of the text, as soon as it is said.
-    pub fn diagnostics(&mut self, version: usize) -> Value {
-        while self.told["version"] != version {
-            let message = self.read();
-            assert_eq!(message["method"], "textDocument/publishDiagnostics");
-            self.told = message["params"].clone();
-        }
-        self.told["diagnostics"].clone()
+    pub fn close(&mut self) {
+        let document = json!({ "uri": C::URI });
+        self.tell("textDocument/didClose", json!({ "textDocument": document }));
+    }
+}
+
+/// The program's standard streams.
+pub struct Pipes {
+    child: Child,
+    input: Option<ChildStdin>,
+    output: BufReader<ChildStdout>,
+}
+
+impl Pipes {
+    pub fn put(&mut self, bytes: &str) {
+        let input = self.input.as_mut().expect("it is open");
+        input.write_all(bytes.as_bytes()).expect("the server reads");
+        input.flush().expect("the server reads");
+    }
+}
+
+impl Carrier for Pipes {
+    const URI: &'static str = "file:///home/somebody/a%20scene.scn";
+
+    fn write(&mut self, text: &str) {
+        self.put(&format!("Content-Length: {}\r\n\r\n{text}", text.len()));
+    }
+
+    /// Everything up to it belongs to it.
+    fn read(&mut self) -> String {
+        let mut line = || {
+            let mut line = String::new();
+            self.output.read_line(&mut line).expect("text");
+            line
+        };
+        let (header, end) = (line(), line());
+        let length = header.strip_prefix("Content-Length: ");
+        let length = length.and_then(|it| it.strip_suffix("\r\n")?.parse().ok());
+        let length = length.unwrap_or_else(|| panic!("not a header: {header:?}"));
+        assert_eq!(end, "\r\n");
+        let mut text = vec![0; length];
+        self.output.read_exact(&mut text).expect("the message");
+        String::from_utf8(text).expect("text")
+    }
+}
+
+impl Client<Pipes> {
+    /// The server, to which nothing was said yet.
+    pub fn start() -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+        let command = command.arg("lsp").stdin(Stdio::piped());
+        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("the server starts");
+        let output = BufReader::new(child.stdout.take().expect("it was asked for"));
+        Self::new(Pipes {
+            input: child.stdin.take(),
+            child,
+            output,
+        })
     }
 
     /// Takes its leave, as it should be.
@@ -157,15 +184,18 @@ impl Client {
     }
 
     /// Says nothing more: the status, and what was said on standard error.
-    pub fn end(mut self) -> (Option<i32>, String) {
-        drop(self.input.take());
+    pub fn end(self) -> (Option<i32>, String) {
+        let Pipes {
+            child,
+            input,
+            mut output,
+        } = self.carrier;
+        drop(input);
         let mut rest = String::new();
-        self.output.read_to_string(&mut rest).expect("text");
+        output.read_to_string(&mut rest).expect("text");
         assert_eq!(rest, "", "nothing but answers on standard output");
-        let mut log = String::new();
-        let mut errors = self.child.stderr.take().expect("it was asked for");
-        errors.read_to_string(&mut log).expect("text");
-        let status = self.child.wait().expect("it ends");
-        (status.code(), log)
+        let output = child.wait_with_output().expect("it ends");
+        let log = String::from_utf8(output.stderr).expect("text");
+        (output.status.code(), log)
     }
 }

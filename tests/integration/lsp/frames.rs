@@ -3,7 +3,7 @@
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
 
-use super::talk::{Talk, URI};
+use super::talk::Talk;
 use crate::{program::Folder, table::rows};
 
 const SCENE: &str = "\
@@ -18,9 +18,16 @@ checkerboard {}
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
 
+/// The scene with another size.
+fn sized(width: &str, height: &str) -> String {
+    let size = format!("width {width}  height {height}");
+    SCENE.replace("width 83  height 61", &size)
+}
+
 /// The code of the error that a request has got.
-fn code(talk: &Talk, request: i32) -> &Value {
-    &talk.said(request).expect("an answer")["error"]["code"]
+fn code(talk: &mut Talk, request: i32) -> Value {
+    assert!(talk.has_answered(request));
+    talk.response(request)["error"]["code"].take()
 }
 
 /// The bytes of a picture with its size.
@@ -50,11 +57,6 @@ fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
 
 #[test]
 fn a_frame_has_the_pixels_of_a_render() {
-    let exact = SCENE.replace("multi_jittered", "exact");
-    let scattered = SCENE.replace("multi_jittered", "scatter");
-    // So many that a slice is a small part of the picture.
-    let many = SCENE.replace("per_pixel 9", "per_pixel 2000");
-    let wide = SCENE.replace("width 83  height 61", "width 100_000  height 2");
     let table = r#"
         scene -> {} ->
         scene -> { "scale": 1, "samples": null } ->
@@ -69,55 +71,48 @@ fn a_frame_has_the_pixels_of_a_render() {
         wide -> {} ->
     "#;
     for [name, params, sets] in rows(table) {
-        let text = match name {
-            "exact" => &exact,
-            "scattered" => &scattered,
-            "many" => &many,
-            "wide" => &wide,
-            _ => SCENE,
+        let (text, size) = match name {
+            "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
+            "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
+            // So many that a slice is a small part of the picture.
+            "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
+            "wide" => (sized("100_000", "2"), [100_000, 2]),
+            _ => (SCENE.to_owned(), [83, 61]),
         };
         let params: Value = serde_json::from_str(params).expect("JSON");
-        let frame = Talk::new(text).ask("pinhole/frame", params);
-        assert!(shown(&frame) == rendered(text, sets), "{name} {sets}");
-        assert_eq!(frame["version"], 0);
-        let size = if name == "wide" {
-            [100_000, 2]
-        } else {
-            [83, 61]
-        };
+        let frame = Talk::with(&text).ask("pinhole/frame", params);
+        assert!(shown(&frame) == rendered(&text, sets), "{name} {sets}");
+        assert_eq!(frame["version"], 1);
         assert_eq!(frame["size"], json!(size));
     }
 }
 
 #[test]
 fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
-    let mut talk = Talk::new(SCENE);
-    let old = talk.post("pinhole/frame", json!({}));
+    let mut talk = Talk::with(SCENE);
+    let old = talk.request("pinhole/frame", json!({}));
     // Its diagnostics, and what is begun of the frame.
-    assert!(talk.step() && talk.said(old).is_none());
+    assert!(talk.carrier.step() && !talk.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
-    talk.change(&changed);
-    let new = talk.post("pinhole/frame", json!({}));
+    talk.change(2, json!({ "text": changed }));
+    let new = talk.request("pinhole/frame", json!({}));
     assert_eq!(talk.response(old)["error"]["code"], CONTENT_MODIFIED);
     let frame = talk.response(new)["result"].clone();
-    assert_eq!(frame["version"], 1);
+    assert_eq!(frame["version"], 2);
     assert!(shown(&frame) == rendered(&changed, ""));
 
-    talk.tell(
-        "textDocument/didClose",
-        json!({ "textDocument": { "uri": URI } }),
-    );
+    talk.close();
     let closed = talk.refused("pinhole/frame", json!({}));
     assert_eq!(closed, "the document is not open");
 }
 
 #[test]
 fn a_frame_is_superseded_by_the_same_request_alone() {
-    let mut talk = Talk::new(SCENE);
-    let first = talk.post("pinhole/frame", json!({ "scale": 2 }));
-    let coarse = talk.post("pinhole/frame", json!({ "scale": 4 }));
-    let fine = talk.post("pinhole/frame", json!({ "scale": 2, "samples": 1 }));
-    let second = talk.post("pinhole/frame", json!({ "scale": 2 }));
+    let mut talk = Talk::with(SCENE);
+    let first = talk.request("pinhole/frame", json!({ "scale": 2 }));
+    let coarse = talk.request("pinhole/frame", json!({ "scale": 4 }));
+    let fine = talk.request("pinhole/frame", json!({ "scale": 2, "samples": 1 }));
+    let second = talk.request("pinhole/frame", json!({ "scale": 2 }));
     assert_eq!(talk.response(first)["error"]["code"], CANCELLED);
     for id in [coarse, fine, second] {
         assert!(talk.response(id)["result"]["png"].is_string());
@@ -127,75 +122,62 @@ fn a_frame_is_superseded_by_the_same_request_alone() {
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
     // Ten thousand slices, which would take minutes.
-    let text = SCENE
-        .replace("width 83  height 61", "width 1000  height 1000")
-        .replace("per_pixel 9", "per_pixel 10_000");
-    let mut talk = Talk::new(&text);
-    let frame = talk.post("pinhole/frame", json!({}));
+    let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
+    let mut talk = Talk::with(&text);
+    let frame = talk.request("pinhole/frame", json!({}));
     let hover = |talk: &mut Talk| {
         let position = json!({ "line": 0, "character": 1 });
-        talk.post("textDocument/hover", json!({ "position": position }))
+        talk.request("textDocument/hover", json!({ "position": position }))
     };
     let early = hover(&mut talk);
     for _ in 0..4 {
-        assert!(talk.step());
+        assert!(talk.carrier.step());
     }
     // What comes later is answered in between.
-    assert!(talk.said(early).is_some() && talk.said(frame).is_none());
+    assert!(talk.has_answered(early) && !talk.has_answered(frame));
     let later = hover(&mut talk);
-    assert!(talk.step() && talk.said(later).is_some());
+    assert!(talk.carrier.step() && talk.has_answered(later));
     talk.tell("$/cancelRequest", json!({ "id": frame }));
-    assert_eq!(code(&talk, frame), CANCELLED);
-    assert!(!talk.step());
+    assert_eq!(code(&mut talk, frame), CANCELLED);
+    assert!(!talk.carrier.step());
 
-    let frame = talk.post("pinhole/frame", json!({}));
-    talk.step();
-    let shutdown = talk.post("shutdown", json!({}));
-    assert_eq!(code(&talk, frame), CANCELLED);
-    assert!(talk.said(shutdown).is_some());
-}
-
-#[test]
-fn there_is_no_frame_of_a_text_with_errors() {
-    for broken in [
-        "",
-        "camera {",
-        "sphere { center (0, 0, 0) }",
-        &SCENE.replace("eye", "eys"),
-    ] {
-        let mut talk = Talk::new(broken);
-        assert_eq!(talk.ask("pinhole/frame", json!({})), Value::Null);
-        talk.change(SCENE);
-        assert!(talk.ask("pinhole/frame", json!({ "scale": 8 }))["png"].is_string());
-    }
+    let frame = talk.request("pinhole/frame", json!({}));
+    talk.carrier.step();
+    let shutdown = talk.request("shutdown", json!({}));
+    assert_eq!(code(&mut talk, frame), CANCELLED);
+    assert!(talk.has_answered(shutdown));
 }
 
 #[test]
 fn what_is_too_much_for_a_frame_is_refused() {
-    let large = SCENE.replace("width 83  height 61", "width 1_048_576  height 1_048_576");
-    let mut talk = Talk::new(&large);
-    assert_eq!(
-        talk.refused("pinhole/frame", json!({})),
-        "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`"
-    );
-    let frame = talk.ask("pinhole/frame", json!({ "scale": 65536, "samples": 1 }));
+    let large = sized("1_048_576", "1_048_576");
+    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
+    let zero = ": invalid value: integer `0`";
+    for (text, params, message) in [
+        (
+            &*large,
+            json!({}),
+            "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`",
+        ),
+        (
+            &many,
+            json!({}),
+            "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`",
+        ),
+        (SCENE, json!({ "scale": 0 }), &format!("`scale`{zero}")),
+        (SCENE, json!({ "scale": 0.5 }), "`scale`: "),
+        (SCENE, json!({ "scale": -1 }), "`scale`: "),
+        (SCENE, json!({ "scale": 1e300 }), "`scale`: "),
+        (SCENE, json!({ "samples": 0 }), &format!("`samples`{zero}")),
+        (SCENE, json!({ "samples": "4" }), "`samples`: "),
+    ] {
+        let found = Talk::with(text).refused("pinhole/frame", params);
+        assert!(found.starts_with(message), "{found}");
+    }
+    let params = json!({ "scale": 65536, "samples": 1 });
+    let frame = Talk::with(&large).ask("pinhole/frame", params);
     assert_eq!(
         (&frame["width"], &frame["size"]),
         (&json!(16), &json!([1_048_576, 1_048_576]))
     );
-    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
-    let mut talk = Talk::new(&many);
-    assert_eq!(
-        talk.refused("pinhole/frame", json!({})),
-        "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`"
-    );
-    for (name, wrong) in [
-        ("scale", json!([0, 0.5, -1, 1e300])),
-        ("samples", json!([0, "4"])),
-    ] {
-        for value in wrong.as_array().expect("a list") {
-            let message = talk.refused("pinhole/frame", json!({ name: value }));
-            assert!(message.starts_with(&format!("`{name}`")), "{message}");
-        }
-    }
 }

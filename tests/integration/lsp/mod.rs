@@ -1,6 +1,6 @@
 //! The language server from outside: the binary, and what goes through its standard input and output.
 
-mod client;
+pub mod client;
 mod frames;
 mod neovim;
 mod order;

@@ -1,9 +1,11 @@
 //! A real editor talks to the server: Neovim without its window, which has to be there: `cargo test -- --ignored neovim`, with `nvim` on
 //! the path.
 
-use std::{fs, process::Command};
+use std::process::Command;
 
 use serde_json::{Value, json};
+
+use crate::program::Folder;
 
 /// What Neovim does: it opens the scene, waits for the server, asks, edits, and writes down what came of it.
 const SCRIPT: &str = r#"
@@ -97,63 +99,60 @@ sphere Ball { center ball  /* 🎱 */ radus 0.5 }
 #[test]
 #[ignore = "needs Neovim"]
 fn neovim_writes_a_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("scene.scn"), SCENE).unwrap();
-    fs::write(folder.path().join("script.lua"), SCRIPT).unwrap();
-    let answers = folder.path().join("answers.json");
-    let output = Command::new("nvim")
+    let folder = Folder::with([("scene.scn", SCENE), ("script.lua", SCRIPT)]);
+    let home = folder.path("");
+    let mut neovim = Command::new("nvim");
+    neovim
         .args(["--headless", "--clean", "-c", "luafile script.lua"])
-        .current_dir(folder.path())
+        .current_dir(&home)
         .env("PINHOLE", env!("CARGO_BIN_EXE_pinhole"))
-        .env("ANSWERS", &answers)
-        .env("HOME", folder.path())
-        .env("XDG_STATE_HOME", folder.path())
-        .env("XDG_CACHE_HOME", folder.path())
-        .output()
-        .expect("Neovim is on the path");
-    let text = fs::read_to_string(&answers).unwrap_or_else(|_| panic!("{output:?}"));
-    let found: Value = serde_json::from_str(&text).unwrap();
-    let what = format!("{found:#}");
-    assert_eq!(found.get("failure"), None, "{what}");
-    assert_eq!(found["wrong"], json!([]), "{what}");
+        .env("ANSWERS", folder.path("answers.json"));
+    for name in ["HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
+        neovim.env(name, &home);
+    }
+    let output = neovim.output().expect("Neovim is on the path");
+    assert!(folder.path("answers.json").exists(), "{output:?}");
+    let found: Value = serde_json::from_slice(&folder.read("answers.json")).unwrap();
     let message = "a sphere has no field `radus`\nhelp: did you mean `radius`? A sphere takes center, radius and color.";
-    let radus = json!({
-        "line": 3, "column": 38, "stop": 43, "code": "unknown_field", "message": message,
-    });
-    assert_eq!(found["broken"], json!([radus]), "{what}");
-    assert_eq!(found["mended"], json!([]), "{what}");
-    assert_eq!(
-        found["text"], "sphere Ball { center ball  /* 🎱 */ radius 0.5 }",
-        "{what}"
-    );
-    assert_eq!(
-        found["hover"]["value"],
-        "`let ball = (0, 1, 0)` (line 2)\n\na vector: `(0, 1, 0)`"
-    );
-    assert_eq!(
-        found["definition"]["range"]["start"],
-        json!({ "line": 1, "character": 4 })
-    );
-    assert_eq!(found["completion"][1], "ball", "{what}");
-    assert_eq!(found["symbols"][5], "[Object] Ball", "{what}");
-    assert_eq!(found["highlights"], 3, "{what}");
     let renamed = [
         "// 🎱 é: a ball",
         "let middle = (0, 1, 0)",
         "camera { eye (0, 1, 5)  lookat middle  d 1 }",
         "sphere Ball { center middle  /* 🎱 */ radius 0.5 }",
     ];
-    assert_eq!(found["renamed"], json!(renamed), "{what}");
-    let last = &found["last"][3];
-    assert_eq!(
-        last, "sphere Ball { center middle  /* 🎱 */ radius 0.5  colour olive }",
-        "{what}"
-    );
-    assert_eq!(found["after"][0]["code"], "unknown_field", "{what}");
-    assert_eq!(
-        (&found["after"][0]["line"], &found["after"][0]["column"]),
-        (&3.into(), &52.into()),
-        "{what}"
-    );
-    assert_eq!(found["stopped"], true, "{what}");
+    for (path, expected) in [
+        ("/wrong", json!([])),
+        (
+            "/broken",
+            json!([{ "line": 3, "column": 38, "stop": 43, "code": "unknown_field", "message": message }]),
+        ),
+        ("/mended", json!([])),
+        (
+            "/text",
+            json!("sphere Ball { center ball  /* 🎱 */ radius 0.5 }"),
+        ),
+        (
+            "/hover/value",
+            json!("`let ball = (0, 1, 0)` (line 2)\n\na vector: `(0, 1, 0)`"),
+        ),
+        (
+            "/definition/range/start",
+            json!({ "line": 1, "character": 4 }),
+        ),
+        ("/completion/1", json!("ball")),
+        ("/symbols/5", json!("[Object] Ball")),
+        ("/highlights", json!(3)),
+        ("/renamed", json!(renamed)),
+        (
+            "/last/3",
+            json!("sphere Ball { center middle  /* 🎱 */ radius 0.5  colour olive }"),
+        ),
+        ("/after/0/code", json!("unknown_field")),
+        ("/after/0/line", json!(3)),
+        ("/after/0/column", json!(52)),
+        ("/stopped", json!(true)),
+    ] {
+        assert_eq!(found.pointer(path), Some(&expected), "{path}: {found:#}");
+    }
+    assert_eq!(found.get("failure"), None);
 }

@@ -2,24 +2,17 @@
 
 use serde_json::{Value, json};
 
-use super::talk::{Talk, URI};
+use super::talk::Talk;
 
 /// Asks what the fifth character means.
 fn hover(talk: &mut Talk) -> i32 {
     let position = json!({ "line": 0, "character": 4 });
-    talk.post("textDocument/hover", json!({ "position": position }))
-}
-
-/// Tells of a change of the text's version.
-fn change(talk: &mut Talk, version: i32, change: Value) {
-    let document = json!({ "uri": URI, "version": version });
-    let params = json!({ "textDocument": document, "contentChanges": [change] });
-    talk.tell("textDocument/didChange", params);
+    talk.request("textDocument/hover", json!({ "position": position }))
 }
 
 #[test]
 fn what_was_cancelled_in_the_meantime_is_not_answered() {
-    let mut talk = Talk::new("let a = 1");
+    let mut talk = Talk::with("let a = 1");
     let [first, second] = [hover(&mut talk), hover(&mut talk)];
     talk.tell("$/cancelRequest", json!({ "id": first }));
     assert_eq!(talk.response(first)["error"]["code"], -32800);
@@ -37,18 +30,18 @@ fn of_several_states_the_last_is_judged_and_each_request_is_about_its_own() {
         // It comes too late to count.
         (2, "let d = oops", "let c = 3"),
     ] {
-        change(&mut talk, version, json!({ "text": text }));
+        talk.change(version, json!({ "text": text }));
         asked.push((hover(&mut talk), about));
     }
-    while talk.step() {}
+    let params = talk.diagnostics();
+    assert_eq!(params["version"], 3);
     for (id, about) in asked {
-        let answer = talk.said(id).expect("it is answered").to_string();
+        let answer = talk.response(id).to_string();
         assert!(answer.contains(about), "{answer}");
     }
-    let judged = talk.said.iter();
-    let mut judged = judged.filter(|said| said["method"] == "textDocument/publishDiagnostics");
-    let params = &judged.next().expect("diagnostics")["params"];
-    assert_eq!((&params["version"], judged.next()), (&json!(3), None));
+    // No other state was judged.
+    while talk.carrier.step() {}
+    assert!(talk.heard.is_empty() && talk.carrier.said.is_empty());
     let found = params["diagnostics"].as_array().expect("a list");
     let codes: Vec<&Value> = found.iter().map(|found| &found["code"]).collect();
     assert_eq!(codes, ["missing_camera", "no_objects"]);
@@ -61,7 +54,7 @@ fn a_change_that_is_none_changes_nothing() {
         for [start, end] in [[[0, 0], wrong], [wrong, [0, 0]]] {
             let range = json!({ "start": place(start), "end": place(end) });
             let mut talk = Talk::logged("let a = 1", |_| {});
-            change(&mut talk, 2, json!({ "range": range, "text": "oops" }));
+            talk.change(2, json!({ "range": range, "text": "oops" }));
             let asked = hover(&mut talk);
             let answer = talk.response(asked).to_string();
             assert!(answer.contains("let a = 1"), "{answer}");

@@ -22,110 +22,116 @@ fn range(line: u32, start: u32, end: u32) -> Value {
 
 #[test]
 fn what_is_seen_at_a_point_is_told_with_its_place_in_the_text() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
+    let mut pick = |point: Value| talk.ask("pinhole/pick", json!({ "point": point }));
     let ball = json!({ "index": 0, "kind": "sphere", "name": "Ball", "range": range(4, 0, 52), "selection": range(4, 7, 11) });
     assert_eq!(
-        talk.ask("pinhole/pick", json!({ "point": [100, 50] })),
+        pick(json!([100, 50])),
         json!({ "object": ball, "point": [0.0, 1.0, 1.0], "distance": 9.0, "depth": 9.0, "color": "#808000" })
     );
-    let found = talk.ask("pinhole/pick", json!({ "point": [180.0, 50.5] }));
-    assert_eq!(
-        (&found["object"]["kind"], &found["object"]["name"]),
-        (&json!("box"), &Value::Null)
-    );
-    assert_eq!(found["object"]["selection"], range(5, 0, 3));
-    let nothing = |color: Value| json!({ "object": null, "point": null, "distance": null, "depth": null, "color": color });
-    assert_eq!(
-        talk.ask("pinhole/pick", json!({ "point": [3, 1] })),
-        nothing(json!("#000000"))
-    );
-    for outside in [json!([-1, 0]), json!([201, 3]), json!([1e300, -1e300])] {
-        assert_eq!(
-            talk.ask("pinhole/pick", json!({ "point": outside })),
-            nothing(Value::Null)
-        );
+    let object = pick(json!([180.0, 50.5]))["object"].take();
+    let block = json!({ "index": 1, "kind": "box", "name": null, "range": range(5, 0, 54), "selection": range(5, 0, 3) });
+    assert_eq!(object, block);
+    for (point, color) in [
+        (json!([3, 1]), json!("#000000")),
+        (json!([-1, 0]), Value::Null),
+        (json!([201, 3]), Value::Null),
+        (json!([1e300, -1e300]), Value::Null),
+    ] {
+        let nothing = json!({ "object": null, "point": null, "distance": null, "depth": null, "color": color });
+        assert_eq!(pick(point), nothing);
     }
     for wrong in [json!(null), json!([1]), json!([null, 1]), json!("1")] {
         let message = talk.refused("pinhole/pick", json!({ "point": wrong }));
         assert!(message.starts_with("`point`"), "{message}");
     }
-    talk.change("sphere {");
-    for request in ["pick", "overlays", "drag", "samples", "frame"] {
-        assert_eq!(
-            talk.ask(&format!("pinhole/{request}"), json!({})),
-            Value::Null
-        );
+    let broken = [
+        "",
+        "camera {",
+        "sphere { center (0, 0, 0) }",
+        &SCENE.replace("eye", "eys"),
+    ];
+    for (index, broken) in broken.into_iter().enumerate() {
+        talk.change(2 * index + 2, json!({ "text": broken }));
+        for request in ["pick", "overlays", "drag", "samples", "frame"] {
+            let answer = talk.ask(&format!("pinhole/{request}"), json!({}));
+            assert_eq!(answer, Value::Null);
+        }
+        talk.change(2 * index + 3, json!({ "text": SCENE }));
+        let frame = talk.ask("pinhole/frame", json!({ "scale": 8 }));
+        assert!(frame["png"].is_string());
     }
-    talk.change(SCENE);
-    assert_eq!(
-        talk.refused("pinhole/paint", json!({})),
-        "`pinhole/paint` is not known here"
-    );
+    let unknown = talk.refused("pinhole/paint", json!({}));
+    assert_eq!(unknown, "`pinhole/paint` is not known here");
 }
 
 #[test]
 fn overlays_lie_where_their_things_are_seen() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let found = talk.ask("pinhole/overlays", json!({}));
-    assert_eq!(
-        (&found["size"], &found["axis"]),
-        (&json!([200, 100]), &json!([100.0, 50.0]))
-    );
-    // Level, so that the horizon is the row in the middle, grown by the picture's own size.
-    assert_eq!(found["horizon"], json!([[-200.0, 50.0], [400.0, 50.0]]));
-    let vanishing = found["vanishing"].as_array().expect("a list");
-    assert_eq!(
-        vanishing[0],
-        json!({ "axis": "x", "point": null, "lines": [] })
-    );
-    assert_eq!(vanishing[2]["point"], json!([100.0, 50.0]));
-    // At depths of 9.5 and 10.5 a metre has 400/9.5 and 400/10.5 pixels.
-    let edges = vanishing[2]["lines"].as_array().expect("a list");
-    assert_eq!(edges.len(), 4);
-    assert_eq!(
-        edges[0],
-        json!([[163.16, 71.05], [157.14, 69.05], [100.0, 50.0]])
-    );
-    // The floor is a metre below the eye.
-    assert_eq!(found["near"], json!([[[-200.0, 130.0], [400.0, 130.0]]]));
-    assert_eq!(found["far"], json!([[[-200.0, 70.0], [400.0, 70.0]]]));
-
-    let objects = found["objects"].as_array().expect("a list");
-    assert_eq!(objects.len(), 3);
-    let ball = &objects[0];
-    assert_eq!(
-        ball["handles"][0],
-        json!({ "handle": "center", "at": [100.0, 50.0], "label": "center" })
-    );
-    // A ball of 1 at a distance of 10 is seen as wide as a disc of 400/√99 pixels.
-    assert_eq!(
-        ball["handles"][1],
-        json!({ "handle": "radius", "at": [140.2, 50.0], "label": "radius" })
-    );
-    let line = ball["outline"][0].as_array().expect("a line");
-    assert_eq!(line.first(), line.last());
-    for point in line {
-        let [x, y] = [0, 1].map(|axis| point[axis].as_f64().expect("a number"));
-        let radius = ((x - 100.0) * (x - 100.0) + (y - 50.0) * (y - 50.0)).sqrt();
-        assert!((radius - 400.0 / 99f64.sqrt()).abs() < 0.01, "{point}");
+    for (path, expected) in [
+        ("/size", json!([200, 100])),
+        ("/axis", json!([100.0, 50.0])),
+        // Level, so that the horizon is the row in the middle, grown by the picture's own size.
+        ("/horizon", json!([[-200.0, 50.0], [400.0, 50.0]])),
+        (
+            "/vanishing/0",
+            json!({ "axis": "x", "point": null, "lines": [] }),
+        ),
+        ("/vanishing/2/point", json!([100.0, 50.0])),
+        // At depths of 9.5 and 10.5 a metre has 400/9.5 and 400/10.5 pixels.
+        (
+            "/vanishing/2/lines/0",
+            json!([[163.16, 71.05], [157.14, 69.05], [100.0, 50.0]]),
+        ),
+        // The floor is a metre below the eye.
+        ("/near", json!([[[-200.0, 130.0], [400.0, 130.0]]])),
+        ("/far", json!([[[-200.0, 70.0], [400.0, 70.0]]])),
+        (
+            "/objects/0/handles/0",
+            json!({ "handle": "center", "at": [100.0, 50.0], "label": "center" }),
+        ),
+        // A ball of 1 at a distance of 10 is seen as wide as a disc of 400/√99 pixels.
+        (
+            "/objects/0/handles/1",
+            json!({ "handle": "radius", "at": [140.2, 50.0], "label": "radius" }),
+        ),
+        // The view axis is level and does not meet the floor.
+        (
+            "/objects/2/handles",
+            json!([{ "handle": "y", "at": null, "label": "y" }]),
+        ),
+        ("/objects/2/outline", json!([])),
+    ] {
+        assert_eq!(found.pointer(path), Some(&expected), "{path}");
     }
-    assert_eq!(objects[1]["outline"].as_array().map(Vec::len), Some(12));
-    assert_eq!(objects[1]["handles"].as_array().map(Vec::len), Some(7));
-    // The view axis is level and does not meet the floor.
-    assert_eq!(
-        objects[2]["handles"],
-        json!([{ "handle": "y", "at": null, "label": "y" }])
-    );
-    assert_eq!(objects[2]["outline"], json!([]));
+    for (path, count) in [
+        ("/vanishing/2/lines", 4),
+        ("/objects", 3),
+        ("/objects/1/outline", 12),
+        ("/objects/1/handles", 7),
+    ] {
+        let list = found.pointer(path).and_then(Value::as_array);
+        assert_eq!(list.map(Vec::len), Some(count), "{path}");
+    }
+    let line: Vec<[f64; 2]> =
+        serde_json::from_value(found["objects"][0]["outline"][0].clone()).expect("a line");
+    assert_eq!(line.first(), line.last());
+    for [x, y] in line {
+        let radius = ((x - 100.0) * (x - 100.0) + (y - 50.0) * (y - 50.0)).sqrt();
+        assert!((radius - 400.0 / 99f64.sqrt()).abs() < 0.01, "{x} {y}");
+    }
 
     // Of very many objects those that one can tell apart.
-    let many: String = (0..1500)
-        .map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"))
-        .collect();
-    talk.change(&(SCENE.to_owned() + &many));
-    let found = talk.ask("pinhole/overlays", json!({}));
-    assert_eq!(found["objects"].as_array().map(Vec::len), Some(1000));
-    for (further, count, last) in [(1400, 1001, 1400), (1, 1000, 999), (1503, 1000, 999)] {
+    let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
+    let text = SCENE.to_owned() + &many.collect::<String>();
+    talk.change(2, json!({ "text": text }));
+    for (further, count, last) in [
+        (None, 1000, 999),
+        (Some(1400), 1001, 1400),
+        (Some(1), 1000, 999),
+        (Some(1503), 1000, 999),
+    ] {
         let found = talk.ask("pinhole/overlays", json!({ "object": further }));
         let objects = found["objects"].as_array().expect("a list");
         assert_eq!(
@@ -137,7 +143,7 @@ fn overlays_lie_where_their_things_are_seen() {
 
 #[test]
 fn a_drag_is_answered_with_edits_of_the_text() {
-    let mut talk = Talk::new(SCENE);
+    let mut talk = Talk::with(SCENE);
     let params = json!({ "object": 0, "handle": "center", "from": [100, 50], "to": [140, 50] });
     assert_eq!(
         talk.ask("pinhole/drag", params),
@@ -163,31 +169,29 @@ fn a_drag_is_answered_with_edits_of_the_text() {
 
 #[test]
 fn the_samples_of_a_pixel_are_those_of_its_frame() {
-    let mut talk = Talk::new(SCENE);
-    let found = talk.ask("pinhole/samples", json!({ "pixel": [139, 49] }));
+    let mut talk = Talk::with(SCENE);
     let points = json!([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]]);
-    assert_eq!(found["points"], points);
-    assert_eq!(found["colors"], Value::from(vec!["#808000"; 4]));
-    assert_eq!(found["color"], "#808000");
-    let found = talk.ask("pinhole/samples", json!({ "pixel": [141, 49] }));
-    assert_eq!(found["colors"], Value::from(vec!["#000000"; 4]));
-    talk.change(&SCENE.replace("method regular", "method exact"));
-    let found = talk.ask("pinhole/samples", json!({ "pixel": [140, 49] }));
-    assert_eq!(
-        (&found["points"], &found["colors"]),
-        (&json!([]), &json!([]))
-    );
-    let edge = found["color"].as_str().expect("a colour");
-    assert!(edge != "#000000" && edge != "#808000", "{edge}");
-    talk.change(&SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000"));
-    assert_eq!(
-        talk.refused("pinhole/samples", json!({ "pixel": [1, 1] })),
-        "1000000000 samples of a pixel would take too long"
-    );
-    for pixel in [json!([200, 0]), json!([0, 100])] {
+    for (column, color) in [(139, "#808000"), (141, "#000000")] {
+        let found = talk.ask("pinhole/samples", json!({ "pixel": [column, 49] }));
         assert_eq!(
-            talk.refused("pinhole/samples", json!({ "pixel": pixel })),
-            "`pixel` is no pixel of the picture"
+            found,
+            json!({ "points": points, "colors": vec![color; 4], "color": color })
         );
+    }
+    let exact = SCENE.replace("method regular", "method exact");
+    talk.change(2, json!({ "text": exact }));
+    let mut found = talk.ask("pinhole/samples", json!({ "pixel": [140, 49] }));
+    let edge = found["color"].take();
+    assert_eq!(found, json!({ "points": [], "colors": [], "color": null }));
+    assert!(edge != "#000000" && edge != "#808000", "{edge}");
+    let many = SCENE.replace("per_pixel 4", "per_pixel 1_000_000_000");
+    talk.change(3, json!({ "text": many }));
+    for (pixel, message) in [
+        ([1, 1], "1000000000 samples of a pixel would take too long"),
+        ([200, 0], "`pixel` is no pixel of the picture"),
+        ([0, 100], "`pixel` is no pixel of the picture"),
+    ] {
+        let found = talk.refused("pinhole/samples", json!({ "pixel": pixel }));
+        assert_eq!(found, message);
     }
 }

@@ -1,71 +1,25 @@
 //! A conversation with a server in this process, so that it is known what it has done by when.
 
-use lsp_server::{Message, Notification, Request};
-use pinhole::lsp::Server;
+use std::collections::VecDeque;
+
+use lsp_server::Message;
+use pinhole::lsp::{Server, messages};
 use serde_json::{Value, json};
 
-pub const URI: &str = "file:///a.scn";
+use super::client::{Carrier, Client};
 
-/// A conversation with one text open.
-pub struct Talk {
+/// A conversation with one text open, of version 1.
+pub type Talk = Client<Inside>;
+
+/// A server, and what it has said and nobody has read.
+pub struct Inside {
     server: Server,
-    requests: i32,
-    version: i32,
-    /// What was said since the server was greeted.
-    pub said: Vec<Value>,
+    pub said: VecDeque<String>,
 }
 
-impl Talk {
-    /// With a server that understands everything.
-    pub fn new(text: &str) -> Self {
-        Self::logged(text, |message| panic!("{message}"))
-    }
-
-    pub fn logged(text: &str, log: fn(&str)) -> Self {
-        let mut talk = Self {
-            server: Server::new(log),
-            requests: 0,
-            version: 0,
-            said: Vec::new(),
-        };
-        talk.post("initialize", json!({ "capabilities": {} }));
-        talk.said.clear();
-        let document = json!({ "uri": URI, "languageId": "scn", "version": 0, "text": text });
-        talk.tell("textDocument/didOpen", json!({ "textDocument": document }));
-        talk
-    }
-
-    fn take(&mut self, message: Message) {
-        let said = self.server.handle(message);
-        self.hear(&said);
-    }
-
+impl Inside {
     fn hear(&mut self, said: &[Message]) {
-        let said = said
-            .iter()
-            .map(|message| serde_json::to_value(message).expect("JSON"));
-        self.said.extend(said);
-    }
-
-    pub fn tell(&mut self, method: &str, params: Value) {
-        self.take(Notification::new(method.to_owned(), params).into());
-    }
-
-    /// Asks something, and returns its id.
-    pub fn post(&mut self, method: &str, mut params: Value) -> i32 {
-        params["textDocument"] = json!({ "uri": URI });
-        self.requests += 1;
-        self.take(Request::new(self.requests.into(), method.to_owned(), params).into());
-        self.requests
-    }
-
-    pub fn change(&mut self, text: &str) {
-        self.version += 1;
-        let document = json!({ "uri": URI, "version": self.version });
-        self.tell(
-            "textDocument/didChange",
-            json!({ "textDocument": document, "contentChanges": [{ "text": text }] }),
-        );
+        self.said.extend(said.iter().map(messages::written));
     }
 
     /// One piece of work. Says whether there was any.
@@ -75,30 +29,45 @@ impl Talk {
         self.hear(&said);
         is_busy
     }
+}
 
-    /// The response to a request, if it was said.
-    pub fn said(&self, id: i32) -> Option<&Value> {
-        self.said.iter().find(|message| message["id"] == id)
+impl Carrier for Inside {
+    const URI: &'static str = "file:///a.scn";
+
+    fn write(&mut self, text: &str) {
+        let message = messages::read(text.as_bytes()).expect("a message");
+        let said = self.server.handle(message);
+        self.hear(&said);
     }
 
-    /// The response to a request, after all work.
-    pub fn response(&mut self, id: i32) -> Value {
-        while self.step() {}
-        self.said(id).expect("it is answered").clone()
+    fn read(&mut self) -> String {
+        while self.said.is_empty() {
+            assert!(self.step(), "nothing more is said");
+        }
+        self.said.pop_front().expect("it was said")
+    }
+}
+
+impl Talk {
+    /// With a server that understands everything.
+    pub fn with(text: &str) -> Self {
+        Self::logged(text, |message| panic!("{message}"))
     }
 
-    /// The result of a request.
-    pub fn ask(&mut self, method: &str, params: Value) -> Value {
-        let id = self.post(method, params);
-        let response = self.response(id);
-        assert!(response.get("error").is_none(), "{response}");
-        response["result"].clone()
+    pub fn logged(text: &str, log: fn(&str)) -> Self {
+        let mut talk = Self::new(Inside {
+            server: Server::new(log),
+            said: VecDeque::new(),
+        });
+        talk.open(json!({}), text);
+        talk
     }
 
-    /// The message of the error that a request gets.
-    pub fn refused(&mut self, method: &str, params: Value) -> String {
-        let id = self.post(method, params);
-        let message = &self.response(id)["error"]["message"];
-        message.as_str().expect("it is refused").to_owned()
+    /// Whether a request was answered already.
+    pub fn has_answered(&self, id: i32) -> bool {
+        let said = self.carrier.said.iter();
+        let said = said.map(|text| serde_json::from_str::<Value>(text).expect("JSON"));
+        let mut all = said.chain(self.heard.iter().cloned());
+        all.any(|message| message["id"] == id)
     }
 }

@@ -1,38 +1,31 @@
 //! The program, and a plain client that says what a browser would say.
 
 use std::{
-    fs,
     io::{BufRead, BufReader, Read, Write},
     net::TcpStream,
-    path::Path,
     process::{Child, Command, Stdio},
     time::Duration,
 };
 
 use pinhole::scene::SMALLEST;
-use serde_json::{Value, json};
-use tempfile::TempDir;
+use serde_json::Value;
 use tungstenite::{
     Message, WebSocket,
-    client::client,
-    handshake::client::{Request, generate_key},
+    client::{IntoClientRequest, client},
 };
 
-use crate::program::command;
+use crate::{
+    lsp::client::{Carrier, Client},
+    program::Folder,
+};
 
 /// The longest that anything may take.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The program, which serves the smallest scene as `a.scn`, in a folder of its own.
-pub fn studio() -> (TempDir, Studio) {
-    serve("a.scn", SMALLEST)
-}
-
-/// The program, which serves a file of this name with this text, in a folder of its own.
-pub fn serve(name: &str, text: &str) -> (TempDir, Studio) {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join(name), text).unwrap();
-    let studio = Studio::start(folder.path(), &[name]);
+pub fn studio() -> (Folder, Studio) {
+    let folder = Folder::with([("a.scn", SMALLEST)]);
+    let studio = Studio::start(folder.command("studio --no-open a.scn"));
     (folder, studio)
 }
 
@@ -45,27 +38,24 @@ pub struct Studio {
 }
 
 impl Studio {
-    pub fn start(folder: &Path, arguments: &[&str]) -> Self {
-        let arguments = [&["studio", "--no-open"], arguments].concat();
-        Self::started(command(folder, &arguments))
-    }
-
-    pub fn started(mut command: Command) -> Self {
+    pub fn start(mut command: Command) -> Self {
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        let lines = BufReader::new(child.stderr.take().unwrap()).lines();
-        let address = lines
-            .map(Result::unwrap)
-            .find(|line| line.starts_with("http"))
-            .expect("it prints an address");
-        let rest = address.strip_prefix("http://127.0.0.1:").unwrap();
-        let (port, token) = rest.split_once("/?token=").unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let address = lines.find_map(|line| {
+            let line = line.unwrap();
+            let (port, token) = line
+                .strip_prefix("http://127.0.0.1:")?
+                .split_once("/?token=")?;
+            Some((port.parse().unwrap(), token.to_owned()))
+        });
+        let (port, token) = address.expect("it prints an address");
         let mut studio = Self {
             child,
-            port: port.parse().unwrap(),
-            token: token.to_owned(),
+            port,
+            token,
             secret: String::new(),
         };
-        let response = studio.get(&format!("/?token={token}"), "");
+        let response = studio.get(&format!("/?token={}", studio.token), "");
         let (_, secret) = response.split_once(&format!("pinhole-{port}=")).unwrap();
         studio.secret = secret[..32].to_owned();
         studio
@@ -95,7 +85,7 @@ impl Studio {
         response
     }
 
-    /// The response to a request for a path, with the host and these headers.
+    /// The response to a request for a path, with the host and these lines of the head.
     pub fn get(&self, path: &str, headers: &str) -> String {
         let host = self.host();
         self.response(&format!(
@@ -104,25 +94,17 @@ impl Studio {
     }
 
     /// A page, to which nothing but the file was told yet.
-    pub fn page(&self) -> (Page, Value) {
+    pub fn page(&self) -> (Client<Page>, Value) {
         let host = self.host();
-        let request = Request::builder()
-            .uri(format!("ws://{host}/socket"))
-            .header("Host", &host)
-            .header("Origin", format!("http://{host}"))
-            .header("Cookie", self.cookie())
-            .header("Connection", "Upgrade")
-            .header("Upgrade", "websocket")
-            .header("Sec-WebSocket-Version", "13")
-            .header("Sec-WebSocket-Key", generate_key())
-            .body(())
-            .unwrap();
+        let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
+        for (name, value) in [
+            ("Origin", format!("http://{host}")),
+            ("Cookie", self.cookie()),
+        ] {
+            request.headers_mut().insert(name, value.parse().unwrap());
+        }
         let (socket, _) = client(request, self.stream()).unwrap();
-        let mut page = Page {
-            socket,
-            requests: 0,
-            told: Vec::new(),
-        };
+        let mut page = Client::new(Page(socket));
         let file = page.told("studio/file");
         (page, file)
     }
@@ -135,73 +117,18 @@ impl Drop for Studio {
     }
 }
 
-pub struct Page {
-    pub socket: WebSocket<TcpStream>,
-    requests: i32,
-    /// Notifications that nobody has asked for yet.
-    told: Vec<Value>,
-}
+/// A page's end of the web socket.
+pub struct Page(pub WebSocket<TcpStream>);
 
-impl Page {
-    pub fn read(&mut self) -> Value {
-        match self.socket.read().unwrap() {
-            Message::Text(text) => serde_json::from_str(&text).unwrap(),
-            other => panic!("{other:?}"),
-        }
+impl Carrier for Page {
+    const URI: &'static str = "studio:///scene.scn";
+
+    fn write(&mut self, text: &str) {
+        self.0.send(Message::text(text)).unwrap();
     }
 
-    pub fn write(&mut self, text: &str) {
-        self.socket.send(Message::text(text)).unwrap();
-    }
-
-    pub fn tell(&mut self, method: &str, params: Value) {
-        self.write(&json!({ "jsonrpc": "2.0", "method": method, "params": params }).to_string());
-    }
-
-    /// Asks, and does not wait for the answer.
-    pub fn request(&mut self, method: &str, params: Value) -> i32 {
-        self.requests += 1;
-        let id = self.requests;
-        let request = json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params });
-        self.write(&request.to_string());
-        id
-    }
-
-    /// The whole response to a request.
-    pub fn response(&mut self, id: i32) -> Value {
-        loop {
-            let message = self.read();
-            if message["id"] == id {
-                assert_eq!(message["jsonrpc"], "2.0");
-                return message;
-            }
-            self.told.push(message);
-        }
-    }
-
-    pub fn respond(&mut self, method: &str, params: Value) -> Value {
-        let id = self.request(method, params);
-        self.response(id)
-    }
-
-    /// The result of a request.
-    pub fn ask(&mut self, method: &str, params: Value) -> Value {
-        let response = self.respond(method, params);
-        assert!(response.get("error").is_none(), "{response}");
-        response["result"].clone()
-    }
-
-    /// The parameters of the next notification of this name, since the last one that was asked for.
-    pub fn told(&mut self, method: &str) -> Value {
-        loop {
-            let place = self.told.iter().position(|it| it["method"] == method);
-            match place {
-                Some(place) => return self.told.remove(place)["params"].clone(),
-                None => {
-                    let message = self.read();
-                    self.told.push(message);
-                }
-            }
-        }
+    fn read(&mut self) -> String {
+        let message = self.0.read().unwrap();
+        message.into_text().unwrap().as_str().to_owned()
     }
 }

@@ -2,49 +2,38 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
-    editor::viewport::{Drag, overlays},
+    editor::viewport::{Along, Drag, overlays},
     inspect::{CameraFacts, inspect},
     probe::probe,
-    scene::{self, CenteredTriangle, Outline, Scene, Shape, View},
+    scene::{self, CenteredTriangle, Cuboid, Outline, Scene, Shape, View},
 };
-use proptest::prelude::*;
+use proptest::{
+    array::{uniform2, uniform3, uniform4},
+    prelude::*,
+};
 
-use super::{along, dragged, near, scene_of, seen};
-use crate::editor::sources;
+use super::{dragged, near, seen};
+use crate::scenes::{read, sources};
 
-/// A scene with one object in front of the camera, and a second one that may be anywhere.
+/// A scene with one object in front of the camera.
 fn any_scene() -> impl Strategy<Value = String> {
-    let number = || -4.0..4.0;
-    let vector = move || {
-        (number(), number(), number()).prop_map(|(x, y, z)| format!("({x:.2}, {y:.2}, {z:.3})"))
-    };
-    let size =
-        || (0.1..3.0, 0.1..3.0, 0.1..3.0).prop_map(|(x, y, z)| format!("({x:.2}, {y:.1}, {z:.3})"));
-    let sphere = (vector(), 0.1..3.0)
-        .prop_map(|(center, radius)| format!("sphere {{ center {center} radius {radius:.2} }}"));
-    let block = (vector(), size())
-        .prop_map(|(center, size)| format!("box {{ center {center} size {size} }}"));
-    let corners = (vector(), size())
-        .prop_map(|(min, size)| format!("let min = {min} box {{ min min max min + {size} }}"));
-    let triangle = (vector(), vector(), -200.0..200.0).prop_map(|(centroid, normal, spin)| {
-        format!("triangle {{ centroid {centroid} normal {normal} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}")
-    });
-    let vertices = (vector(), vector(), vector())
-        .prop_map(|(a, b, c)| format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"));
-    let board = number().prop_map(|y| format!("checkerboard {{ y {y:.2} }}"));
-    let object = prop_oneof![sphere, block, corners, triangle, vertices, board];
-    let view = prop_oneof![
-        vector().prop_map(|point| format!("lookat {point}")),
-        vector().prop_map(|along| format!("direction {along} + (0, 0, -9)")),
-    ];
-    let lens = prop_oneof![Just(""), Just("d 5"), Just("fov 60deg"), Just("hfov 1rad")];
-    let size = prop_oneof![
-        Just((160, 90)),
-        Just((30, 40)),
-        Just((1, 1)),
-        Just((1 << 20, 3))
-    ];
-    (object, vector(), view, lens, -200.0..200.0, size).prop_map(|(object, eye, view, lens, roll, (width, height))| {
+    let vectors = uniform4(uniform3(-4.0..4.0));
+    let turns = uniform2(-200.0..200.0);
+    let kinds = (0..6usize, 0..2usize, 0..4usize, 0..4usize);
+    (vectors, uniform3(0.1..3.0), turns, kinds).prop_map(|(vectors, [s, t, r], [spin, roll], kinds)| {
+        let [a, b, c, eye] = vectors.map(|[x, y, z]| format!("({x:.2}, {y:.2}, {z:.3})"));
+        let (size, y) = (format!("({s:.2}, {t:.1}, {r:.3})"), vectors[0][1]);
+        let object = match kinds.0 {
+            0 => format!("sphere {{ center {a} radius {r:.2} }}"),
+            1 => format!("box {{ center {a} size {size} }}"),
+            2 => format!("let min = {a} box {{ min min max min + {size} }}"),
+            3 => format!("triangle {{ centroid {a} normal {b} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}"),
+            4 => format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"),
+            _ => format!("checkerboard {{ y {y:.2} }}"),
+        };
+        let view = [format!("lookat {c}"), format!("direction {c} + (0, 0, -9)")];
+        let (view, lens) = (&view[kinds.1], ["", "d 5", "fov 60deg", "hfov 1rad"][kinds.2]);
+        let (width, height) = [(160, 90), (30, 40), (1, 1), (1 << 20, 3)][kinds.3];
         format!("{object} image {{ width {width} height {height} }} camera {{ eye {eye} + (0, 0, 9) {view} {lens} roll {roll:.0}deg }}")
     })
 }
@@ -75,36 +64,26 @@ fn camera_of(scene: &Scene) -> CameraFacts {
 /// Where a handle of the first object is in the world, but for those that depend on the picture; of a board as high as it is where another board, `held`, is
 /// met by the view axis.
 fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
-    match scene.objects[0].shape {
-        Shape::Sphere(sphere) => sphere.center,
-        Shape::Box(cuboid) => {
-            let mut at = cuboid.min.midpoint(cuboid.max);
-            if let Some((side, axis)) = handle.split_once('_') {
-                let axis = ["x", "y", "z"]
-                    .iter()
-                    .position(|it| *it == axis)
-                    .expect("an axis");
-                at[axis] = if side == "min" {
-                    cuboid.min
-                } else {
-                    cuboid.max
-                }[axis];
+    match (scene.objects[0].shape, held.objects[0].shape) {
+        (Shape::Sphere(sphere), _) => sphere.center,
+        (Shape::Box(Cuboid { min, max, .. }), _) => {
+            let mut at = min.midpoint(max);
+            if let Some(axis) = axis_of(handle, "") {
+                at[axis] = if handle.starts_with("min") { min } else { max }[axis];
             }
             at
         }
-        Shape::Triangle(triangle) => match (triangle.outline, handle) {
-            (Outline::Vertices([at, ..]), "v0")
-            | (Outline::Vertices([_, at, _]), "v1")
-            | (Outline::Vertices([.., at]), "v2") => at,
+        (Shape::Triangle(triangle), _) => match (triangle.outline, handle) {
+            (Outline::Vertices(corners), "v0" | "v1" | "v2") => {
+                corners[usize::from(handle.as_bytes()[1] - b'0')]
+            }
             (outline, _) => outline.centroid(),
         },
-        Shape::Checkerboard(board) => {
-            let Shape::Checkerboard(before) = held.objects[0].shape else {
-                unreachable!("a drag makes nothing else of a board");
-            };
+        (Shape::Checkerboard(board), Shape::Checkerboard(before)) => {
             let CameraFacts { eye, w, .. } = camera_of(held);
             (eye + w * ((before.y - eye.y) / w.y)).with_y(board.y)
         }
+        (_, other) => panic!("a drag makes a board of a {}", other.kind()),
     }
 }
 
@@ -124,7 +103,7 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
         "radius" | "normal" | "spin" => "",
         _ => handle.split_once('_').map_or(word, |(_, axis)| axis),
     };
-    ["x", "y", "z"].iter().position(|it| *it == axis)
+    "xyz".find(axis).filter(|_| !axis.is_empty())
 }
 
 /// The tip of a triangle's normal is seen at a point, or it is the nearest to the ray there.
@@ -173,9 +152,9 @@ proptest! {
         let to = point_of(&before, to);
         let handles = handles(&before);
         let handle = handles[which % handles.len()];
-        let moved = Drag { object: Some(0), handle, from: to, to, along: along(word) };
-        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
-        let mut after = scene_of(&changed);
+        let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word) };
+        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
         // The camera may be tied to what was moved.
         after.camera = before.camera;
@@ -220,8 +199,8 @@ proptest! {
         let Some(before) = reading.scene else { return Ok(()) };
         let [from, to] = [from, to].map(|point| point_of(&before, point));
         let moved = Drag { object: None, handle, from, to, along: None };
-        let Ok((changed, _)) = dragged(&text, moved) else { return Ok(()) };
-        let after = scene_of(&changed);
+        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);
         prop_assert_eq!(after.image, before.image);
         if let (View::Lookat(point), "orbit") = (before.camera.view, handle)

@@ -11,39 +11,19 @@ use pinhole::{
         viewport::{Along, Drag, drag},
     },
     inspect::inspect,
-    scene::{self, Scene},
+    scene::Scene,
     source::SourceId,
 };
 
-use super::sources;
+use crate::scenes::{read, sources};
 
-/// A text after a handle was moved, and what is said of it; or why it cannot be.
-fn dragged(text: &str, moved: Drag<'_>) -> Result<(String, String), String> {
+/// A text after a handle was moved; or why it cannot be.
+fn dragged(text: &str, moved: Drag<'_>) -> Result<String, String> {
     let sources = sources(text);
     let analysis = Analysis::new(&sources);
-    let scene = analysis
-        .scene()
-        .unwrap_or_else(|| panic!("no scene: {text}"));
-    let dragged = drag(&analysis, &scene, &moved)?;
+    let dragged = drag(&analysis, &read(text), &moved)?;
     let fix = Fix::new("", dragged.edits);
-    let text = apply(&fix, SourceId::File, text);
-    Ok((text, dragged.values.join("; ")))
-}
-
-fn scene_of(text: &str) -> Scene {
-    let reading = scene::read(&sources(text));
-    let scene = reading.scene;
-    scene.unwrap_or_else(|| panic!("{text}: {:?}", reading.diagnostics))
-}
-
-fn along(word: &str) -> Option<Along> {
-    match word {
-        "x" => Some(Along::Axis(0)),
-        "y" => Some(Along::Axis(1)),
-        "z" => Some(Along::Axis(2)),
-        "floor" => Some(Along::Floor),
-        _ => None,
-    }
+    Ok(apply(&fix, SourceId::File, text))
 }
 
 fn object<'a>(handle: &'a str, to: [f64; 2], word: &str) -> Drag<'a> {
@@ -52,17 +32,7 @@ fn object<'a>(handle: &'a str, to: [f64; 2], word: &str) -> Drag<'a> {
         handle,
         from: DVec2::from(to),
         to: DVec2::from(to),
-        along: along(word),
-    }
-}
-
-fn camera(handle: &str, from: [f64; 2], to: [f64; 2]) -> Drag<'_> {
-    Drag {
-        object: None,
-        handle,
-        from: DVec2::from(from),
-        to: DVec2::from(to),
-        along: None,
+        along: Along::named(word),
     }
 }
 
