@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
+    format::{all_scenes, formatted},
     scenes::examples,
 };
 use pinhole::{
@@ -34,43 +35,43 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let start = Instant::now();
     let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
+    let found = &reading.diagnostics;
     // As many as `check` writes of a file.
-    let written = &reading.diagnostics[..reading.diagnostics.len().min(1000)];
+    let written = &found[..found.len().min(1000)];
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
     // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests are, up to four seconds.
-    let bound = if cfg!(debug_assertions) { 10 } else { 2 };
-    assert!(
-        time < Duration::from_secs(bound),
-        "{time:?} for {length} bytes"
-    );
+    let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
+    assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
         let style = Style {
             drawing,
             ..Style::default()
         };
-        let text = Report::new(&sources, style).human(&reading.diagnostics);
+        let text = Report::new(&sources, style).human(found);
         assert!(text.len() < MEGABYTE, "{} bytes of reports", text.len());
     }
 
-    let errors = reading.diagnostics.iter().filter(|d| d.is_error()).count();
-    assert_eq!(
-        reading.scene.is_none(),
-        errors > 0,
-        "{:?}",
-        reading.diagnostics
-    );
-    for diagnostic in &reading.diagnostics {
+    let has_error = found.iter().any(|d| d.is_error());
+    assert_eq!(reading.scene.is_none(), has_error, "{found:?}");
+    for diagnostic in found {
         assert!(!diagnostic.labels.is_empty(), "{diagnostic:?}");
         for label in &diagnostic.labels {
             let text = sources.get(label.span.source).text();
-            let range = label.span.range();
-            assert!(
-                text.get(range).is_some(),
-                "{diagnostic:?} beyond {} bytes",
-                text.len()
-            );
+            let is_within = text.get(label.span.range()).is_some();
+            assert!(is_within, "{diagnostic:?} beyond {} bytes", text.len());
+        }
+        // The edits of a fix lie in the text, between characters, and do not overlap.
+        for fix in &diagnostic.fixes {
+            let mut at = (None, 0);
+            for edit in &fix.edits {
+                let (source, range) = (edit.span.source, edit.span.range());
+                assert!(at.0 != Some(source) || range.start >= at.1, "{fix:?}");
+                let text = sources.get(source).text();
+                assert!(text.get(range.clone()).is_some(), "{fix:?}");
+                at = (Some(source), range.end);
+            }
         }
     }
     reading.scene.is_some()
@@ -104,10 +105,9 @@ fn garbage(effort: Effort) {
     for letters in [&bytes[..], signs, b"(){}[] -,a1", b" "] {
         assert!(!read(garbage.of(length, letters)));
     }
-    let many: String = (0..length / 4)
-        .filter_map(|_| char::from_u32((garbage.next() % 0x11_0000) as u32))
-        .collect();
-    assert!(!read(many));
+    let letters = (0..length / 4).map(|_| garbage.next() % 0x11_0000);
+    let many = letters.filter_map(|letter| char::from_u32(letter as u32));
+    assert!(!read(many.collect::<String>()));
 }
 
 sampled_and_exhaustive!(one_thing_many_times);
@@ -221,46 +221,50 @@ fn many_overrides(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(every_prefix_of_every_example);
+sampled_and_exhaustive!(every_scene_cut_off_or_without_a_byte);
 
-fn every_prefix_of_every_example(effort: Effort) {
-    for example in effort.first(3, examples()) {
-        for end in 0..example.len() {
-            read(&example.as_bytes()[..end]);
-        }
-    }
-}
-
-sampled_and_exhaustive!(every_example_without_any_one_byte);
-
-fn every_example_without_any_one_byte(effort: Effort) {
-    for example in effort.first(3, examples()) {
-        for gone in 0..example.len() {
+fn every_scene_cut_off_or_without_a_byte(effort: Effort) {
+    for (example, step) in effort
+        .first(3, examples())
+        .map(|text| (text, 1))
+        .chain(effort.first(100, all_scenes()).map(|text| (text, 11)))
+    {
+        for at in (0..example.len()).step_by(step) {
+            read(&example.as_bytes()[..at]);
             let mut bytes = example.clone().into_bytes();
-            bytes.remove(gone);
+            bytes.remove(at);
             read(bytes);
         }
     }
 }
 
 #[test]
-fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
+fn windows_line_ends_and_a_byte_order_mark_make_no_mistake() {
     for example in examples() {
         assert!(read(format!("\u{feff}{}", example.replace('\n', "\r\n"))));
     }
 }
 
-sampled_and_exhaustive!(random_changes_of_an_example);
+sampled_and_exhaustive!(random_slips_in_a_scene);
 
-fn random_changes_of_an_example(effort: Effort) {
-    let example = examples().swap_remove(0);
+/// What is not laid out has a mistake, too.
+fn random_slips_in_a_scene(effort: Effort) {
+    let mut scenes = all_scenes();
+    scenes.retain(|text| (1..1000).contains(&text.len()));
+    let slips = "|(|)|{|}|[|,|.|;|:|=|+|*|-|#ff|2.5.5| radus | let |'|\"|/*|*/|//|é|\r|\n|\0";
+    let slips: Vec<&str> = slips.split('|').collect();
     let mut garbage = Garbage::new(2);
-    let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
     for _ in 0..effort.part_of(20_000) {
-        let mut bytes = example.clone().into_bytes();
-        for _ in 0..=garbage.next() % 3 {
-            let at = (garbage.next() % bytes.len() as u64) as usize;
-            bytes[at] = garbage.of(1, letters)[0];
+        let mut up_to = |end: usize| (garbage.next() % end as u64) as usize;
+        let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
+        for _ in 0..=up_to(3) {
+            let at = up_to(bytes.len() + 1);
+            let end = bytes.len().min(at + up_to(4));
+            bytes.splice(at..end, slips[up_to(slips.len())].bytes());
+        }
+        if let Ok(text) = str::from_utf8(&bytes) {
+            // It has an error, or there would be no answer.
+            let _ = formatted(text);
         }
         read(bytes);
     }
@@ -270,10 +274,9 @@ sampled_and_exhaustive!(time_grows_with_the_text);
 
 /// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
 fn time_grows_with_the_text(effort: Effort) {
-    let few = if effort == Effort::Sample {
-        1_000
-    } else {
-        4_000
+    let few = match effort {
+        Effort::Sample => 1_000,
+        Effort::Exhaustive => 4_000,
     };
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [

@@ -1,10 +1,14 @@
-//! Slips made by a program in scenes that are right: each fix of a problem of meaning does away with it, and makes no new error.
+//! Slips made by a program in scenes that are right: each fix of a problem does away with it, and makes no new error.
 
-use std::fs;
+use std::{fs, ops::Range};
 
-use pinhole::diagnostic::Diagnostic;
+use pinhole::{
+    diagnostic::Diagnostic,
+    syntax::tokens::{Lexer, Token, TokenKind},
+};
 
-use super::{diagnostics, sources, type_in_fixes};
+use super::{diagnostics, type_in_fixes};
+use crate::scenes::{examples, scenes, sources};
 
 /// A scene with what the examples lack.
 const SCENE: &str = "\
@@ -20,95 +24,116 @@ box D { center (0, 1, 0)  size (1, 2, 3) }
 checkerboard { square 1  colors (red, white) }
 ";
 
-/// The words, numbers and lists of a scene without comments in them, each with its place.
-fn pieces(text: &str) -> Vec<(usize, &str)> {
-    let mut pieces = Vec::new();
-    let mut at = 0;
-    while let Some(first) = text[at..].chars().next() {
-        let rest = &text[at..];
-        let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.');
-        let length = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if is_word(first) {
-            rest.find(|c| !is_word(c)).unwrap_or(rest.len())
-        } else if first == '(' {
-            // The innermost lists.
-            let end = rest[1..].find(['(', ')']).map(|end| end + 1);
-            match end.filter(|&end| rest[end..].starts_with(')')) {
-                Some(end) => end + 1,
-                None => 1,
-            }
-        } else {
-            first.len_utf8()
-        };
-        if is_word(first) || (first == '(' && length > 1) {
-            pieces.push((at, &rest[..length]));
-        }
-        at += length;
-    }
-    pieces
+/// The tokens of a scene, without the comments.
+fn tokens(text: &str) -> Vec<Token> {
+    let mut lexer = Lexer::new(text, 0);
+    let tokens = std::iter::repeat_with(|| lexer.token());
+    let tokens = tokens.take_while(|token| token.kind != TokenKind::End);
+    let is_comment = |token: &Token| token.kind == TokenKind::Comment;
+    tokens.filter(|token| !is_comment(token)).collect()
 }
 
-/// What could stand in place of a piece by a slip.
-fn slips(piece: &str) -> Vec<String> {
-    let fixed = |texts: &[&str]| texts.iter().map(|text| (*text).to_owned()).collect();
-    if let Some(inner) = piece.strip_prefix('(').and_then(|p| p.strip_suffix(')')) {
-        let parts: Vec<&str> = inner.split(", ").collect();
-        let but_last = parts[..parts.len() - 1].join(", ");
-        let reversed: Vec<&str> = parts.iter().rev().copied().collect();
-        let mut slips: Vec<String> = fixed(&["3", "(0, 0, 0)", "(-5, -7, -9)", "30deg", "red"]);
-        slips.extend([
-            format!("({but_last})"),
-            format!("({inner}, 2)"),
-            format!("({})", reversed.join(", ")),
-        ]);
-        slips
-    } else if piece.starts_with(|c: char| c.is_ascii_digit()) {
-        let mut slips: Vec<String> = fixed(&["0", "0.5", "(1, 2, 3)", "(1, 1)", "pi/2", "red"]);
-        let number = piece.trim_end_matches("deg");
-        slips.push(format!("-{piece}"));
-        slips.push(match number == piece {
-            true => format!("{piece}deg"),
-            false => number.to_owned(),
-        });
-        slips
-    } else {
-        let dropped = format!("{}{}", &piece[..1], piece.get(2..).unwrap_or_default());
-        vec![
-            dropped,
-            format!("{piece}_x"),
-            format!("view{piece}"),
-            "nothing".to_owned(),
-        ]
-    }
+/// Types in the fixes of the problems that are meant, of a text with a slip in place of a piece.
+fn slip(
+    text: &str,
+    piece: &Range<usize>,
+    slip: &str,
+    is_meant: impl Fn(&Diagnostic) -> bool,
+    complaints: &mut Vec<String>,
+) -> usize {
+    let wrong = format!("{}{slip}{}", &text[..piece.start], &text[piece.end..]);
+    let name = format!("{slip} for {} at {piece:?}", &text[piece.clone()]);
+    type_in_fixes(&name, &sources(&wrong), is_meant, complaints)
 }
 
+/// One token is taken away, written twice, replaced by another one, or followed by it.
 #[test]
-fn every_fix_of_a_slip_helps() {
-    let example = |name: &str| {
-        let path = format!("{}/examples/{name}", env!("CARGO_MANIFEST_DIR"));
-        fs::read_to_string(path).unwrap()
-    };
-    let texts = [
-        SCENE.to_owned(),
-        example("language_tour.scn"),
-        example("near_and_far.scn"),
-        example("straight_down.scn"),
-    ];
+fn every_fix_of_a_slip_in_syntax_helps() {
+    let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
+    let mut others = others.cycle();
+    // A field without a value is found when the scene is made.
+    let is_meant = |d: &Diagnostic| d.is_of_syntax && d.code != "pinhole::missing_value";
     let (mut fixes, mut complaints) = (0, Vec::new());
-    for text in &texts {
-        for (at, piece) in pieces(text) {
-            for slip in slips(piece) {
-                let wrong = format!("{}{slip}{}", &text[..at], &text[at + piece.len()..]);
-                let wrong = sources(&wrong, &[]);
-                if diagnostics(&wrong).iter().any(|found| found.is_of_syntax) {
-                    continue;
-                }
-                let name = format!("{slip} for {piece}");
-                fixes += type_in_fixes(&name, &wrong, Diagnostic::is_error, &mut complaints);
+    let mut examples = examples();
+    examples.retain(|text| text.len() <= 3000 && diagnostics(&sources(text)).is_empty());
+    for text in &examples {
+        for Token { start, end, .. } in tokens(text).into_iter().step_by(3) {
+            let (token, other) = (&text[start..end], others.next().unwrap());
+            let twice = format!("{token} {token}");
+            for wrong in ["", &twice, other, &format!("{token} {other}")] {
+                fixes += slip(text, &(start..end), wrong, is_meant, &mut complaints);
             }
         }
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
     assert!(fixes > 500, "{fixes} fixes");
+}
+
+/// A word, a number or a list becomes another one.
+#[test]
+fn every_fix_of_a_slip_in_meaning_helps() {
+    let named = |name: &str| {
+        scenes("examples")
+            .into_iter()
+            .find(|path| path.ends_with(name))
+    };
+    let examples = ["language_tour.scn", "near_and_far.scn", "straight_down.scn"].map(named);
+    let texts = examples.map(|path| fs::read_to_string(path.unwrap()).unwrap());
+    let (mut fixes, mut complaints) = (0, Vec::new());
+    for text in texts.iter().map(String::as_str).chain([SCENE]) {
+        let mut at = 0;
+        for token in tokens(text) {
+            let mut piece = token.start.max(at)..token.end;
+            let close = text[token.end..].find(['(', ')']).unwrap_or_default() + token.end;
+            if text[token.start..].starts_with('(') && text[close..].starts_with(')') {
+                piece.end = close + 1;
+            }
+            let written = text.get(piece.clone()).unwrap_or_default();
+            at = at.max(piece.end);
+            for wrong in slips_in_meaning(written) {
+                let syntax = format!("{}{wrong}{}", &text[..piece.start], &text[piece.end..]);
+                if !diagnostics(&sources(&syntax))
+                    .iter()
+                    .any(|d| d.is_of_syntax)
+                {
+                    fixes += slip(text, &piece, &wrong, Diagnostic::is_error, &mut complaints);
+                }
+            }
+        }
+    }
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+    assert!(fixes > 500, "{fixes} fixes");
+}
+
+/// What could stand in place of a word, a number or an innermost list.
+fn slips_in_meaning(piece: &str) -> Vec<String> {
+    let (mut slips, fixed) = match piece.chars().next() {
+        Some('(') if piece.len() > 1 => {
+            let mut parts: Vec<&str> = piece[1..piece.len() - 1].split(", ").collect();
+            let more = format!("({}, 2)", parts.join(", "));
+            let fewer = format!("({})", parts[..parts.len() - 1].join(", "));
+            parts.reverse();
+            let reversed = format!("({})", parts.join(", "));
+            (
+                vec![more, fewer, reversed],
+                "3|(0, 0, 0)|(-5, -7, -9)|30deg|red",
+            )
+        }
+        Some('0'..='9') => {
+            let number = piece.trim_end_matches("deg");
+            let unit = if number == piece { "deg" } else { "" };
+            let slips = vec![format!("-{piece}"), format!("{number}{unit}")];
+            (slips, "0|0.5|(1, 2, 3)|(1, 1)|pi/2|red")
+        }
+        Some('a'..='z' | 'A'..='Z' | '_') => {
+            let dropped = piece[..1].to_owned() + piece.get(2..).unwrap_or_default();
+            (
+                vec![dropped, format!("{piece}_x"), format!("view{piece}")],
+                "nothing",
+            )
+        }
+        _ => return Vec::new(),
+    };
+    slips.extend(fixed.split('|').map(str::to_owned));
+    slips
 }

@@ -1,85 +1,49 @@
 //! The canonical layout: what it looks like, as `tests/format` says, and what holds of every text.
 //!
-//! Beside each `NAME.scn` of `tests/format` stands `NAME.formatted.scn`; `UPDATE_EXPECT=1 cargo test` writes these anew.
+//! Beside each `NAME.scn` of `tests/format` stands `NAME.formatted.scn`.
 
-mod any;
+pub mod any;
 mod laws;
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{fs, path::Path, time::Instant};
 
 use pinhole::{format::format, source::Source};
 
 use self::laws::the_laws_hold;
-use crate::{scenes::fenced, table::rows};
+use crate::{scenes::scenes, snapshot::assert_file, table::rows};
 
-fn formatted(text: &str) -> Result<String, Vec<String>> {
-    let codes = |diagnostics: Vec<pinhole::diagnostic::Diagnostic>| {
-        diagnostics.into_iter().map(|d| d.code).collect()
-    };
-    format(&Source::from_text("a.scn", text)).map_err(codes)
+/// The canonical layout, or the codes of the mistakes, of which there is an error.
+pub fn formatted(text: &str) -> Result<String, Vec<String>> {
+    format(&Source::from_text("a.scn", text)).map_err(|mistakes| {
+        assert!(mistakes.iter().any(|d| d.is_error()), "{text}");
+        mistakes.into_iter().map(|d| d.code).collect()
+    })
 }
 
-/// Every scene below a folder.
-fn scenes(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            scenes(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "scn") {
-            found.push(path);
-        }
-    }
-    found.sort();
-}
-
-fn all_scenes() -> Vec<PathBuf> {
+/// The texts of all scenes below the folders of the examples and the tests, right or wrong.
+pub fn all_scenes() -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = Vec::new();
-    for folder in ["examples", "tests"] {
-        scenes(&root.join(folder), &mut found);
+    let (mut texts, mut folders) = (Vec::new(), vec![root.join("examples"), root.join("tests")]);
+    while let Some(folder) = folders.pop() {
+        texts.extend(scenes(&folder).into_iter().map(fs::read_to_string));
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+        folders.extend(
+            entries
+                .map(|entry| entry.path())
+                .filter(|path| path.is_dir()),
+        );
     }
-    found
+    texts.into_iter().flatten().collect()
 }
 
 #[test]
 fn the_layout_is_as_it_stands_beside() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/format");
-    let mut found = Vec::new();
-    scenes(&root, &mut found);
-    found.retain(|path| !path.to_string_lossy().ends_with(".formatted.scn"));
-    assert!(found.len() >= 4);
-    for path in found {
-        let beside = path.with_extension("formatted.scn");
-        let formatted = formatted(&fs::read_to_string(&path).unwrap()).unwrap();
-        if std::env::var_os("UPDATE_EXPECT").is_some() {
-            fs::write(&beside, formatted).unwrap();
+    for path in scenes("tests/format") {
+        if path.file_stem().unwrap().to_string_lossy().contains('.') {
             continue;
         }
-        let expected = fs::read_to_string(&beside).unwrap_or_default();
-        assert_eq!(formatted, expected, "{}", beside.display());
-    }
-}
-
-#[test]
-fn the_examples_and_the_scenes_of_the_documents_are_canonical() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut examples = Vec::new();
-    scenes(&root.join("examples"), &mut examples);
-    let mut texts: Vec<String> = examples
-        .iter()
-        .map(|path| fs::read_to_string(path).unwrap())
-        .collect();
-    for document in ["README.md", "grammar/language.md"] {
-        let document = fs::read_to_string(root.join(document)).unwrap();
-        texts.extend(fenced(&document, "scn").into_iter().map(str::to_owned));
-    }
-    assert!(texts.len() > 28);
-    for text in texts {
-        assert_eq!(formatted(&text).as_ref(), Ok(&text));
+        let formatted = formatted(&fs::read_to_string(&path).unwrap()).unwrap();
+        assert_file(&path.with_extension("formatted.scn"), &formatted);
     }
 }
 
