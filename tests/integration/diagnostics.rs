@@ -205,6 +205,8 @@ fn whole_reports() {
         ] {
             assert_file(&path.with_extension(ending), &report(&sources, drawing));
         }
+        let json = diagnostic::json_lines(&scene::read(&sources).diagnostics, &sources);
+        assert_file(&path.with_extension("json"), &json);
     }
 }
 
@@ -220,38 +222,6 @@ fn colour_is_only_added_where_it_is_wanted() {
     assert!(colored.contains("\x1b["));
     assert!(!report(&sources, Drawing::Unicode).contains('\x1b'));
     assert!(report(&sources, Drawing::Ascii).is_ascii());
-}
-
-#[test]
-fn json_is_as_the_contract_says() {
-    let text = "\u{feff}// é\r\nsphere {\r\n  radus 2\r\n}";
-    let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(["x=1", "cam=2"]);
-    let diagnostics = scene::read(&sources).diagnostics;
-    let lines = diagnostic::json_lines(&diagnostics, &sources);
-    let value = |line| serde_json::from_str(line).expect("a line is an object");
-    let values: Vec<serde_json::Value> = lines.lines().map(value).collect();
-    assert_eq!(values.len(), 5);
-    assert_eq!(
-        values[2].to_string(),
-        concat!(
-            r#"{"file":"a.scn","severity":"error","code":"pinhole::unknown_field","#,
-            r#""message":"a sphere has no field `radus`","#,
-            r#""help":"did you mean `radius`? A sphere takes center, radius and color.","#,
-            r#""labels":[{"offset":22,"length":5,"line":3,"column":3,"end_line":3,"end_column":8,"#,
-            r#""message":"not a field of a sphere"}],"#,
-            r#""fixes":[{"title":"write `radius`","edits":[{"offset":22,"length":5,"text":"radius"}]}]}"#
-        )
-    );
-    let label = &values[4]["labels"][0];
-    assert_eq!(label["file"], "--set #2");
-    assert_eq!((&label["offset"], &label["length"]), (&0.into(), &3.into()));
-    assert_eq!(values[4]["file"], "a.scn");
-    let sources = Sources::new(Source::from_text("a.scn", text)).with_sets(["image.widht=1"]);
-    let of_argument = diagnostic::to_json(&scene::read(&sources).diagnostics[3], &sources);
-    assert_eq!(
-        of_argument["fixes"].to_string(),
-        r#"[{"title":"write `width`","edits":[{"file":"--set #1","offset":6,"length":5,"text":"width"}]}]"#
-    );
 }
 
 #[test]

@@ -11,6 +11,7 @@ use crate::{
 };
 use pinhole::{
     diagnostic::{self, Drawing, Report, Style},
+    format::format,
     sampling::CounterRng,
     scene,
     source::{Source, Sources},
@@ -21,13 +22,12 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads and reports a text; answers whether there is a scene.
 #[track_caller]
 fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// The same with `--set` arguments.
+/// Reads and reports a text with `--set` arguments; answers whether there is a scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -175,49 +175,44 @@ fn ten_megabytes_in_a_line(effort: Effort) {
 
 sampled_and_exhaustive!(many_mistakes_and_many_names);
 
-fn many_mistakes_and_many_names(effort: Effort) {
-    let lines = |line: &dyn Fn(usize) -> String| {
-        let lines: String = (0..effort.part_of(40_000)).map(line).collect();
-        format!("{CAMERA}{lines}")
+/// As many lines; `N` is the number of each, `M` that of the next one.
+fn numbered(line: &str, count: usize) -> Vec<String> {
+    let of = |n: usize| {
+        line.replace('N', &n.to_string())
+            .replace('M', &(n + 1).to_string())
     };
-    let wrong: [&dyn Fn(usize) -> String; 5] = [
-        &|i| format!("let a{i} = b{i}\n"),
-        &|i| format!("let a = {i}\n"),
-        &|_| "sphere A { center (0, 1, 0) }\n".to_owned(),
-        &|_| CAMERA.to_owned(),
-        &|_| "sphere { center (0, 1, 0 }\n".to_owned(),
-    ];
-    for wrong in wrong {
-        assert!(!read(lines(wrong)));
+    (0..count).map(of).collect()
+}
+
+fn many_mistakes_and_many_names(effort: Effort) {
+    let lines = |line: &str| numbered(line, effort.part_of(40_000)).concat();
+    for wrong in [
+        "let aN = bN\n",
+        "let a = N\n",
+        "sphere A { center (0, 1, 0) }\n",
+        CAMERA,
+        "sphere { center (0, 1, 0 }\n",
+    ] {
+        assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    assert!(read(
-        lines(&|i| format!("let a{} = a{i} + 1\n", i + 1)).replacen("let a1 = a0", "let a1 = 0", 1)
-    ));
+    let chain = lines("let aM = aN + 1\n");
+    assert!(read(format!("{CAMERA}let a0 = 0\n{chain}")));
 }
 
 sampled_and_exhaustive!(many_overrides);
 
 fn many_overrides(effort: Effort) {
-    let lines = |line: &str| -> Vec<String> {
-        let lines = 0..effort.part_of(4_000);
-        lines.map(|i| line.replace('N', &i.to_string())).collect()
-    };
-    let lets = format!("{CAMERA}{}", lines("let aN = N\n").concat());
-    let spheres = lines("sphere SN { center (0, 1, 0) }\n").concat();
-    let spheres = format!("{CAMERA}{spheres}");
-    for (text, set, is_right) in [
-        (&lets, "aN=2", true),
-        (&lets, "zzN=2", false),
-        (&spheres, "SN.radius=2", true),
-        (&spheres, "TN.radius=2", false),
-        (&spheres, "SN=2", false),
-        (&spheres, "camera.e=2", false),
+    let lines = |line: &str| numbered(line, effort.part_of(4_000));
+    for (line, set, is_right) in [
+        ("let aN = N\n", "aN=2", true),
+        ("let aN = N\n", "zzN=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "SN.radius=2", true),
+        ("sphere SN { center (0, 1, 0) }\n", "TN.radius=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "SN=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "camera.e=2", false),
     ] {
-        assert_eq!(
-            read_with_sets(text.as_str(), &lines(set)),
-            is_right,
-            "{set}"
-        );
+        let text = format!("{CAMERA}{}", lines(line).concat());
+        assert_eq!(read_with_sets(text, &lines(set)), is_right, "{set}");
     }
 }
 
@@ -291,15 +286,18 @@ fn time_grows_with_the_text(effort: Effort) {
         "spere {}\n".to_owned(),
     ];
     for line in effort.of(lines) {
-        let time = |lines: usize| {
-            let text = CAMERA.to_owned() + &line.repeat(lines);
-            let start = Instant::now();
-            let sources = Sources::new(Source::from_text("test.scn", text));
-            let reading = scene::read(&sources);
-            (start.elapsed(), reading).0
-        };
-        let once = (0..3).map(|_| time(few)).min().unwrap_or_default();
-        let many = time(8 * few);
-        assert!(many < 32 * once, "{once:?} and {many:?}: {line}");
+        let read = |source: Source| drop(scene::read(&Sources::new(source)));
+        let lay_out = |source: Source| drop(format(&source));
+        for work in [read as fn(Source), lay_out] {
+            let time = |lines: usize| {
+                let text = CAMERA.to_owned() + &line.repeat(lines);
+                let start = Instant::now();
+                work(Source::from_text("test.scn", text));
+                start.elapsed()
+            };
+            let once = (0..3).map(|_| time(few)).min().unwrap_or_default();
+            let many = time(8 * few);
+            assert!(many < 32 * once, "{once:?} and {many:?}: {line}");
+        }
     }
 }

@@ -11,88 +11,66 @@ use pinhole::{
 
 use crate::{scenes::scenes, snapshot::assert_file, table::rows};
 
-/// Prints a tree: a node a line, with the text of its tokens.
-struct Printer<'s> {
-    source: &'s Source,
-    out: String,
-}
-
-impl Printer<'_> {
-    fn line(&mut self, depth: usize, words: &str) {
-        self.out += &format!("{}{words}\n", "  ".repeat(depth));
-    }
-
-    fn span(&mut self, depth: usize, what: &str, span: Span) {
-        let text = self.source.slice(span.range());
-        let words: Vec<&str> = text.split_whitespace().collect();
-        self.line(depth, &format!("{what} {}", words.join(" ")));
-    }
-
-    fn item(&mut self, item: &Item<'_>) {
+/// A tree, an item or a field a line; chains stand in brackets. Then comments and problems.
+fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
+    let under = |span: Span| {
+        let words = source.slice(span.range()).split_whitespace();
+        words.collect::<Vec<_>>().join(" ")
+    };
+    let bad = |span: Span| format!("bad `{}`", under(span));
+    let mut lines = Vec::new();
+    for item in &parsed.tree.items {
         match item {
             Item::Definition(definition) => {
                 let name = definition.name.map_or("?", |name| name.text);
                 let equals = definition.equals.map_or("", |_| " =");
-                self.line(0, &format!("let {name}{equals}"));
-                self.value(1, &definition.value);
+                let value = printed_value(&definition.value, &bad);
+                lines.push(format!("let {name}{equals} {value}"));
             }
             Item::Block(block) => {
                 let kind = block.kind.map_or("?", |kind| kind.text);
                 let name = block.name.map_or("", |name| name.text);
                 let open = block.open.map_or("", |_| "{");
                 let close = block.close.map_or("", |_| "}");
-                let words = ["block", kind, name, open, close];
-                let words: Vec<&str> = words.into_iter().filter(|w| !w.is_empty()).collect();
-                self.line(0, &words.join(" "));
+                lines.push(format!("block {kind} {name} {open}{close}"));
                 for field in &block.fields {
-                    self.line(1, field.name.text);
-                    self.value(2, &field.value);
+                    let value = printed_value(&field.value, &bad);
+                    lines.push(format!("  {} {value}", field.name.text));
                 }
-                block.bad.iter().for_each(|&span| self.span(1, "bad", span));
+                lines.extend(block.bad.iter().map(|&span| format!("  {}", bad(span))));
             }
-            Item::Bad(span) => self.span(0, "bad", *span),
+            Item::Bad(span) => lines.push(bad(*span)),
         }
     }
-
-    fn value(&mut self, depth: usize, value: &Value<'_>) {
-        let mut signs = Vec::new();
-        match &value.kind {
-            ValueKind::Number(text) => self.line(depth, &format!("number {text}")),
-            ValueKind::Angle { number, unit } => {
-                self.line(depth, &format!("angle {number} {unit:?}"));
-            }
-            ValueKind::ColorCode(text) => self.line(depth, &format!("color {text}")),
-            ValueKind::Name(text) => self.line(depth, &format!("name {text}")),
-            ValueKind::Call(call) => self.line(depth, &format!("call {}", call.function.text)),
-            ValueKind::Parentheses(_) => self.line(depth, "parentheses"),
-            ValueKind::Tuple(_) => self.line(depth, "tuple"),
-            ValueKind::Negation { .. } => self.line(depth, "negation"),
-            ValueKind::Chain { rest, .. } => {
-                signs.extend(rest.iter().map(|step| step.operator.sign().to_string()));
-                self.line(depth, "chain");
-            }
-            ValueKind::Missing => self.line(depth, "missing"),
-            ValueKind::Bad => self.span(depth, "bad", value.span),
-        }
-        for (index, part) in value.parts().into_iter().enumerate() {
-            if let Some(sign) = index.checked_sub(1).and_then(|before| signs.get(before)) {
-                self.line(depth + 1, sign);
-            }
-            self.value(depth + 1, part);
-        }
+    lines.extend(parsed.comments.iter().map(|&span| under(span)));
+    for problem in &parsed.problems {
+        let place = source.place(problem.labels[0].span.start);
+        let said = format!("{}: {}", problem.code, problem.message);
+        lines.push(format!("{}:{} {said}", place.line, place.column));
     }
+    lines.push(String::new());
+    lines.join("\n")
+}
 
-    fn all(mut self, parsed: &Parsed<'_>) -> String {
-        parsed.tree.items.iter().for_each(|item| self.item(item));
-        for comment in &parsed.comments {
-            self.span(0, "comment", *comment);
+fn printed_value(value: &Value<'_>, bad: &impl Fn(Span) -> String) -> String {
+    let parts = value.parts().into_iter();
+    let mut parts: Vec<String> = parts.map(|part| printed_value(part, bad)).collect();
+    match &value.kind {
+        ValueKind::Number(text) | ValueKind::ColorCode(text) | ValueKind::Name(text) => {
+            (*text).to_owned()
         }
-        for problem in &parsed.problems {
-            let place = self.source.place(problem.labels[0].span.start);
-            let said = format!("{}: {}", problem.code, problem.message);
-            self.line(0, &format!("{}:{} {said}", place.line, place.column));
+        ValueKind::Angle { number, unit } => format!("{number} {unit:?}"),
+        ValueKind::Call(call) => format!("{} ({})", call.function.text, parts.join(", ")),
+        ValueKind::Parentheses(_) | ValueKind::Tuple(_) => format!("({})", parts.join(", ")),
+        ValueKind::Negation { .. } => format!("-{}", parts[0]),
+        ValueKind::Chain { rest, .. } => {
+            for (part, step) in parts[1..].iter_mut().zip(rest) {
+                *part = format!("{} {part}", step.operator.sign());
+            }
+            format!("[{}]", parts.join(" "))
         }
-        self.out
+        ValueKind::Missing => "missing".to_owned(),
+        ValueKind::Bad => bad(value.span),
     }
 }
 
@@ -103,11 +81,7 @@ fn trees() {
             let source = &Source::from_bytes("test.scn", std::fs::read(&path).unwrap());
             let parsed = syntax::parse(source, SourceId::File);
             assert_eq!(parsed.problems.is_empty(), is_right, "{}", path.display());
-            let out = String::new();
-            assert_file(
-                &path.with_extension("txt"),
-                &Printer { source, out }.all(&parsed),
-            );
+            assert_file(&path.with_extension("txt"), &printed(source, &parsed));
         }
     }
 }
