@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     format::{all_scenes, formatted},
-    scenes::examples,
+    scenes::{examples, sources},
 };
 use pinhole::{
-    diagnostic::{self, Drawing, Report, Style},
+    diagnostic::{self, Diagnostic, Drawing, Edit, Report, Style},
     format::format,
     sampling::CounterRng,
     scene,
-    source::{Source, Sources},
+    source::{Source, Sources, Span},
 };
 use rand::{Rng, SeedableRng};
 
@@ -55,26 +55,28 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
 
     let has_error = found.iter().any(|d| d.is_error());
     assert_eq!(reading.scene.is_none(), has_error, "{found:?}");
+    assert_places(found, &sources);
+    reading.scene.is_some()
+}
+
+/// Labels and edits lie in the text, between characters, and the edits of a fix do not overlap.
+#[track_caller]
+fn assert_places(found: &[Diagnostic], sources: &Sources) {
     for diagnostic in found {
         assert!(!diagnostic.labels.is_empty(), "{diagnostic:?}");
-        for label in &diagnostic.labels {
-            let text = sources.get(label.span.source).text();
-            let is_within = text.get(label.span.range()).is_some();
-            assert!(is_within, "{diagnostic:?} beyond {} bytes", text.len());
-        }
-        // The edits of a fix lie in the text, between characters, and do not overlap.
+        let has = |span: Span| sources.get(span.source).text().get(span.range()).is_some();
+        let labels = diagnostic.labels.iter().map(|label| label.span);
+        let edits = diagnostic.fixes.iter().flat_map(|fix| &fix.edits);
+        let mut spans = labels.chain(edits.map(|edit| edit.span));
+        assert!(spans.all(has), "{diagnostic:?}");
         for fix in &diagnostic.fixes {
-            let mut at = (None, 0);
-            for edit in &fix.edits {
-                let (source, range) = (edit.span.source, edit.span.range());
-                assert!(at.0 != Some(source) || range.start >= at.1, "{fix:?}");
-                let text = sources.get(source).text();
-                assert!(text.get(range.clone()).is_some(), "{fix:?}");
-                at = (Some(source), range.end);
-            }
+            let is_apart = |pair: &[Edit]| {
+                let [before, after] = [pair[0].span, pair[1].span];
+                before.source != after.source || before.end <= after.start
+            };
+            assert!(fix.edits.windows(2).all(is_apart), "{fix:?}");
         }
     }
-    reading.scene.is_some()
 }
 
 /// Garbage that is the same everywhere.
@@ -216,19 +218,25 @@ fn many_overrides(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(every_scene_cut_off_or_without_a_byte);
+sampled_and_exhaustive!(every_example_cut_off_or_without_a_byte);
 
-fn every_scene_cut_off_or_without_a_byte(effort: Effort) {
-    for (example, step) in effort
-        .first(3, examples())
-        .map(|text| (text, 1))
-        .chain(effort.first(100, all_scenes()).map(|text| (text, 11)))
-    {
-        for at in (0..example.len()).step_by(step) {
+fn every_example_cut_off_or_without_a_byte(effort: Effort) {
+    for example in effort.first(3, examples()) {
+        for at in 0..example.len() {
             read(&example.as_bytes()[..at]);
             let mut bytes = example.clone().into_bytes();
             bytes.remove(at);
             read(bytes);
+        }
+    }
+}
+
+#[test]
+fn what_is_said_of_parts_of_scenes_has_its_places() {
+    for text in all_scenes() {
+        for (end, _) in text.char_indices().step_by(11) {
+            let sources = sources(&text[..end]);
+            assert_places(&scene::read(&sources).diagnostics, &sources);
         }
     }
 }
