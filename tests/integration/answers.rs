@@ -8,10 +8,11 @@ use pinhole::{
     scene::View,
     tracer::World,
 };
-use serde_json::json;
+use serde_json::Value;
 
 use crate::{
     scenes::{read, sources},
+    table::rows,
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
 
@@ -34,24 +35,24 @@ fn the_figure_is_what_it_is() {
     let json = inspected(&text).to_json();
     let lines = text.lines();
     let above = lines.take_while(|line| !line.starts_with("triangle"));
-    for (pointer, value) in [
-        ("/image", json!({ "width": 1280, "height": 720 })),
-        ("/camera/eye", json!([3.0, 3.5, 8.0])),
-        ("/camera/looks", json!("down")),
-        ("/camera/far", json!(null)),
-        (
-            "/sampler",
-            json!({ "method": "multi_jittered", "per_pixel": 16, "total": 14_745_600, "seed": 1 }),
-        ),
-        ("/objects/0/kind", json!("sphere")),
-        ("/objects/1/kind", json!("triangle")),
-        ("/objects/1/name", json!("Sail")),
-        ("/objects/1/line", json!(above.count() + 1)),
-        ("/objects/2/kind", json!("box")),
-        ("/objects/2/min", json!([1.75, 0.0, -1.5])),
-        ("/objects/3/kind", json!("checkerboard")),
-        ("/objects/3/name", json!(null)),
-    ] {
+    assert_eq!(json["objects"][1]["line"], above.count() + 1);
+    for [pointer, value] in rows(
+        r#"
+        /image -> { "width": 1280, "height": 720 }
+        /camera/eye -> [3.0, 3.5, 8.0]
+        /camera/looks -> "down"
+        /camera/far -> null
+        /sampler -> { "method": "multi_jittered", "per_pixel": 16, "total": 14745600, "seed": 1 }
+        /objects/0/kind -> "sphere"
+        /objects/1/kind -> "triangle"
+        /objects/1/name -> "Sail"
+        /objects/2/kind -> "box"
+        /objects/2/min -> [1.75, 0.0, -1.5]
+        /objects/3/kind -> "checkerboard"
+        /objects/3/name -> null
+    "#,
+    ) {
+        let value: Value = serde_json::from_str(value).unwrap();
         assert_eq!(json.pointer(pointer), Some(&value), "{pointer}");
     }
     assert_eq!(json["objects"].as_array().map(Vec::len), Some(4));
@@ -113,19 +114,12 @@ fn all_crossings_are_listed_and_one_is_seen() {
         sphere B { center (0, 0, 0) radius 2 color red }
         box    C { min (-1, -1, -5) max (1, 1, -4) }";
     let probe = probed(text, 400.0, 225.0);
-    let hits = probe.hits.iter();
-    let listed = hits.map(|(hit, _, name)| (name.as_deref().unwrap(), hit.t, hit.visible));
-    assert_eq!(
-        listed.collect::<Vec<_>>(),
-        [
-            ("A", 8.0, false),
-            ("B", 8.0, false),
-            ("A", 12.0, true),
-            ("B", 12.0, false),
-            ("C", 14.0, false),
-            ("C", 15.0, false)
-        ]
-    );
+    let listed = probe.hits.iter().map(|(hit, _, name)| {
+        let sign = if hit.visible { "!" } else { "" };
+        format!("{}{sign} {}", name.as_deref().unwrap(), hit.t)
+    });
+    let listed: Vec<_> = listed.collect();
+    assert_eq!(listed.join(", "), "A 8, B 8, A! 12, B 12, C 14, C 15");
     assert_eq!(probe.color.to_string(), "#008080");
     assert_eq!(probe.direction, DVec3::NEG_Z);
 }

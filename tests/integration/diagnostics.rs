@@ -180,17 +180,12 @@ fn every_code_has_its_fixture_and_every_report_stands_alone_and_helps() {
     assert_eq!(all_codes(), names);
 }
 
-/// Reports on some sources in one manner.
-fn reports(sources: &Sources, drawing: Drawing) -> Report<'_> {
+fn report(sources: &Sources, drawing: Drawing) -> String {
     let style = Style {
         drawing,
         ..Style::default()
     };
-    Report::new(sources, style)
-}
-
-fn report(sources: &Sources, drawing: Drawing) -> String {
-    reports(sources, drawing).human(&scene::read(sources).diagnostics)
+    Report::new(sources, style).human(&scene::read(sources).diagnostics)
 }
 
 #[test]
@@ -220,27 +215,6 @@ fn colour_is_only_added_where_it_is_wanted() {
     };
     let colored = Report::new(&sources, style).human(&diagnostics);
     assert!(colored.contains("\x1b["));
-    assert!(!report(&sources, Drawing::Unicode).contains('\x1b'));
-    assert!(report(&sources, Drawing::Ascii).is_ascii());
-}
-
-#[test]
-fn labels_at_and_past_the_end_are_drawn() {
-    let sources = Sources::new(Source::from_text("a.scn", "sphere {"));
-    for (start, end) in [(8, 8), (8, 9), (7, 100), (100, 200), (0, 0)] {
-        let mut diagnostic = found("", &[]).remove(0);
-        diagnostic.labels = vec![Label {
-            span: Span::new(SourceId::File, start, end),
-            message: "here it is".to_owned(),
-        }];
-        for drawing in [Drawing::Unicode, Drawing::Ascii, Drawing::Narrated] {
-            let text = reports(&sources, drawing).one(&diagnostic);
-            assert!(text.contains("here it is"), "{start}..{end}: {text}");
-        }
-        let json = diagnostic::to_json(&diagnostic, &sources);
-        let offset = json["labels"][0]["offset"].as_u64().expect("an offset");
-        assert!(offset <= 8);
-    }
 }
 
 #[test]

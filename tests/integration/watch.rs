@@ -5,16 +5,15 @@
 
 use std::{
     fs,
-    io::Read,
     os::unix::fs::symlink,
     path::PathBuf,
-    process::{Child, Command, Stdio},
-    sync::{Arc, Mutex},
+    process::{Child, Command},
     thread,
     time::{Duration, Instant},
 };
 
 use pinhole::schema::css;
+use tempfile::NamedTempFile;
 
 use crate::{cancel::spheres, interrupt::long_pixel, program::Folder};
 
@@ -37,7 +36,7 @@ fn red() -> Folder {
 struct Watch {
     folder: Folder,
     child: Child,
-    said: Arc<Mutex<String>>,
+    said: NamedTempFile,
 }
 
 impl Watch {
@@ -50,19 +49,8 @@ impl Watch {
 
     fn start(folder: Folder, arguments: &str) -> Self {
         let mut command = folder.command(&format!("watch {arguments}"));
-        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        let mut errors = child.stderr.take().unwrap();
-        let said = Arc::new(Mutex::new(String::new()));
-        thread::spawn({
-            let said = Arc::clone(&said);
-            move || {
-                let mut bytes = [0; 4096];
-                while let Ok(count @ 1..) = errors.read(&mut bytes) {
-                    let text = String::from_utf8_lossy(&bytes[..count]);
-                    said.lock().unwrap().push_str(&text);
-                }
-            }
-        });
+        let said = NamedTempFile::new().unwrap();
+        let child = command.stderr(said.reopen().unwrap()).spawn().unwrap();
         Self {
             folder,
             child,
@@ -92,7 +80,8 @@ impl Watch {
     }
 
     fn said(&self) -> String {
-        self.said.lock().unwrap().clone()
+        let said = fs::read(self.said.path()).unwrap();
+        String::from_utf8_lossy(&said).into_owned()
     }
 
     /// How often something was said.

@@ -1,14 +1,11 @@
 //! Slips made by a program in scenes that are right: each fix of a problem does away with it, and makes no new error.
 
-use std::{fs, ops::Range};
+use std::ops::Range;
 
-use pinhole::{
-    diagnostic::Diagnostic,
-    syntax::tokens::{Lexer, Token, TokenKind},
-};
+use pinhole::syntax::tokens::{Lexer, TokenKind};
 
-use super::{diagnostics, type_in_fixes};
-use crate::scenes::{examples, scenes, sources};
+use super::{Trial, diagnostics};
+use crate::scenes::{examples, sources};
 
 /// A scene with what the examples lack.
 const SCENE: &str = "\
@@ -25,25 +22,12 @@ checkerboard { square 1  colors (red, white) }
 ";
 
 /// The tokens of a scene, without the comments.
-fn tokens(text: &str) -> Vec<Token> {
+fn tokens(text: &str) -> Vec<Range<usize>> {
     let mut lexer = Lexer::new(text, 0);
     let tokens = std::iter::repeat_with(|| lexer.token());
     let tokens = tokens.take_while(|token| token.kind != TokenKind::End);
-    let is_comment = |token: &Token| token.kind == TokenKind::Comment;
-    tokens.filter(|token| !is_comment(token)).collect()
-}
-
-/// Types in the fixes of the problems that are meant, of a text with a slip in place of a piece.
-fn slip(
-    text: &str,
-    piece: &Range<usize>,
-    slip: &str,
-    is_meant: impl Fn(&Diagnostic) -> bool,
-    complaints: &mut Vec<String>,
-) -> usize {
-    let wrong = format!("{}{slip}{}", &text[..piece.start], &text[piece.end..]);
-    let name = format!("{slip} for {} at {piece:?}", &text[piece.clone()]);
-    type_in_fixes(&name, &sources(&wrong), is_meant, complaints)
+    let tokens = tokens.filter(|token| token.kind != TokenKind::Comment);
+    tokens.map(|token| token.start..token.end).collect()
 }
 
 /// One token is taken away, written twice, replaced by another one, or followed by it.
@@ -51,58 +35,57 @@ fn slip(
 fn every_fix_of_a_slip_in_syntax_helps() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
     let mut others = others.cycle();
-    // A field without a value is found when the scene is made.
-    let is_meant = |d: &Diagnostic| d.is_of_syntax && d.code != "pinhole::missing_value";
-    let (mut fixes, mut complaints) = (0, Vec::new());
+    let mut trial = Trial::default();
     let mut examples = examples();
     examples.retain(|text| text.len() <= 3000 && diagnostics(&sources(text)).is_empty());
     for text in &examples {
-        for Token { start, end, .. } in tokens(text).into_iter().step_by(3) {
+        for Range { start, end } in tokens(text).into_iter().step_by(3) {
             let (token, other) = (&text[start..end], others.next().unwrap());
             let twice = format!("{token} {token}");
-            for wrong in ["", &twice, other, &format!("{token} {other}")] {
-                fixes += slip(text, &(start..end), wrong, is_meant, &mut complaints);
+            for slip in ["", &twice, other, &format!("{token} {other}")] {
+                let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
+                // A field without a value is found when the scene is made.
+                trial.type_in(&sources(&wrong), |d, _| {
+                    d.is_of_syntax && d.code != "pinhole::missing_value"
+                });
             }
         }
     }
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    assert!(fixes > 500, "{fixes} fixes");
+    trial.ends_with_more_than(500);
 }
 
-/// A word, a number or a list becomes another one.
+/// A word, a number or an innermost list becomes another one.
 #[test]
 fn every_fix_of_a_slip_in_meaning_helps() {
-    let named = |name: &str| {
-        scenes("examples")
-            .into_iter()
-            .find(|path| path.ends_with(name))
-    };
-    let examples = ["language_tour.scn", "near_and_far.scn", "straight_down.scn"].map(named);
-    let texts = examples.map(|path| fs::read_to_string(path.unwrap()).unwrap());
-    let (mut fixes, mut complaints) = (0, Vec::new());
-    for text in texts.iter().map(String::as_str).chain([SCENE]) {
-        let mut at = 0;
-        for token in tokens(text) {
-            let mut piece = token.start.max(at)..token.end;
-            let close = text[token.end..].find(['(', ')']).unwrap_or_default() + token.end;
-            if text[token.start..].starts_with('(') && text[close..].starts_with(')') {
-                piece.end = close + 1;
+    let mut trial = Trial::default();
+    for text in [
+        include_str!("../../../examples/language_tour.scn"),
+        include_str!("../../../examples/near_and_far.scn"),
+        include_str!("../../../examples/straight_down.scn"),
+        SCENE,
+    ] {
+        let mut end = 0;
+        for mut piece in tokens(text) {
+            if piece.start < end {
+                continue;
             }
-            let written = text.get(piece.clone()).unwrap_or_default();
-            at = at.max(piece.end);
-            for wrong in slips_in_meaning(written) {
-                let syntax = format!("{}{wrong}{}", &text[..piece.start], &text[piece.end..]);
-                if !diagnostics(&sources(&syntax))
-                    .iter()
-                    .any(|d| d.is_of_syntax)
-                {
-                    fixes += slip(text, &piece, &wrong, Diagnostic::is_error, &mut complaints);
-                }
+            let rest = &text[piece.end..];
+            let close = rest
+                .find(['(', ')'])
+                .filter(|&at| rest[at..].starts_with(')'));
+            if let (true, Some(close)) = (text[piece.start..].starts_with('('), close) {
+                piece.end += close + 1;
+            }
+            end = piece.end;
+            for slip in slips_in_meaning(&text[piece.clone()]) {
+                let wrong = format!("{}{slip}{}", &text[..piece.start], &text[end..]);
+                trial.type_in(&sources(&wrong), |d, found| {
+                    d.is_error() && !found.iter().any(|d| d.is_of_syntax)
+                });
             }
         }
     }
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    assert!(fixes > 500, "{fixes} fixes");
+    trial.ends_with_more_than(500);
 }
 
 /// What could stand in place of a word, a number or an innermost list.

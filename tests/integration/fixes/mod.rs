@@ -41,45 +41,58 @@ fn said(diagnostic: &Diagnostic) -> (&str, String) {
     (&diagnostic.code, diagnostic.message.replace(' ', ""))
 }
 
-/// Types in every fix that is offered, and complains where its problem stays or another one comes; answers how many fixes
-/// there were.
-fn type_in_fixes(
-    name: &str,
-    before_sources: &Sources,
-    is_meant: impl Fn(&Diagnostic) -> bool,
-    complaints: &mut Vec<String>,
-) -> usize {
-    let mut fixes = 0;
-    let before = diagnostics(before_sources);
-    let said_before = counted(&before);
-    for diagnostic in before.iter().filter(|diagnostic| is_meant(diagnostic)) {
-        for fix in &diagnostic.fixes {
-            fixes += 1;
-            let after_sources = fixed(before_sources, fix);
-            let after = diagnostics(&after_sources);
-            let this = said(diagnostic);
-            if counted(&after).get(&this) >= said_before.get(&this) {
-                let text = after_sources.file.text();
-                complaints.push(format!("{name}: {} stays: {this:?}\n{text}", fix.title));
-            }
-            for (new, times) in counted(after.iter().filter(|d| d.is_error())) {
-                if Some(&times) > said_before.get(&new) {
-                    complaints.push(format!("{name}: `{}`: new {new:?}", fix.title));
+/// Fixes that are typed in, and what there is to complain of.
+#[derive(Default)]
+struct Trial {
+    fixes: usize,
+    complaints: Vec<String>,
+}
+
+impl Trial {
+    /// Types in every fix of the problems that are meant, and complains where its problem stays or another one comes.
+    fn type_in(
+        &mut self,
+        before_sources: &Sources,
+        is_meant: impl Fn(&Diagnostic, &[Diagnostic]) -> bool,
+    ) {
+        let before = diagnostics(before_sources);
+        let said_before = counted(&before);
+        for diagnostic in before.iter().filter(|d| is_meant(d, &before)) {
+            for fix in &diagnostic.fixes {
+                self.fixes += 1;
+                let after = diagnostics(&fixed(before_sources, fix));
+                let mut complain = |what: &str, said: &(&str, String)| {
+                    let text = before_sources.file.text();
+                    let complaint = format!("`{}`: {what} {said:?}\n{text}", fix.title);
+                    self.complaints.push(complaint);
+                };
+                let this = said(diagnostic);
+                if counted(&after).get(&this) >= said_before.get(&this) {
+                    complain("stays", &this);
+                }
+                for (new, times) in counted(after.iter().filter(|d| d.is_error())) {
+                    if Some(&times) > said_before.get(&new) {
+                        complain("new", &new);
+                    }
                 }
             }
         }
     }
-    fixes
+
+    #[track_caller]
+    fn ends_with_more_than(self, fixes: usize) {
+        assert!(self.complaints.is_empty(), "{}", self.complaints.join("\n"));
+        assert!(self.fixes > fixes, "{} fixes", self.fixes);
+    }
 }
 
 #[test]
 fn every_fix_helps() {
-    let (mut fixes, mut complaints) = (0, Vec::new());
-    for (name, sources) in fixtures() {
-        fixes += type_in_fixes(&name, &sources, |_| true, &mut complaints);
+    let mut trial = Trial::default();
+    for (_, sources) in fixtures() {
+        trial.type_in(&sources, |_, _| true);
     }
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    assert!(fixes > 100, "{fixes} fixes");
+    trial.ends_with_more_than(100);
 }
 
 /// The titles of the fixes for the first problem of a text, each with what it makes of the text.

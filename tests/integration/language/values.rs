@@ -3,7 +3,7 @@
 use glam::DVec3;
 use pinhole::{
     color::Color,
-    scene::{Count, Lens, Method, Outline, Shape, Sphere, Triangle},
+    scene::{Count, Lens, Method},
 };
 
 use super::{CAMERA, codes, number, object, sphere};
@@ -30,23 +30,6 @@ fn defaults() {
     ") {
         assert_eq!(object(short).shape, object(long).shape);
     }
-    let olive = Color::from_bytes([128, 128, 0]);
-    let is = Sphere {
-        center: DVec3::Y,
-        radius: 1.0,
-        color: olive,
-    };
-    assert_eq!(sphere("center (0, 1, 0)"), is);
-    let triangle = object("triangle { centroid (0, 0, 0) normal (0, 0, 3) }");
-    let Shape::Triangle(Triangle {
-        outline: Outline::Centered(outline),
-        ..
-    }) = triangle.shape
-    else {
-        panic!("{triangle:?}");
-    };
-    let is = (outline.sides, outline.normal);
-    assert_eq!(is, (DVec3::new(2.0, 2.0, 1.0), DVec3::Z * 3.0));
 }
 
 #[test]
