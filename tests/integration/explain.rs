@@ -159,7 +159,7 @@ fn without_a_code_all_are_listed() {
 
 #[test]
 fn a_mistyped_code_gets_the_nearest_one() {
-    Folder::with([]).fails("
+    Folder::with([]).tells("
         explain bear_angle -> 2 -> error: there is no code `bear_angle`: did you mean `bare_angle`?
         explain cammera -> 2 -> error: there is no code `cammera`: did you mean `camera`?
         explain pinhole::E0308 -> 2 -> error: there is no code `pinhole::E0308`: `pinhole explain` lists them all

@@ -87,7 +87,7 @@ fn what_is_no_file_is_refused() {
     }
     let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/figure_9_9.png");
     fs::copy(&picture, folder.path("a.png")).unwrap();
-    folder.fails(
+    folder.tells(
         "
         fmt a.png -> 2 -> error: a.png is a picture; fmt takes the scene's text
         fmt -> 2 -> error: …
@@ -117,7 +117,7 @@ fn standard_input_goes_to_standard_output() {
 #[test]
 fn a_broken_file_stays_and_the_others_are_laid_out() {
     let folder = Folder::with([("a.scn", BROKEN), ("b.scn", UNTIDY), ("c.scn", UNTIDY)]);
-    folder.fails(
+    folder.tells(
         r"
         fmt a.scn -> 1 -> …pinhole::needless_separator…
         fmt a.scn b.scn -> 1 -> …\n1 error\n…

@@ -147,7 +147,7 @@ impl Folder {
 
     /// Calls, each with its status and what is told: all of it, or a part of it before, between or after dots.
     #[track_caller]
-    pub fn fails(&self, table: &'static str) {
+    pub fn tells(&self, table: &'static str) {
         for [line, status, words] in rows(table) {
             let told = self.told(line, status.parse().unwrap());
             let is_told = match (words.strip_prefix('…'), words.strip_suffix('…')) {

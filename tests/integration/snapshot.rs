@@ -9,5 +9,8 @@ pub fn assert_file(path: &Path, content: &str) {
         fs::write(path, content).expect("the file can be written");
     }
     let expected = fs::read_to_string(path).unwrap_or_default();
+    for (index, (is, should)) in content.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(is, should, "line {} of {}", index + 1, path.display());
+    }
     assert_eq!(content, expected, "{}", path.display());
 }

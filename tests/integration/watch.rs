@@ -350,7 +350,7 @@ fn a_picture_that_cannot_be_written_is_no_end() {
 fn what_cannot_be_watched_is_refused() {
     let folder = red();
     folder.done("render a.scn");
-    folder.fails(
+    folder.tells(
         "
         watch - -> 2 -> error: standard input cannot be watched: it is read once; give a file
         watch a.scn -o - -> 2 -> error: standard output holds one picture, and watch writes one after every save: give a file

@@ -41,7 +41,7 @@ fn scene_and_picture_go_through_pipes() {
         assert_eq!((piped.status, piped.errors.as_str()), (0, ""));
         assert!(piped.output == picture);
     }
-    folder.fails("render - -> 2 -> error: the scene comes from standard input: say with `-o FILE` where the picture goes");
+    folder.tells("render - -> 2 -> error: the scene comes from standard input: say with `-o FILE` where the picture goes");
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn a_picture_renders_its_scene_again() {
     folder.done(&format!("render b.png -o d.png {now}"));
     folder.done(&format!("render a.scn -o e.png {set} {now}"));
     same("d.png", "e.png");
-    folder.fails(
+    folder.tells(
         "render b.png --set image.width=20 -> 2 -> error: the crop 10,5,30,20, which b.png carries, does not lie within the picture, which has 20 × 36 pixels",
     );
     // The scene need not be there any more, and the picture need not be named as one.
@@ -90,7 +90,7 @@ fn a_crop_has_the_pixels_of_the_whole() {
     folder.done("render a.scn -o b.exr --crop 5,6,20,10");
     let picture = film::read_picture(&folder.read("b.exr")).unwrap();
     assert_eq!(picture.crop, Some("5,6,20,10".parse().unwrap()));
-    folder.fails("
+    folder.tells("
         render a.scn --crop 1,0,64,36 -> 2 -> error: the crop 1,0,64,36 does not lie within the picture, which has 64 × 36 pixels
         render a.scn --crop 0,36,1,1 -> 2 -> error: the crop 0,36,1,1 does not lie within the picture, which has 64 × 36 pixels
         render a.scn --crop 64,0,1,1 -> 2 -> error: the crop 64,0,1,1 does not lie within the picture, which has 64 × 36 pixels
@@ -149,7 +149,7 @@ fn what_killed_runs_leave_is_removed_by_the_next_one() {
 fn a_full_disk_is_told_of_the_file_that_was_asked_for() {
     let folder = folder();
     std::os::unix::fs::symlink("/dev/full", folder.path("full.png")).unwrap();
-    folder.fails("render a.scn -o full.png -> 2 -> error: cannot write to full.png: No space left on device (os error 28)");
+    folder.tells("render a.scn -o full.png -> 2 -> error: cannot write to full.png: No space left on device (os error 28)");
     fs::remove_file(folder.path("full.png")).unwrap();
     // A limit on the size of files ends a write as a full disk does.
     let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" render a.scn -o a.exr --set image.width=640 --set image.height=480";
@@ -169,7 +169,7 @@ fn a_full_disk_is_told_of_the_file_that_was_asked_for() {
 #[test]
 fn a_picture_too_large_for_memory_is_refused() {
     let folder = folder();
-    folder.fails("render a.scn --set image.width=1048576 --set image.height=1048576 -> 2 -> error: a picture of 1048576 × 1048576 pixels needs 3.0 TiB of memory, …");
+    folder.tells("render a.scn --set image.width=1048576 --set image.height=1048576 -> 2 -> error: a picture of 1048576 × 1048576 pixels needs 3.0 TiB of memory, …");
     assert_eq!(folder.names(), ["a.scn"]);
     folder.done("render a.scn --set image.width=1048576 --set image.height=1048576 -o part.png --crop 524288,524288,3,2");
     assert_eq!(size(&folder.read("part.png")), (3, 2));
@@ -197,5 +197,5 @@ fn a_bound_that_is_worth_a_word_gets_one() {
     let told = folder.told(&format!("render wide.scn --crop {x},{y},1,1"), 0);
     assert!(told.contains("exact: one pixel is known"), "{told}");
     assert_eq!(place(&told), [x, y]);
-    folder.fails(r"render empty.scn -> 0 -> …\nexact: every channel is its pixel's only colour; the 8-bit rounding of every pixel is certain");
+    folder.tells(r"render empty.scn -> 0 -> …\nexact: every channel is its pixel's only colour; the 8-bit rounding of every pixel is certain");
 }
