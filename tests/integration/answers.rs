@@ -6,10 +6,13 @@ use pinhole::{
     probe::{Probe, probe},
     report::numerics::oracle::{ALL_SIZES, Oracle, length},
     scene::View,
+    tracer::World,
 };
+use serde_json::Value;
 
 use crate::{
     scenes::{read, sources},
+    table::rows,
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
 
@@ -28,102 +31,80 @@ fn probed(text: &str, x: f64, y: f64) -> Probe {
 
 #[test]
 fn the_figure_is_what_it_is() {
-    let json = inspected(&example("figure_9_9")).to_json();
-    assert_eq!(
-        json["image"],
-        serde_json::json!({ "width": 1280, "height": 720 })
-    );
-    assert_eq!(json["camera"]["eye"], serde_json::json!([3.0, 3.5, 8.0]));
-    assert_eq!(json["camera"]["looks"], "down");
-    assert_eq!(json["camera"]["far"], serde_json::Value::Null);
+    let text = example("figure_9_9");
+    let json = inspected(&text).to_json();
+    let lines = text.lines();
+    let above = lines.take_while(|line| !line.starts_with("triangle"));
+    assert_eq!(json["objects"][1]["line"], above.count() + 1);
+    for [pointer, value] in rows(
+        r#"
+        /image -> { "width": 1280, "height": 720 }
+        /camera/eye -> [3.0, 3.5, 8.0]
+        /camera/looks -> "down"
+        /camera/far -> null
+        /sampler -> { "method": "multi_jittered", "per_pixel": 16, "total": 14745600, "seed": 1 }
+        /objects/0/kind -> "sphere"
+        /objects/1/kind -> "triangle"
+        /objects/1/name -> "Sail"
+        /objects/2/kind -> "box"
+        /objects/2/min -> [1.75, 0.0, -1.5]
+        /objects/3/kind -> "checkerboard"
+        /objects/3/name -> null
+    "#,
+    ) {
+        let value: Value = serde_json::from_str(value).unwrap();
+        assert_eq!(json.pointer(pointer), Some(&value), "{pointer}");
+    }
+    assert_eq!(json["objects"].as_array().map(Vec::len), Some(4));
     let fov = json["camera"]["fov_deg"].as_f64().unwrap();
     assert!((fov - 2.0 * libm::atan(1.0 / 2.75).to_degrees()).abs() < 1e-12);
-    assert_eq!(
-        json["sampler"],
-        serde_json::json!({ "method": "multi_jittered", "per_pixel": 16, "total": 14_745_600, "seed": 1 })
-    );
-    let objects = json["objects"].as_array().unwrap();
-    let kinds: Vec<_> = objects
-        .iter()
-        .map(|object| object["kind"].as_str().unwrap())
-        .collect();
-    assert_eq!(kinds, ["sphere", "triangle", "box", "checkerboard"]);
-    assert_eq!(objects[1]["name"], "Sail");
-    assert_eq!(objects[3]["name"], serde_json::Value::Null);
-    assert_eq!(objects[2]["min"], serde_json::json!([1.75, 0.0, -1.5]));
-    let text = example("figure_9_9");
-    let above = text
-        .lines()
-        .take_while(|line| !line.starts_with("triangle"));
-    assert_eq!(objects[1]["line"], above.count() + 1);
 }
 
 #[test]
 fn the_default_triangle_has_the_sides_of_the_assignment() {
     let json = inspected("camera { eye (0, 0, 9) lookat (0, 0, 0) } triangle { centroid (1, 2, 3) normal (0.3, -0.2, 1) }").to_json();
-    let vertex = |i: usize| {
-        let v = &json["objects"][0]["vertices"][i];
-        dvec3(
-            v[0].as_f64().unwrap(),
-            v[1].as_f64().unwrap(),
-            v[2].as_f64().unwrap(),
-        )
-    };
-    let [left, right, apex] = [0, 1, 2].map(vertex);
-    let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{a} is not {b}");
-    close(left.distance(apex), 2.0);
-    close(right.distance(apex), 2.0);
-    close(left.distance(right), 1.0);
-    let mean = (left + right + apex) / 3.0;
-    close(mean.distance(dvec3(1.0, 2.0, 3.0)), 0.0);
-    // Level base, apex above it, and right of left as seen from the tip of the normal.
-    close(left.y, right.y);
-    assert!(apex.y > left.y && right.x > left.x);
+    let vertices = json["objects"][0]["vertices"].clone();
+    let vertices: [[f64; 3]; 3] = serde_json::from_value(vertices).unwrap();
+    let [left, right, apex] = vertices.map(DVec3::from);
     let normal = (right - left).cross(apex - left).normalize();
-    close(normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0);
+    for (a, b) in [
+        (left.distance(apex), 2.0),
+        (right.distance(apex), 2.0),
+        (left.distance(right), 1.0),
+        (
+            ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
+            0.0,
+        ),
+        // Level base, apex above it, and right of left as seen from the tip of the normal.
+        (left.y, right.y),
+        (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
+    ] {
+        assert!((a - b).abs() < 1e-14, "{a} is not {b}");
+    }
+    assert!(apex.y > left.y && right.x > left.x);
 }
 
 #[test]
 fn vanishing_points_are_where_far_points_are_seen() {
-    let json = inspected(&example("three_vanishing_points")).to_json();
-    let scene = read(&example("three_vanishing_points"));
-    for (axis, direction) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
-        let pixel = &json["vanishing_points"][axis]["pixel"];
-        let pixel = dvec2(pixel[0].as_f64().unwrap(), pixel[1].as_f64().unwrap());
-        let ray = probe(&scene, pixel).direction;
-        assert!(ray.cross(direction).length() < 1e-14, "{axis}: {ray}");
+    let three = example("three_vanishing_points");
+    let directions = [DVec3::X, DVec3::Y, DVec3::Z];
+    for (direction, pixel) in directions
+        .into_iter()
+        .zip(inspected(&three).vanishing_points)
+    {
+        let [x, y] = pixel.expect("all three are there");
+        let ray = probed(&three, x, y).direction;
+        assert!(ray.cross(direction).length() < 1e-14, "{direction}: {ray}");
     }
-    let vanishing = |name: &str| {
-        inspected(&example(name))
-            .vanishing_points
-            .map(|point| point.is_some())
-    };
-    assert_eq!(vanishing("one_vanishing_point"), [false, false, true]);
-    assert_eq!(vanishing("two_vanishing_points"), [true, false, true]);
-    assert_eq!(vanishing("three_vanishing_points"), [true, true, true]);
-    let middle = inspected(&example("one_vanishing_point")).vanishing_points[2];
-    assert_eq!(middle, Some([400.0, 225.0]));
-}
-
-#[test]
-fn cameras_look_up_down_or_level() {
+    let [one, two] = ["one_vanishing_point", "two_vanishing_points"].map(example);
+    let middle = Some([400.0, 225.0]);
+    assert_eq!(inspected(&one).vanishing_points, [None, None, middle]);
+    let two = inspected(&two).vanishing_points;
+    assert_eq!(two.map(|point| point.is_some()), [true, false, true]);
     let looks = |name: &str| inspected(&example(name)).camera.looks;
     assert_eq!(looks("straight_up"), "up");
     assert_eq!(looks("straight_down"), "down");
     assert_eq!(looks("one_vanishing_point"), "level");
-}
-
-#[test]
-fn a_floor_point_of_the_worked_case_is_twice_its_view_plane_point() {
-    // The view plane point (1, −1.5) is 160 pixels to the right of the middle and 240 above it.
-    let probe = probed(&example("looking_down_the_y_axis"), 560.0, 160.0);
-    let (floor, ..) = probe
-        .hits
-        .iter()
-        .find(|(_, kind, _)| *kind == "checkerboard")
-        .unwrap();
-    assert_eq!(floor.point, dvec3(2.0, 0.0, -3.0));
-    assert_eq!(floor.depth, 10.0);
 }
 
 #[test]
@@ -133,34 +114,14 @@ fn all_crossings_are_listed_and_one_is_seen() {
         sphere B { center (0, 0, 0) radius 2 color red }
         box    C { min (-1, -1, -5) max (1, 1, -4) }";
     let probe = probed(text, 400.0, 225.0);
-    let listed: Vec<_> = probe
-        .hits
-        .iter()
-        .map(|(hit, _, name)| (name.as_deref().unwrap(), hit.t, hit.visible))
-        .collect();
-    assert_eq!(
-        listed,
-        [
-            ("A", 8.0, false),
-            ("B", 8.0, false),
-            ("A", 12.0, true),
-            ("B", 12.0, false),
-            ("C", 14.0, false),
-            ("C", 15.0, false)
-        ]
-    );
+    let listed = probe.hits.iter().map(|(hit, _, name)| {
+        let sign = if hit.visible { "!" } else { "" };
+        format!("{}{sign} {}", name.as_deref().unwrap(), hit.t)
+    });
+    let listed: Vec<_> = listed.collect();
+    assert_eq!(listed.join(", "), "A 8, B 8, A! 12, B 12, C 14, C 15");
     assert_eq!(probe.color.to_string(), "#008080");
     assert_eq!(probe.direction, DVec3::NEG_Z);
-}
-
-#[test]
-fn points_outside_the_picture_are_probed_too() {
-    let text =
-        "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere is seen 10 times the eye's distance to the right: at x = 20 in the view plane, 225 pixels a unit.
-    let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
-    assert_eq!(probe.color.to_string(), "#808000");
-    assert!(probed(text, -1e300, 1e300).hits.is_empty());
 }
 
 #[test]
@@ -205,7 +166,7 @@ fn distances_and_points_are_right_to_the_last_bit() {
 #[test]
 fn what_the_probe_sees_is_what_the_picture_shows() {
     let scene = read(&example("piercing"));
-    let world = pinhole::tracer::World::new(&scene);
+    let world = World::new(&scene);
     for y in (0..450).step_by(37) {
         for x in (0..800).step_by(41) {
             let probe = probe(&scene, dvec2(f64::from(x) + 0.5, f64::from(y) + 0.5));
@@ -216,14 +177,25 @@ fn what_the_probe_sees_is_what_the_picture_shows() {
 }
 
 #[test]
-fn the_widest_and_the_narrowest_views_are_probed() {
-    let lenses = [
+fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
+    let text =
+        "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
+    // The sphere is seen 10 times the eye's distance to the right: at x = 20 in the view plane, 225 pixels a unit.
+    let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
+    assert_eq!(probe.color.to_string(), "#808000");
+    assert!(probed(text, -1e300, 1e300).hits.is_empty());
+    // In the worked case a floor point is twice its view plane point (1, −1.5), 160 pixels to the right of the middle and 240 above it.
+    let worked = example("looking_down_the_y_axis");
+    let hits = probed(&worked, 560.0, 160.0).hits;
+    let floor = hits.iter().find(|(_, kind, _)| *kind == "checkerboard");
+    let (floor, ..) = floor.unwrap();
+    assert_eq!((floor.point, floor.depth), (dvec3(2.0, 0.0, -3.0), 10.0));
+    for lens in [
         "d 1e-300 view_height 1e300",
         "d 1e300 view_height 1e-300",
         "d 5e-324",
         "d 1.7e308",
-    ];
-    for lens in lenses {
+    ] {
         let text = format!(
             "image {{ width 1 height 1 }} camera {{ eye (0, 1, 5) lookat (0, 1, 0) {lens} }} box {{ center (0, 1, 0) size (1, 1, 1) }}"
         );
@@ -233,13 +205,9 @@ fn the_widest_and_the_narrowest_views_are_probed() {
         let json = inspected(&text).to_json().to_string();
         assert_eq!(json.matches("null").count(), 4, "{lens}: {json}");
     }
-}
-
-#[test]
-fn what_is_beyond_the_range_of_numbers_is_shown_at_its_end() {
+    // What is beyond the range of numbers is shown at its end.
     let text = "camera { eye (0, 1.7e308, 0) direction (0, -1, -1) } checkerboard {}";
-    let probe = probed(text, 400.0, 225.0);
-    let (hit, ..) = &probe.hits[0];
+    let (hit, ..) = &probed(text, 400.0, 225.0).hits[0];
     assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
 }

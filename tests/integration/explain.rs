@@ -3,23 +3,27 @@
 //! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` a character that would not be seen. The
 //! `--set` arguments of a command in a fence `console` apply to the scene above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-};
+use std::{collections::BTreeSet, path::Path};
 
 use pinhole::{
     explain::{self, GROUPS, Page},
-    scene,
+    scene, schema,
     source::{Source, Sources},
 };
 
 use crate::{
-    diagnostics::codes,
+    diagnostics::all_codes,
+    format::formatted,
     program::{Folder, names, words},
     scenes::fenced,
+    snapshot::assert_file,
     table::rows,
 };
+
+/// The pages of the codes, as files.
+fn folder() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"))
+}
 
 /// What stands in a page below a heading of the second order.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
@@ -28,16 +32,16 @@ fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
     rest.split_once("\n## ").map_or(rest, |(own, _)| own)
 }
 
-/// The scene of a section, with the arguments.
+/// The scene of a section, with the `--set` arguments of its command.
 fn sources(section: &str) -> Sources {
     let plain = fenced(section, "scn").into_iter().map(Vec::from);
     let escaped = fenced(section, "scn escaped").into_iter().map(unescaped);
     let scenes: Vec<Vec<u8>> = plain.chain(escaped).collect();
     assert_eq!(scenes.len(), 1, "a section has one scene: {section}");
-    let commands = fenced(section, "console");
-    let sets = commands.iter().flat_map(|command| sets(command));
-    let sets: Vec<String> = sets.collect();
-    Sources::new(Source::from_bytes("page.scn", scenes.concat())).with_sets(sets)
+    let words = words(&fenced(section, "console").concat());
+    let pairs = words.windows(2).filter(|pair| pair[0] == "--set");
+    let source = Source::from_bytes("page.scn", scenes.concat());
+    Sources::new(source).with_sets(pairs.map(|pair| &pair[1]))
 }
 
 fn unescaped(text: &str) -> Vec<u8> {
@@ -61,45 +65,42 @@ fn unescaped(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// The `--set` arguments of a command line.
-fn sets(command: &str) -> Vec<String> {
-    let words = words(command);
-    let pairs = words.windows(2).filter(|pair| pair[0] == "--set");
-    pairs.map(|pair| pair[1].clone()).collect()
-}
-
-fn found(section: &str) -> Vec<String> {
-    let diagnostics = scene::read(&sources(section)).diagnostics;
-    diagnostics.into_iter().map(|found| found.code).collect()
-}
-
 #[test]
 fn every_code_has_its_page_and_every_page_its_code() {
-    let pages: BTreeSet<String> = explain::pages().map(|page| page.code.to_owned()).collect();
-    assert_eq!(pages.len(), explain::pages().count(), "a code has one page");
-    assert_eq!(pages, codes());
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes");
-    let mut files: BTreeSet<String> = names(folder.as_ref()).into_iter().collect();
-    assert!(files.remove("README.md"));
-    let pages = pages.into_iter().map(|code| format!("{code}.md"));
-    assert_eq!(files, pages.collect());
+    let mut files: Vec<String> = explain::pages()
+        .map(|page| format!("{}.md", page.code))
+        .collect();
+    files.push("README.md".to_owned());
+    files.sort();
+    assert_eq!(
+        files,
+        names(folder()),
+        "a code has one page, and a page one file"
+    );
+    let codes = explain::pages().map(|page| page.code.to_owned());
+    assert_eq!(codes.collect::<BTreeSet<_>>(), all_codes());
 }
 
 #[test]
 fn the_wrong_scene_has_the_mistake_and_no_other_and_the_right_one_has_none() {
     for page in explain::pages() {
-        let code = format!("pinhole::{}", page.code);
-        assert_eq!(found(section(page, "Wrong")), [code], "{}", page.text);
-        assert!(found(section(page, "Right")).is_empty(), "{}", page.text);
+        let found = |section: &str| scene::read(&sources(section)).diagnostics;
+        let wrong = found(section(page, "Wrong")).into_iter();
+        let codes: Vec<String> = wrong.map(|found| found.code).collect();
+        assert_eq!(codes, [format!("pinhole::{}", page.code)], "{}", page.text);
+        let right = section(page, "Right");
+        assert_eq!(found(right), [], "{}", page.text);
+        let right = sources(right).file;
+        assert_eq!(formatted(right.text()).as_deref(), Ok(right.text()));
     }
 }
 
 #[test]
 fn the_pages_are_of_one_form_and_no_two_are_alike() {
-    let (mut titles, mut reasons) = (BTreeMap::new(), BTreeMap::new());
+    let mut alike = BTreeSet::new();
     for page in explain::pages() {
-        let code = page.code;
-        let headings: Vec<&str> = page.text.lines().filter(|l| l.starts_with('#')).collect();
+        let (code, lines) = (page.code, page.text.lines());
+        let headings: Vec<&str> = lines.clone().filter(|l| l.starts_with('#')).collect();
         assert!(headings[0].starts_with("# "), "{code}");
         assert_eq!(headings[1..], ["## Wrong", "## Right", "## Why"], "{code}");
         let title = page.title();
@@ -108,13 +109,9 @@ fn the_pages_are_of_one_form_and_no_two_are_alike() {
         assert!(!meaning.starts_with('#'), "{code} says what it means");
         let why = section(page, "Why").trim();
         assert!(why.len() > 200, "{code} says why");
-        assert!(page.text.lines().count() <= 45, "{code} is short");
-        assert!(
-            page.text.lines().all(|l| l.chars().count() <= 100),
-            "{code}"
-        );
-        assert_eq!(titles.insert(title, code), None);
-        assert_eq!(reasons.insert(why, code), None);
+        assert!(lines.clone().count() <= 45, "{code} is short");
+        assert!(lines.clone().all(|l| l.chars().count() <= 100), "{code}");
+        assert!(alike.insert(title) && alike.insert(why), "{code}");
     }
 }
 
@@ -130,11 +127,7 @@ fn the_index_lists_all_pages() {
             index += &format!("- [`{0}`]({0}.md): {1}\n", page.code, page.title());
         }
     }
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes/README.md");
-    if std::env::var_os("PINHOLE_BLESS").is_some() {
-        fs::write(path, &index).unwrap();
-    }
-    assert_eq!(fs::read_to_string(path).unwrap_or_default(), index);
+    assert_file(&folder().join("README.md"), &index);
 }
 
 /// What is told of a word, as it is typed.
@@ -155,39 +148,27 @@ fn a_pipe_gets_the_page_as_it_is() {
 #[test]
 fn without_a_code_all_are_listed() {
     let text = explained("");
-    let lines: Vec<&str> = text.lines().filter_map(|l| l.strip_prefix("  ")).collect();
-    let code = |line: &&str| line.split(' ').next().unwrap().to_owned();
-    assert_eq!(lines.iter().map(code).collect::<BTreeSet<_>>(), codes());
+    let mut lines = text.lines().filter_map(|l| l.strip_prefix("  "));
+    let codes = lines
+        .clone()
+        .map(|line| line.split(' ').next().unwrap().to_owned());
+    assert_eq!(codes.collect::<BTreeSet<_>>(), all_codes());
     let title = "  An angle needs its unit";
-    assert!(lines.iter().any(|line| line.ends_with(title)));
+    assert!(lines.any(|line| line.ends_with(title)));
 }
 
 #[test]
 fn a_mistyped_code_gets_the_nearest_one() {
-    let table = "
-        bear_angle -> there is no code `bear_angle`: did you mean `bare_angle`?
-        cammera -> there is no code `cammera`: did you mean `camera`?
-        pinhole::E0308 -> there is no code `pinhole::E0308`: `pinhole explain` lists them all
-        '' -> the code is empty: `pinhole explain` lists all codes
-    ";
-    for [written, says] in rows(table) {
-        let told = Folder::with([]).told(&format!("explain {written}"), 2);
-        assert_eq!(told, format!("error: {says}\n"));
-    }
-}
-
-#[test]
-fn the_right_scenes_are_in_the_canonical_layout() {
-    for page in explain::pages() {
-        let source = sources(section(page, "Right")).file;
-        let formatted = pinhole::format::format(&source).expect("it has no mistake");
-        assert_eq!(source.text(), formatted, "{}", page.code);
-    }
+    Folder::with([]).tells("
+        explain bear_angle -> 2 -> error: there is no code `bear_angle`: did you mean `bare_angle`?
+        explain cammera -> 2 -> error: there is no code `cammera`: did you mean `camera`?
+        explain pinhole::E0308 -> 2 -> error: there is no code `pinhole::E0308`: `pinhole explain` lists them all
+        explain '' -> 2 -> error: the code is empty: `pinhole explain` lists all codes
+    ");
 }
 
 #[test]
 fn words_of_the_language_are_explained() {
-    use pinhole::schema;
     for row in schema::BLOCKS {
         let page = explained(row.name);
         assert!(page.contains(row.help), "{page}");
@@ -195,12 +176,9 @@ fn words_of_the_language_are_explained() {
             assert!(page.contains(&format!("- `{}` (", field.name)), "{page}");
         }
     }
-    let roll = explained("roll");
-    assert_eq!(
-        roll,
-        "# roll\n\n`roll` of a camera: the turn about the view direction; positive dips the right side\n\n\
-         (angle, `0deg` by default)\n\n```scn\nroll 30deg\n```\n"
-    );
+    let roll = "# roll\n\n`roll` of a camera: the turn about the view direction; positive dips the right side\n\n\
+                (angle, `0deg` by default)\n\n```scn\nroll 30deg\n```\n";
+    assert_eq!(explained("roll"), roll);
     for [word, part] in rows(
         "
         v0 -> not together with `centroid`, `normal`, `sides` or `spin`
@@ -215,8 +193,6 @@ fn words_of_the_language_are_explained() {
     ) {
         assert!(explained(word).contains(part), "{word}: {part}");
     }
-    assert_eq!(
-        explained("language"),
-        include_str!("../../grammar/language.md")
-    );
+    let language = include_str!("../../grammar/language.md");
+    assert_eq!(explained("language"), language);
 }

@@ -41,6 +41,7 @@ mod report;
 mod robustness;
 mod sampling;
 mod scenes;
+mod snapshot;
 #[cfg(feature = "studio")]
 mod studio;
 mod syntax;

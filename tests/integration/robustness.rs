@@ -6,13 +6,15 @@ use std::time::{Duration, Instant};
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
-    scenes::examples,
+    format::{all_scenes, formatted},
+    scenes::{examples, sources},
 };
 use pinhole::{
-    diagnostic::{self, Drawing, Report, Style},
+    diagnostic::{self, Diagnostic, Drawing, Edit, Report, Style},
+    format::format,
     sampling::CounterRng,
     scene,
-    source::{Source, Sources},
+    source::{Source, Sources, Span},
 };
 use rand::{Rng, SeedableRng};
 
@@ -20,13 +22,12 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads and reports a text; answers whether there is a scene.
 #[track_caller]
 fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// The same with `--set` arguments.
+/// Reads and reports a text with `--set` arguments; answers whether there is a scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -34,46 +35,48 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let start = Instant::now();
     let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
+    let found = &reading.diagnostics;
     // As many as `check` writes of a file.
-    let written = &reading.diagnostics[..reading.diagnostics.len().min(1000)];
+    let written = &found[..found.len().min(1000)];
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
     // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests are, up to four seconds.
-    let bound = if cfg!(debug_assertions) { 10 } else { 2 };
-    assert!(
-        time < Duration::from_secs(bound),
-        "{time:?} for {length} bytes"
-    );
+    let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
+    assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
         let style = Style {
             drawing,
             ..Style::default()
         };
-        let text = Report::new(&sources, style).human(&reading.diagnostics);
+        let text = Report::new(&sources, style).human(found);
         assert!(text.len() < MEGABYTE, "{} bytes of reports", text.len());
     }
 
-    let errors = reading.diagnostics.iter().filter(|d| d.is_error()).count();
-    assert_eq!(
-        reading.scene.is_none(),
-        errors > 0,
-        "{:?}",
-        reading.diagnostics
-    );
-    for diagnostic in &reading.diagnostics {
+    let has_error = found.iter().any(|d| d.is_error());
+    assert_eq!(reading.scene.is_none(), has_error, "{found:?}");
+    assert_places(found, &sources);
+    reading.scene.is_some()
+}
+
+/// Labels and edits lie in the text, between characters, and the edits of a fix do not overlap.
+#[track_caller]
+fn assert_places(found: &[Diagnostic], sources: &Sources) {
+    for diagnostic in found {
         assert!(!diagnostic.labels.is_empty(), "{diagnostic:?}");
-        for label in &diagnostic.labels {
-            let text = sources.get(label.span.source).text();
-            let range = label.span.range();
-            assert!(
-                text.get(range).is_some(),
-                "{diagnostic:?} beyond {} bytes",
-                text.len()
-            );
+        let has = |span: Span| sources.get(span.source).text().get(span.range()).is_some();
+        let labels = diagnostic.labels.iter().map(|label| label.span);
+        let edits = diagnostic.fixes.iter().flat_map(|fix| &fix.edits);
+        let mut spans = labels.chain(edits.map(|edit| edit.span));
+        assert!(spans.all(has), "{diagnostic:?}");
+        for fix in &diagnostic.fixes {
+            let is_apart = |pair: &[Edit]| {
+                let [before, after] = [pair[0].span, pair[1].span];
+                before.source != after.source || before.end <= after.start
+            };
+            assert!(fix.edits.windows(2).all(is_apart), "{fix:?}");
         }
     }
-    reading.scene.is_some()
 }
 
 /// Garbage that is the same everywhere.
@@ -104,10 +107,9 @@ fn garbage(effort: Effort) {
     for letters in [&bytes[..], signs, b"(){}[] -,a1", b" "] {
         assert!(!read(garbage.of(length, letters)));
     }
-    let many: String = (0..length / 4)
-        .filter_map(|_| char::from_u32((garbage.next() % 0x11_0000) as u32))
-        .collect();
-    assert!(!read(many));
+    let letters = (0..length / 4).map(|_| garbage.next() % 0x11_0000);
+    let many = letters.filter_map(|letter| char::from_u32(letter as u32));
+    assert!(!read(many.collect::<String>()));
 }
 
 sampled_and_exhaustive!(one_thing_many_times);
@@ -123,34 +125,20 @@ fn one_thing_many_times(effort: Effort) {
     assert!(!read(""));
 }
 
-sampled_and_exhaustive!(definitions_in_the_wrong_order);
-
-/// Each of them looks at what stands around it, and all of them on one line.
-fn definitions_in_the_wrong_order(effort: Effort) {
-    let count = effort.part_of(30_000);
-    let uses = (0..count).map(|n| format!("let a{n} = b{n} /* {n} */ "));
-    let definitions = (0..count).map(|n| format!("/* {n} */ let b{n} = {n} "));
-    let text: String = uses.chain(definitions).collect();
-    assert!(!read(text));
-}
-
 #[test]
 fn deep_values() {
-    let wrong = |value: String| assert!(!read(format!("{CAMERA} let a = {value}")));
-    for (open, inner, close) in [
-        ("(", "1", ")"),
-        ("-", "1", ""),
-        ("abs(", "1", ")"),
-        ("(", "", ""),
-        ("-(", "", ""),
-    ] {
-        let [open, close] = [open, close].map(|part| part.repeat(100_000));
-        wrong(format!("{open}{inner}{close}"));
-    }
+    let deep = ["( 1 )", "- 1 ", "abs( 1 )", "(  ", "-(  "].map(|parts| {
+        let [open, inner, close] = parts.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{parts}");
+        };
+        open.repeat(100_000) + inner + &close.repeat(100_000)
+    });
     // In quotes nothing is closed.
-    wrong("( \")\" ".repeat(300));
-    for piece in ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "] {
-        wrong(piece.repeat(100_000));
+    let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
+    let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
+    let few_quotes = "( \")\" ".repeat(300);
+    for value in deep.into_iter().chain(quotes).chain([few_quotes]) {
+        assert!(!read(format!("{CAMERA} let a = {value}")));
     }
     // A long sum is not deep, nor is a long product.
     for sign in [" + ", " * "] {
@@ -163,104 +151,115 @@ sampled_and_exhaustive!(ten_megabytes_in_a_line);
 
 fn ten_megabytes_in_a_line(effort: Effort) {
     let ten = effort.part_of(10 * MEGABYTE);
-    assert!(read(format!("{CAMERA}// {}", "long ".repeat(ten / 5))));
-    assert!(read(format!("{CAMERA}{}", " ".repeat(ten))));
-    assert!(!read(format!("{CAMERA}{}", "x".repeat(ten))));
-    assert!(!read(format!("{CAMERA}let {} = 1 + red", "x".repeat(ten))));
-    assert!(!read(format!(
-        "{CAMERA}sphere {{ {} center (0, 1, 0) radus 2 }}",
-        " ".repeat(ten)
-    )));
+    for (start, long, end, is_right) in [
+        ("// ", "long ", "", true),
+        ("", " ", "", true),
+        ("", "x", "", false),
+        ("let ", "x", " = 1 + red", false),
+        ("sphere { ", " ", " center (0, 1, 0) radus 2 }", false),
+    ] {
+        let text = format!("{CAMERA}{start}{}{end}", long.repeat(ten / long.len()));
+        assert_eq!(read(text), is_right, "{start}{long}{end}");
+    }
 }
 
 sampled_and_exhaustive!(many_mistakes_and_many_names);
 
-fn many_mistakes_and_many_names(effort: Effort) {
-    let lines = |line: &dyn Fn(usize) -> String| {
-        let lines: String = (0..effort.part_of(40_000)).map(line).collect();
-        format!("{CAMERA}{lines}")
+/// As many lines; `N` is the number of each, `M` that of the next one.
+fn numbered(line: &str, count: usize) -> Vec<String> {
+    let of = |n: usize| {
+        let line = line.replace('N', &n.to_string());
+        line.replace('M', &(n + 1).to_string())
     };
-    let wrong: [&dyn Fn(usize) -> String; 5] = [
-        &|i| format!("let a{i} = b{i}\n"),
-        &|i| format!("let a = {i}\n"),
-        &|_| "sphere A { center (0, 1, 0) }\n".to_owned(),
-        &|_| CAMERA.to_owned(),
-        &|_| "sphere { center (0, 1, 0 }\n".to_owned(),
-    ];
-    for wrong in wrong {
-        assert!(!read(lines(wrong)));
+    (0..count).map(of).collect()
+}
+
+fn many_mistakes_and_many_names(effort: Effort) {
+    let lines = |line: &str| numbered(line, effort.part_of(40_000)).concat();
+    for wrong in [
+        "let aN = bN\n",
+        "let a = N\n",
+        "sphere A { center (0, 1, 0) }\n",
+        CAMERA,
+        "sphere { center (0, 1, 0 }\n",
+    ] {
+        assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    assert!(read(
-        lines(&|i| format!("let a{} = a{i} + 1\n", i + 1)).replacen("let a1 = a0", "let a1 = 0", 1)
-    ));
+    // Each looks at what stands around it, and all of them on one line.
+    let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
+    assert!(!read(wrong_order));
+    let chain = lines("let aM = aN + 1\n");
+    assert!(read(format!("{CAMERA}let a0 = 0\n{chain}")));
 }
 
 sampled_and_exhaustive!(many_overrides);
 
 fn many_overrides(effort: Effort) {
-    let lines = |line: &str| -> Vec<String> {
-        let lines = 0..effort.part_of(4_000);
-        lines.map(|i| line.replace('N', &i.to_string())).collect()
-    };
-    let lets = format!("{CAMERA}{}", lines("let aN = N\n").concat());
-    let spheres = lines("sphere SN { center (0, 1, 0) }\n").concat();
-    let spheres = format!("{CAMERA}{spheres}");
-    for (text, set, is_right) in [
-        (&lets, "aN=2", true),
-        (&lets, "zzN=2", false),
-        (&spheres, "SN.radius=2", true),
-        (&spheres, "TN.radius=2", false),
-        (&spheres, "SN=2", false),
-        (&spheres, "camera.e=2", false),
+    let lines = |line: &str| numbered(line, effort.part_of(4_000));
+    for (line, set, is_right) in [
+        ("let aN = N\n", "aN=2", true),
+        ("let aN = N\n", "zzN=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "SN.radius=2", true),
+        ("sphere SN { center (0, 1, 0) }\n", "TN.radius=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "SN=2", false),
+        ("sphere SN { center (0, 1, 0) }\n", "camera.e=2", false),
     ] {
-        assert_eq!(
-            read_with_sets(text.as_str(), &lines(set)),
-            is_right,
-            "{set}"
-        );
+        let text = format!("{CAMERA}{}", lines(line).concat());
+        assert_eq!(read_with_sets(text, &lines(set)), is_right, "{set}");
     }
 }
 
-sampled_and_exhaustive!(every_prefix_of_every_example);
+sampled_and_exhaustive!(every_example_cut_off_or_without_a_byte);
 
-fn every_prefix_of_every_example(effort: Effort) {
+fn every_example_cut_off_or_without_a_byte(effort: Effort) {
     for example in effort.first(3, examples()) {
-        for end in 0..example.len() {
-            read(&example.as_bytes()[..end]);
-        }
-    }
-}
-
-sampled_and_exhaustive!(every_example_without_any_one_byte);
-
-fn every_example_without_any_one_byte(effort: Effort) {
-    for example in effort.first(3, examples()) {
-        for gone in 0..example.len() {
+        for at in 0..example.len() {
+            read(&example.as_bytes()[..at]);
             let mut bytes = example.clone().into_bytes();
-            bytes.remove(gone);
+            bytes.remove(at);
             read(bytes);
         }
     }
 }
 
 #[test]
-fn every_example_with_windows_line_ends_and_a_byte_order_mark() {
+fn what_is_said_of_parts_of_scenes_has_its_places() {
+    for text in all_scenes() {
+        for (end, _) in text.char_indices().step_by(11) {
+            let sources = sources(&text[..end]);
+            assert_places(&scene::read(&sources).diagnostics, &sources);
+        }
+    }
+}
+
+#[test]
+fn windows_line_ends_and_a_byte_order_mark_make_no_mistake() {
     for example in examples() {
         assert!(read(format!("\u{feff}{}", example.replace('\n', "\r\n"))));
     }
 }
 
-sampled_and_exhaustive!(random_changes_of_an_example);
+sampled_and_exhaustive!(random_slips_in_a_scene);
 
-fn random_changes_of_an_example(effort: Effort) {
-    let example = examples().swap_remove(0);
+/// What is not laid out has a mistake, too.
+fn random_slips_in_a_scene(effort: Effort) {
+    let mut scenes = all_scenes();
+    scenes.retain(|text| (1..1000).contains(&text.len()));
+    let slips =
+        b"|(|)|{|}|[|,|.|;|:|=|+|*|-|#ff|2.5.5| radus | let |'|\"|/*|*/|//|\xc3\xa9|\xff|\r|\n|\0";
+    let slips: Vec<&[u8]> = slips.split(|&byte| byte == b'|').collect();
     let mut garbage = Garbage::new(2);
-    let letters = b"(){}[]-+*/,.;:=\"'#a1 \n\xff";
     for _ in 0..effort.part_of(20_000) {
-        let mut bytes = example.clone().into_bytes();
-        for _ in 0..=garbage.next() % 3 {
-            let at = (garbage.next() % bytes.len() as u64) as usize;
-            bytes[at] = garbage.of(1, letters)[0];
+        let mut up_to = |end: usize| (garbage.next() % end as u64) as usize;
+        let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
+        for _ in 0..=up_to(3) {
+            let at = up_to(bytes.len() + 1);
+            let end = bytes.len().min(at + up_to(4));
+            bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
+        }
+        if let Ok(text) = str::from_utf8(&bytes) {
+            // It has an error, or there would be no answer.
+            let _ = formatted(text);
         }
         read(bytes);
     }
@@ -270,10 +269,9 @@ sampled_and_exhaustive!(time_grows_with_the_text);
 
 /// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
 fn time_grows_with_the_text(effort: Effort) {
-    let few = if effort == Effort::Sample {
-        1_000
-    } else {
-        4_000
+    let few = match effort {
+        Effort::Sample => 1_000,
+        Effort::Exhaustive => 4_000,
     };
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [
@@ -288,15 +286,20 @@ fn time_grows_with_the_text(effort: Effort) {
         "spere {}\n".to_owned(),
     ];
     for line in effort.of(lines) {
-        let time = |lines: usize| {
-            let text = CAMERA.to_owned() + &line.repeat(lines);
-            let start = Instant::now();
-            let sources = Sources::new(Source::from_text("test.scn", text));
-            let reading = scene::read(&sources);
-            (start.elapsed(), reading).0
-        };
-        let once = (0..3).map(|_| time(few)).min().unwrap_or_default();
-        let many = time(8 * few);
-        assert!(many < 32 * once, "{once:?} and {many:?}: {line}");
+        let read = |source: Source| drop(scene::read(&Sources::new(source)));
+        let lay_out = |source: Source| drop(format(&source));
+        let is_laid_out = format(&Source::from_text("test.scn", line.as_str())).is_ok();
+        let works = [read as fn(Source), lay_out];
+        for work in &works[..1 + usize::from(is_laid_out)] {
+            let time = |lines: usize| {
+                let text = CAMERA.to_owned() + &line.repeat(lines);
+                let start = Instant::now();
+                work(Source::from_text("test.scn", text));
+                start.elapsed()
+            };
+            let once = (0..3).map(|_| time(few)).min().unwrap_or_default();
+            let many = time(8 * few);
+            assert!(many < 32 * once, "{once:?} and {many:?}: {line}");
+        }
     }
 }

@@ -17,7 +17,7 @@ use pinhole::{
 };
 
 /// The scenes in a folder, by name.
-pub fn scenes(folder: &str) -> Vec<PathBuf> {
+pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder).expect("the folder is there");
     let paths = entries.map(|entry| entry.expect("an entry").path());

@@ -5,15 +5,17 @@
 
 use std::{
     fs,
-    io::Read,
-    path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
-    sync::{Arc, Mutex},
+    os::unix::fs::symlink,
+    path::PathBuf,
+    process::{Child, Command},
     thread,
     time::{Duration, Instant},
 };
 
-use crate::{cancel::spheres, interrupt::long_pixel, program::Folder, table::rows};
+use pinhole::schema::css;
+use tempfile::NamedTempFile;
+
+use crate::{cancel::spheres, interrupt::long_pixel, program::Folder};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -25,43 +27,30 @@ fn scene(color: &str) -> String {
     )
 }
 
-const RED: [u8; 3] = [255, 0, 0];
-const BLUE: [u8; 3] = [0, 0, 255];
-
-fn rgb(color: &str) -> [u8; 3] {
-    pinhole::schema::css::color(color).unwrap().to_bytes()
+/// A scene in red, in `a.scn`.
+fn red() -> Folder {
+    Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// A running `watch` of `a.scn` in a folder of its own.
+/// A running `watch` in a folder of its own.
 struct Watch {
     folder: Folder,
     child: Child,
-    said: Arc<Mutex<String>>,
+    said: NamedTempFile,
 }
 
 impl Watch {
-    /// Of a picture of one colour, which is there.
-    fn of(color: &str) -> Self {
-        let watch = Self::start(Folder::with([("a.scn", scene(color).as_str())]), "a.scn");
-        watch.wait_for(rgb(color));
+    /// Of a red picture, which is there.
+    fn of_red() -> Self {
+        let watch = Self::start(red(), "a.scn");
+        watch.shows("red");
         watch
     }
 
     fn start(folder: Folder, arguments: &str) -> Self {
         let mut command = folder.command(&format!("watch {arguments}"));
-        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        let mut errors = child.stderr.take().unwrap();
-        let said = Arc::new(Mutex::new(String::new()));
-        thread::spawn({
-            let said = Arc::clone(&said);
-            move || {
-                let mut bytes = [0; 4096];
-                while let Ok(count @ 1..) = errors.read(&mut bytes) {
-                    let text = String::from_utf8_lossy(&bytes[..count]);
-                    said.lock().unwrap().push_str(&text);
-                }
-            }
-        });
+        let said = NamedTempFile::new().unwrap();
+        let child = command.stderr(said.reopen().unwrap()).spawn().unwrap();
         Self {
             folder,
             child,
@@ -71,6 +60,10 @@ impl Watch {
 
     fn path(&self, name: &str) -> PathBuf {
         self.folder.path(name)
+    }
+
+    fn save(&self, text: &str) {
+        self.folder.write("a.scn", text);
     }
 
     /// Puts a file with such a text in the scene's place.
@@ -83,15 +76,12 @@ impl Watch {
     #[track_caller]
     fn becomes(&self, color: &str) {
         self.save(&scene(color));
-        self.wait_for(rgb(color));
-    }
-
-    fn save(&self, text: &str) {
-        self.folder.write("a.scn", text);
+        self.shows(color);
     }
 
     fn said(&self) -> String {
-        self.said.lock().unwrap().clone()
+        let said = fs::read(self.said.path()).unwrap();
+        String::from_utf8_lossy(&said).into_owned()
     }
 
     /// How often something was said.
@@ -109,18 +99,24 @@ impl Watch {
         }
     }
 
+    /// Waits until something is said so often.
     #[track_caller]
-    fn wait_for(&self, color: [u8; 3]) {
-        self.wait("the picture has its colour", || {
-            self.color("a.png") == Some(color)
-        });
+    fn says(&self, words: &str, times: usize) {
+        self.wait(words, || self.count(words) == times);
     }
 
-    /// The colour of the first pixel of a picture, which is whole if it is there.
-    fn color(&self, name: &str) -> Option<[u8; 3]> {
-        let bytes = fs::read(self.path(name)).ok()?;
-        let picture = image::load_from_memory(&bytes).expect("a picture is always whole");
-        Some(picture.to_rgb8().get_pixel(0, 0).0)
+    /// Waits for a colour of the picture.
+    #[track_caller]
+    fn shows(&self, color: &str) {
+        self.wait(color, || self.has("a.png", color));
+    }
+
+    /// Whether a picture, which is whole if it is there, has this colour in its first pixel.
+    fn has(&self, name: &str, color: &str) -> bool {
+        fs::read(self.path(name)).is_ok_and(|bytes| {
+            let picture = image::load_from_memory(&bytes).expect("a picture is always whole");
+            picture.to_rgb8().get_pixel(0, 0).0 == css::color(color).unwrap().to_bytes()
+        })
     }
 
     /// Interrupts it: it ends as an interrupted program does, and leaves nothing but the picture.
@@ -150,10 +146,10 @@ impl Drop for Watch {
 
 #[test]
 fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
-    let mut watch = Watch::of("red");
-    watch.wait("it says so", || watch.count("after the start") == 1);
+    let mut watch = Watch::of_red();
+    watch.says("after the start", 1);
     watch.becomes("blue");
-    watch.wait("it says so", || watch.count("after the save") == 1);
+    watch.says("after the save", 1);
     watch.end();
     let said = watch.said();
     let lines: Vec<&str> = said.lines().collect();
@@ -165,30 +161,37 @@ fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
 
 #[test]
 fn editors_that_save_by_renaming_are_seen() {
-    let watch = Watch::of("red");
+    let watch = Watch::of_red();
     // A new file is written and takes the place of the old one.
     watch.replace(&scene("blue"));
-    watch.wait_for(BLUE);
+    watch.shows("blue");
     // The old file is renamed to a backup, and a new one is written.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
     watch.becomes("lime");
     // And once more, for what was watched may be the file that is the backup now.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
+    // A pipe in the file's place is waited out.
+    let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
+    assert!(made.unwrap().success());
+    fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
+    watch.wait("it says so", || watch.count("it is not a file") > 0);
+    watch.replace(&scene("blue"));
+    watch.shows("blue");
 }
 
 #[test]
 fn a_file_or_folder_that_is_gone_may_come_back() {
     let folder = Folder::with([("scenes/a.scn", scene("red").as_str())]);
     let watch = Watch::start(folder, "scenes/a.scn -o a.png");
-    watch.wait_for(RED);
+    watch.shows("red");
     let becomes = |color: &str| {
         watch.folder.write("scenes/a.scn", scene(color));
-        watch.wait_for(rgb(color));
+        watch.shows(color);
     };
     fs::remove_file(watch.path("scenes/a.scn")).unwrap();
-    watch.wait("it is missed", || watch.count("error: cannot read") == 1);
-    assert_eq!(watch.color("a.png"), Some(RED));
+    watch.says("error: cannot read", 1);
+    assert!(watch.has("a.png", "red"));
     becomes("lime");
     fs::remove_dir_all(watch.path("scenes")).unwrap();
     watch.wait("it is missed", || watch.count("error: cannot read") >= 2);
@@ -196,78 +199,49 @@ fn a_file_or_folder_that_is_gone_may_come_back() {
     becomes("lime");
 }
 
-/// A watch of a link to a red scene elsewhere, which lies beside a blue one.
-fn watch_link(link: impl Fn(&Path)) -> (Folder, Watch) {
-    let far = Folder::with([]);
-    for color in ["red", "blue"] {
-        far.write(color, scene(color));
-    }
-    link(&far.path("."));
-    let folder = Folder::with([]);
-    std::os::unix::fs::symlink(far.path("link"), folder.path("a.scn")).unwrap();
-    let watch = Watch::start(folder, "a.scn");
-    watch.wait_for(RED);
-    (far, watch)
-}
-
 #[test]
-fn a_link_and_the_file_at_its_end_are_watched() {
-    let (far, watch) = watch_link(|far| {
-        fs::rename(far.join("red"), far.join("link")).unwrap();
+fn links_and_the_file_at_their_end_are_watched() {
+    let (far, middle, folder) = (red(), Folder::with([]), Folder::with([]));
+    far.write("blue", scene("blue"));
+    symlink(far.path("a.scn"), middle.path("middle")).unwrap();
+    symlink(middle.path("middle"), far.path("link")).unwrap();
+    symlink(far.path("link"), folder.path("a.scn")).unwrap();
+    let watch = Watch::start(folder, "a.scn");
+    watch.shows("red");
+    far.write("a.scn", scene("gold"));
+    watch.shows("gold");
+    // Nobody watches the folder of the link in the middle: what no event tells is seen, however much else happens.
+    symlink(far.path("blue"), middle.path("other")).unwrap();
+    fs::rename(middle.path("other"), middle.path("middle")).unwrap();
+    watch.wait("the picture is blue", || {
+        watch.folder.write("noise", "");
+        watch.has("a.png", "blue")
     });
-    far.write("link", scene("blue"));
-    watch.wait_for(BLUE);
     fs::remove_file(watch.path("a.scn")).unwrap();
     watch.becomes("lime");
 }
 
 #[test]
-fn what_no_event_tells_is_seen_however_much_else_happens() {
-    use std::os::unix::fs::symlink;
-    let middle = Folder::with([]);
-    let (far, watch) = watch_link(|far| {
-        symlink(far.join("red"), middle.path("middle")).unwrap();
-        symlink(middle.path("middle"), far.join("link")).unwrap();
-    });
-    // Nobody watches the folder of the link in the middle.
-    symlink(far.path("blue"), middle.path("other")).unwrap();
-    fs::rename(middle.path("other"), middle.path("middle")).unwrap();
-    watch.wait("the picture is blue", || {
-        watch.folder.write("noise", "");
-        watch.color("a.png") == Some(BLUE)
-    });
-}
-
-#[test]
-fn a_pipe_in_the_files_place_is_waited_out() {
-    let watch = Watch::of("red");
-    let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
-    assert!(made.unwrap().success());
-    fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
-    watch.wait("it says so", || watch.count("it is not a file") > 0);
-    watch.replace(&scene("blue"));
-    watch.wait_for(BLUE);
-}
-
-#[test]
 fn broken_text_is_reported_and_the_last_picture_stays() {
     let watch = Watch::start(Folder::with([("a.scn", "sphere {")]), "a.scn");
-    watch.wait("it is reported", || watch.count("2 errors\n") == 1);
-    assert_eq!(watch.color("a.png"), None);
+    watch.says("2 errors\n", 1);
+    assert!(!watch.path("a.png").exists());
     watch.becomes("red");
-    let good = fs::read(watch.path("a.png")).unwrap();
+    let good = watch.folder.read("a.png");
     watch.save(&scene("blue").replace("width", "widht"));
-    let report = "error[pinhole::unknown_field]: an image has no field `widht`";
-    watch.wait("the mistake is reported", || watch.count(report) == 1);
-    watch.wait("the report is whole", || watch.count("1 error\n") == 1);
-    assert!(fs::read(watch.path("a.png")).unwrap() == good);
+    watch.says(
+        "error[pinhole::unknown_field]: an image has no field `widht`",
+        1,
+    );
+    watch.says("1 error\n", 1);
+    assert!(watch.folder.read("a.png") == good);
     watch.becomes("blue");
-    watch.wait("it says so", || watch.count("after the save") == 2);
+    watch.says("after the save", 2);
 }
 
 #[test]
 fn a_burst_of_saves_ends_with_the_last_ones_picture() {
-    let watch = Watch::of("red");
+    let watch = Watch::of_red();
     for round in 0..100 {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
@@ -276,15 +250,14 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
-    assert_eq!(watch.color("a.png"), Some(BLUE));
+    assert!(watch.has("a.png", "blue"));
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
 }
 
 #[test]
 fn what_is_superseded_is_cancelled_within_a_pixel() {
-    let folder = Folder::with([("a.scn", scene("red").as_str())]);
-    let mut watch = Watch::start(folder, "a.scn --threads 1");
-    watch.wait_for(RED);
+    let mut watch = Watch::start(red(), "a.scn --threads 1");
+    watch.shows("red");
     watch.save(&long_pixel());
     thread::sleep(Duration::from_millis(500));
     watch.becomes("blue");
@@ -299,11 +272,11 @@ fn what_is_superseded_is_cancelled_within_a_pixel() {
 fn what_is_superseded_is_not_read_to_its_end_nor_what_ctrl_c_ends() {
     // It takes seconds to read, and something is said of it then.
     let long = format!("{}sphere {{ radus 2 }}", spheres(400_000));
-    let mut watch = Watch::of("red");
+    let mut watch = Watch::of_red();
     watch.save(&long);
     thread::sleep(Duration::from_millis(300));
     watch.becomes("blue");
-    watch.wait("it says so", || watch.count("after the save") == 1);
+    watch.says("after the save", 1);
     watch.save(&long);
     thread::sleep(Duration::from_millis(300));
     watch.end();
@@ -312,13 +285,13 @@ fn what_is_superseded_is_not_read_to_its_end_nor_what_ctrl_c_ends() {
 
 #[test]
 fn what_is_no_save_makes_no_picture() {
-    let watch = Watch::of("red");
-    watch.wait("it says so", || watch.count("wrote") == 1);
+    let watch = Watch::of_red();
+    watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
     // As editors do behind a save, and whoever reads the file.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
-    fs::read(watch.path("a.scn")).unwrap();
+    watch.folder.read("a.scn");
     // Longer than the quiet that ends a burst.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
@@ -328,19 +301,19 @@ fn what_is_no_save_makes_no_picture() {
 
 #[test]
 fn a_save_of_the_text_that_was_there_is_a_save() {
-    let watch = Watch::of("red");
-    watch.wait("it is written", || watch.count("after the start") == 1);
+    let watch = Watch::of_red();
+    watch.says("after the start", 1);
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
-    watch.wait("it says so", || watch.count("after the save") == 1);
+    watch.says("after the save", 1);
     // By another file in its place.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
-    watch.wait_for(RED);
-    watch.wait("it says so", || watch.count("after the save") == 2);
+    watch.shows("red");
+    watch.says("after the save", 2);
     for times in 1..=2 {
         watch.save(&scene("red").replace("width", "widht"));
-        watch.wait("it is reported", || watch.count("1 error\n") == times);
+        watch.says("1 error\n", times);
     }
     // Each save is one rendering, in however many events it comes.
     assert_eq!(watch.count("wrote"), 3, "{}", watch.said());
@@ -350,49 +323,43 @@ fn a_save_of_the_text_that_was_there_is_a_save() {
 fn the_picture_is_that_of_render() {
     let arguments = "a.scn --set image.width=32 --threads 2";
     for name in ["a.png", "b.exr"] {
-        let folder = Folder::with([("a.scn", scene("red").as_str())]);
-        let watch = Watch::start(folder, &format!("{arguments} -o {name}"));
-        watch.wait("it is written", || watch.count("wrote") == 1);
+        let watch = Watch::start(red(), &format!("{arguments} -o {name}"));
+        watch.says("wrote", 1);
         let picture = watch.folder.read(name);
-        watch
-            .folder
-            .done(&format!("render {arguments} -o c.{name}"));
+        let line = format!("render {arguments} -o c.{name}");
+        watch.folder.done(&line);
         assert!(watch.folder.read(&format!("c.{name}")) == picture, "{name}");
     }
 }
 
 #[test]
 fn a_picture_that_cannot_be_written_is_no_end() {
-    let folder = Folder::with([("a.scn", scene("red").as_str()), ("out/kept", "")]);
+    let folder = red();
+    folder.write("out/kept", "");
     let watch = Watch::start(folder, "a.scn -o out/a.png");
-    watch.wait("it is written", || watch.count("wrote") == 1);
+    watch.says("wrote", 1);
     fs::remove_dir_all(watch.path("out")).unwrap();
     watch.save(&scene("blue"));
-    let error = "error: cannot write to out/a.png: ";
-    watch.wait("it is told", || watch.count(error) == 1);
+    watch.says("error: cannot write to out/a.png: ", 1);
     fs::create_dir(watch.path("out")).unwrap();
     watch.save(&scene("lime"));
-    let is_there = || watch.color("out/a.png") == Some(rgb("lime"));
-    watch.wait("it is written again", is_there);
+    watch.wait("it is written again", || watch.has("out/a.png", "lime"));
 }
 
 #[test]
 fn what_cannot_be_watched_is_refused() {
-    let folder = Folder::with([("a.scn", scene("red").as_str())]);
+    let folder = red();
     folder.done("render a.scn");
-    let table = "
-        - -> standard input cannot be watched
-        a.scn -o - -> standard output holds one picture
-        a.png -o b.png -> a.png is a picture, and what is watched is a text
-        none.scn -> cannot read none.scn:
-        . -> . is not a file
-        a.scn -o a.jpg -> the ending of a.jpg stands for no format
-        a.scn -o none/a.png -> cannot write to none/a.png:
-        a.scn --show -> `--show` draws in a terminal
-    ";
-    for [arguments, says] in rows(table) {
-        let told = folder.told(&format!("watch {arguments}"), 2);
-        assert!(told.starts_with(&format!("error: {says}")), "{told}");
-        assert_eq!(told.lines().count(), 1, "{told}");
-    }
+    folder.tells(
+        "
+        watch - -> 2 -> error: standard input cannot be watched: it is read once; give a file
+        watch a.scn -o - -> 2 -> error: standard output holds one picture, and watch writes one after every save: give a file
+        watch a.png -o b.png -> 2 -> error: a.png is a picture, and what is watched is a text that somebody edits: `render` takes pictures
+        watch none.scn -> 2 -> error: cannot read none.scn: No such file or directory (os error 2)
+        watch . -> 2 -> error: . is not a file
+        watch a.scn -o a.jpg -> 2 -> error: the ending of a.jpg stands for no format: a picture's file ends in .png or .exr
+        watch a.scn -o none/a.png -> 2 -> error: cannot write to none/a.png: No such file or directory (os error 2)
+        watch a.scn --show -> 2 -> error: `--show` draws in a terminal, and standard error is none
+    ",
+    );
 }

@@ -1,8 +1,12 @@
 //! What reaches a terminal of texts that come from elsewhere.
 
+use std::process::Stdio;
+
 use pinhole::film::{self, Film, Recipe};
 
 use super::{SCENE, folder};
+#[cfg(unix)]
+use crate::program::Said;
 
 /// It would set the window's title, colour the text, and turn it round.
 const EVIL: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
@@ -55,25 +59,27 @@ fn nothing_acts_on_it() {
 #[test]
 fn output_that_nobody_can_take_is_said_and_one_that_nobody_wants_is_not() {
     let folder = folder();
-    for line in [
-        "--help",
-        "--version",
-        "man",
-        "explain bare_angle",
-        "render a.scn -o -",
+    folder.write("bad.scn", "x y z ".repeat(5000));
+    for (line, status) in [
+        ("--help", 0),
+        ("--version", 0),
+        ("man", 0),
+        ("explain bare_angle", 0),
+        ("render a.scn -o -", 0),
+        ("check bad.scn --format json", 1),
     ] {
-        let to = |output: std::process::Stdio| {
+        let to = |output: Stdio| {
             let output = folder.command(line).stdout(output).output().unwrap();
-            let errors = String::from_utf8(output.stderr).unwrap();
-            (output.status.code(), errors)
+            Said::from(output)
         };
         let full = std::fs::File::options().write(true).open("/dev/full");
-        let (status, errors) = to(full.unwrap().into());
-        assert_eq!(status, Some(2), "{line}");
-        assert!(errors.contains("cannot write to standard output"));
+        let said = to(full.unwrap().into());
+        assert_eq!(said.status, 2, "{line}");
+        assert!(said.errors.contains("cannot write to standard output"));
         // As `head` does.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
-        assert_eq!(to(writer.into()), (Some(0), String::new()), "{line}");
+        let said = to(writer.into());
+        assert_eq!((said.status, said.errors.as_str()), (status, ""), "{line}");
     }
 }

@@ -1,12 +1,10 @@
-//! What diagnostics offer to do: over every fixture of `tests/diagnostics`, each fix does away with its problem and makes no
-//! new error.
+//! What diagnostics offer to do: each fix does away with its problem and makes no new error.
 
-mod meaning;
 mod mistyped;
 mod offers;
 mod slips;
 
-use std::{collections::BTreeMap, fs};
+use std::collections::BTreeMap;
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
@@ -14,11 +12,7 @@ use pinhole::{
     source::{Source, SourceId, Sources},
 };
 
-use crate::scenes::scenes;
-
-fn sources(text: &str, sets: &[String]) -> Sources {
-    Sources::new(Source::from_text("a.scn", text)).with_sets(sets)
-}
+use crate::{diagnostics::fixtures, scenes::sources};
 
 fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
     scene::read(sources).diagnostics
@@ -33,7 +27,9 @@ fn fixed(sources: &Sources, fix: &Fix) -> Sources {
 }
 
 /// How often each thing is said, whatever white space stands in what it quotes.
-fn counted(diagnostics: &[Diagnostic]) -> BTreeMap<(String, String), usize> {
+fn counted<'d>(
+    diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
+) -> BTreeMap<(&'d str, String), usize> {
     let mut counted = BTreeMap::new();
     for diagnostic in diagnostics {
         *counted.entry(said(diagnostic)).or_default() += 1;
@@ -41,107 +37,77 @@ fn counted(diagnostics: &[Diagnostic]) -> BTreeMap<(String, String), usize> {
     counted
 }
 
-fn said(diagnostic: &Diagnostic) -> (String, String) {
-    (diagnostic.code.clone(), diagnostic.message.replace(' ', ""))
+fn said(diagnostic: &Diagnostic) -> (&str, String) {
+    (&diagnostic.code, diagnostic.message.replace(' ', ""))
 }
 
-/// Every fixture that is a text, with its name and the arguments that it gives.
-fn fixtures() -> Vec<(String, Sources)> {
-    let mut fixtures = Vec::new();
-    for path in scenes("tests/diagnostics") {
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        if let Ok(text) = fs::read_to_string(&path) {
-            let sets = text.lines().filter_map(|l| l.strip_prefix("// --set "));
-            let sets: Vec<String> = sets.map(str::to_owned).collect();
-            fixtures.push((name, sources(&text, &sets)));
-        }
-    }
-    fixtures
+/// Fixes that are typed in, and what there is to complain of.
+#[derive(Default)]
+struct Trial {
+    fixes: usize,
+    complaints: Vec<String>,
 }
 
-/// Types in every fix that is offered, and complains where its problem stays or another one comes; answers how many fixes
-/// there were.
-fn type_in_fixes(
-    name: &str,
-    before_sources: &Sources,
-    is_meant: impl Fn(&Diagnostic) -> bool,
-    complaints: &mut Vec<String>,
-) -> usize {
-    let mut fixes = 0;
-    let before = diagnostics(before_sources);
-    let said_before = counted(&before);
-    for diagnostic in before.iter().filter(|diagnostic| is_meant(diagnostic)) {
-        for fix in &diagnostic.fixes {
-            fixes += 1;
-            let after_sources = fixed(before_sources, fix);
-            let after = diagnostics(&after_sources);
-            let said_after = counted(&after);
-            let this = said(diagnostic);
-            let text = after_sources.file.text();
-            if said_after.get(&this) >= said_before.get(&this) {
-                complaints.push(format!("{name}: {} stays: {this:?}\n{text}", fix.title));
-            }
-            for new in after.iter().filter(|d| d.is_error()) {
-                let new_said = said(new);
-                if said_after.get(&new_said) <= said_before.get(&new_said) {
-                    continue;
+impl Trial {
+    /// Types in every fix of the problems that are meant, and complains where its problem stays or another one comes.
+    fn type_in(
+        &mut self,
+        before_sources: &Sources,
+        is_meant: impl Fn(&Diagnostic, &[Diagnostic]) -> bool,
+    ) {
+        let before = diagnostics(before_sources);
+        let said_before = counted(&before);
+        for diagnostic in before.iter().filter(|d| is_meant(d, &before)) {
+            for fix in &diagnostic.fixes {
+                self.fixes += 1;
+                let after = diagnostics(&fixed(before_sources, fix));
+                let mut complain = |what: &str, said: &(&str, String)| {
+                    let text = before_sources.file.text();
+                    let complaint = format!("`{}`: {what} {said:?}\n{text}", fix.title);
+                    self.complaints.push(complaint);
+                };
+                let this = said(diagnostic);
+                if counted(&after).get(&this) >= said_before.get(&this) {
+                    complain("stays", &this);
                 }
-                complaints.push(format!("{name}: `{}`: new {new_said:?}", fix.title));
-            }
-        }
-    }
-    fixes
-}
-
-#[test]
-fn every_fix_helps() {
-    let (mut fixes, mut complaints) = (0, Vec::new());
-    for (name, before_sources) in fixtures() {
-        fixes += type_in_fixes(&name, &before_sources, |_| true, &mut complaints);
-    }
-    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    assert!(fixes > 100, "{fixes} fixes");
-}
-
-/// The edits lie in the text, between characters, and do not overlap, whatever the text.
-#[test]
-fn edits_fit_into_any_text() {
-    let mut edits = 0;
-    for (_, whole) in fixtures() {
-        let text = whole.file.text();
-        for (end, _) in text.char_indices().step_by(11) {
-            let sources = sources(&text[..end], &[]);
-            for diagnostic in diagnostics(&sources) {
-                for fix in &diagnostic.fixes {
-                    let mut at = 0;
-                    for edit in &fix.edits {
-                        let range = edit.span.range();
-                        assert!(range.start >= at, "{fix:?} in {:?}", &text[..end]);
-                        assert!(text[..end].get(range.clone()).is_some(), "{fix:?}");
-                        at = range.end;
-                        edits += 1;
+                for (new, times) in counted(after.iter().filter(|d| d.is_error())) {
+                    if Some(&times) > said_before.get(&new) {
+                        complain("new", &new);
                     }
                 }
             }
         }
     }
-    assert!(edits > 500, "{edits} edits");
+
+    #[track_caller]
+    fn ends_with_more_than(self, fixes: usize) {
+        assert!(self.complaints.is_empty(), "{}", self.complaints.join("\n"));
+        assert!(self.fixes > fixes, "{} fixes", self.fixes);
+    }
+}
+
+#[test]
+fn every_fix_helps() {
+    let mut trial = Trial::default();
+    for (_, sources) in fixtures() {
+        trial.type_in(&sources, |_, _| true);
+    }
+    trial.ends_with_more_than(100);
 }
 
 /// The titles of the fixes for the first problem of a text, each with what it makes of the text.
 fn offered(text: &str) -> Vec<(String, String)> {
-    let sources = sources(text, &[]);
-    let first = diagnostics(&sources).into_iter().next().unwrap();
+    let first = diagnostics(&sources(text)).swap_remove(0);
+    let text = |fix: &Fix| apply(fix, SourceId::File, text);
     let fixes = first.fixes.into_iter();
-    fixes
-        .map(|fix| {
-            let text = apply(&fix, SourceId::File, text);
-            (fix.title, text)
-        })
-        .collect()
+    fixes.map(|fix| (fix.title.clone(), text(&fix))).collect()
 }
 
 /// Behind some text stands what makes a scene of it.
 fn of_scene(text: &str) -> String {
-    format!("{text}\ncheckerboard {{}}\ncamera {{ eye (0, 1, 5)  lookat (0, 1, 0) }}\n")
+    let camera = match text.contains("camera {") {
+        true => "",
+        false => "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n",
+    };
+    format!("{text}\ncheckerboard {{}}\n{camera}")
 }

@@ -3,7 +3,6 @@
 use std::fs;
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use image::DynamicImage;
 use pinhole::scene::Method;
 use roxmltree::{Document, Node};
 use serde_json::Value;
@@ -13,11 +12,11 @@ use crate::program::{self, Folder};
 
 const XHTML: &str = "http://www.w3.org/1999/xhtml";
 
-/// The picture within an element.
-fn picture(element: Node) -> DynamicImage {
+/// The size of the picture within an element.
+fn size(element: Node) -> (u32, u32) {
     let data = element.attribute("src").unwrap();
     let png = data.strip_prefix("data:image/png;base64,").unwrap();
-    image::load_from_memory(&BASE64_STANDARD.decode(png).unwrap()).unwrap()
+    crate::cli::size(&BASE64_STANDARD.decode(png).unwrap())
 }
 
 /// The elements of a document that are called so.
@@ -45,20 +44,21 @@ fn labels(chart: &str) -> Vec<(String, i32)> {
 fn a_folder_gets_whole_files() {
     let folder = folder();
     folder.told(
-        "report a.scn -o new/speed --samples 1,4,16 --runs 2 --methods sobol,random,exact --set Ball.radius=1.2",
+        "report a.scn -o new/speed --samples 1,4 --runs 2 --set Ball.radius=1.2",
         0,
     );
     let read = |name: &str| folder.text(&format!("new/speed/{name}"));
     let all = "error-against-samples.svg error-against-time.svg index.html report.csv report.json";
     let names = program::names(&folder.path("new/speed"));
     assert_eq!(names.join(" "), all);
+    let methods = Method::SAMPLED.map(Method::name);
 
     let csv = read("report.csv");
     let lines: Vec<Vec<_>> = csv.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!(lines.len(), 1 + 2 * 3 + 1);
+    assert_eq!(lines.len(), 1 + methods.len() * 2 + 1);
     assert!(lines.iter().all(|line| line.len() == lines[0].len()));
-    let (names, first, exact) = (&lines[0], &lines[1], &lines[7]);
-    let at = |name: &str| names.iter().position(|it| *it == name).unwrap();
+    let (first, exact) = (&lines[1], &lines[lines.len() - 1]);
+    let at = |name: &str| lines[0].iter().position(|it| *it == name).unwrap();
     assert_eq!((exact[0], exact[at("runs")]), ("exact", "2"));
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
@@ -77,23 +77,31 @@ fn a_folder_gets_whole_files() {
     for (of, has_exact) in [("samples", false), ("time", true)] {
         let labels = labels(&read(&format!("error-against-{of}.svg")));
         let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
-        assert!(has("sobol") && has("random") && has("1/256"), "{of}");
-        assert_eq!(has("exact"), has_exact);
+        assert!(has("1/256") && has("exact") == has_exact, "{of}");
+        // Labels do not lie upon each other.
+        let is_method = |label: &str| methods.iter().any(|m| label.split(' ').next() == Some(m));
+        let labels = labels.iter().filter(|(label, _)| is_method(label));
+        let mut heights: Vec<i32> = labels.map(|(_, height)| *height).collect();
+        heights.sort_unstable();
+        assert_eq!(heights.len(), methods.len());
+        let is_apart = |pair: &[i32]| pair[1] - pair[0] >= 15;
+        assert!(heights.windows(2).all(is_apart), "{heights:?}");
+        assert!(heights[0] > 0 && heights[8] < 440);
     }
 
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
     // The exact picture twice, as a whole and beside the others, and those of the sampled methods.
-    assert_eq!([count("script"), count("table"), count("img")], [0, 1, 4]);
+    let counts = [count("script"), count("table"), count("img")];
+    assert_eq!(counts, [0, 1, 2 + methods.len()]);
     // First what to do, then the charts, the table, the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
     for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());
-        let picture = picture(image);
-        assert_eq!((picture.width(), picture.height()), (48, 32));
+        assert_eq!(size(image), (48, 32));
     }
     // Nothing is fetched from elsewhere.
     for node in document.descendants() {
@@ -114,34 +122,14 @@ fn a_large_picture_is_shown_whole_and_small() {
     let page = folder.text("out/index.html");
     let document = parsed(&page);
     let is_whole = |node: &Node| node.attribute("alt") == Some("the exact picture as a whole");
-    let picture = picture(document.descendants().find(is_whole).unwrap());
-    assert_eq!((picture.width(), picture.height()), (434, 234));
+    let whole = document.descendants().find(is_whole).unwrap();
+    assert_eq!(size(whole), (434, 234));
     assert!(page.contains("reduced to 434 × 234 pixels"));
     assert!(page.len() < 500_000, "{}", page.len());
     // Nothing is said of what was not measured.
     assert!(page.contains("What sobol makes of the picture"));
     for absent in ["Exact makes no error", "Exact takes", "±", "same CPU time"] {
         assert!(!page.contains(absent), "{absent}");
-    }
-}
-
-#[test]
-fn labels_of_a_chart_do_not_lie_upon_each_other() {
-    let folder = folder();
-    folder.told("report a.scn -o out --samples 1,4 --runs 1", 0);
-    for of in ["samples", "time"] {
-        let labels = labels(&folder.text(&format!("out/error-against-{of}.svg")));
-        let is_method = |label: &str| {
-            let first = label.split(' ').next();
-            Method::SAMPLED.iter().any(|m| Some(m.name()) == first)
-        };
-        let labels = labels.into_iter().filter(|(label, _)| is_method(label));
-        let mut heights: Vec<i32> = labels.map(|(_, height)| height).collect();
-        heights.sort_unstable();
-        assert_eq!(heights.len(), 9);
-        let is_apart = |pair: &[i32]| pair[1] - pair[0] >= 15;
-        assert!(heights.windows(2).all(is_apart), "{heights:?}");
-        assert!(heights[0] > 0 && heights[8] < 440);
     }
 }
 
@@ -194,12 +182,10 @@ fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());
     let made = entries("work/out");
     assert_eq!(made.len(), names.len() + 1, "{made:?}");
-    for name in made {
-        let made = format!("work/out/{name}");
+    for made in made.iter().map(|name| format!("work/out/{name}")) {
         if folder.path(&made).is_dir() {
-            for file in ["index.html", "error-against-time.svg"] {
-                parsed(&folder.text(&format!("{made}/{file}")));
-            }
+            parsed(&folder.text(&format!("{made}/index.html")));
+            parsed(&folder.text(&format!("{made}/error-against-time.svg")));
         } else {
             parsed(&folder.text(&made));
         }

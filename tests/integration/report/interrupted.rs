@@ -3,7 +3,7 @@
 use super::{SCENE, folder, parsed};
 use crate::interrupt::interrupted;
 
-const SLOW: &str = "image { width 400 height 400 } camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere { center (0, 1, 0) }";
+const SLOW: &str = "image { width 100 height 100 } camera { eye (0, 1, 5) lookat (0, 1, 0) } sphere { center (0, 1, 0) }";
 
 #[test]
 fn ctrl_c_keeps_what_was_measured() {
@@ -11,7 +11,7 @@ fn ctrl_c_keeps_what_was_measured() {
     folder.write("slow.scn", SLOW);
     // Ten thousand runs: long enough, and the first ones are over soon.
     let line = "report slow.scn -o out --format json --samples 1,2 --runs 10000 --methods sobol,exact --threads 1";
-    let answer = interrupted(&mut folder.command(line), 2500).json();
+    let answer = interrupted(&mut folder.command(line), 1000).json();
     assert_eq!(answer["complete"], false);
     let report = &answer["reports"][0];
     assert_eq!(report["complete"], false);

@@ -8,10 +8,7 @@ mod statistics;
 use pinhole::scene::Method;
 use serde_json::{Value, json};
 
-use crate::{
-    program::Folder,
-    table::{list, rows},
-};
+use crate::program::Folder;
 
 const SCENE: &str =
     "image { width 48 height 32 } camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
@@ -54,16 +51,12 @@ fn people_get_a_table_and_an_answer() {
         rows.find(|row: &Vec<&str>| row.first() == Some(&name))
             .unwrap()
     };
-    for method in Method::SAMPLED {
-        let row = row(method.name());
+    for row in Method::SAMPLED.map(|method| row(method.name())) {
         // Slope, ±, its error, samples, two times with their units.
         assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
-        assert!(row[1].starts_with('−'), "{row:?}");
         // So few samples do not come to 1/256.
-        assert!(
-            row[4].starts_with('~') && row[5].starts_with('~'),
-            "{row:?}"
-        );
+        let are_first = [(1, '−'), (4, '~'), (5, '~')].map(|(at, c)| row[at].starts_with(c));
+        assert_eq!(are_first, [true; 3], "{row:?}");
     }
     assert!(!row("exact").concat().contains('~'), "{text}");
     for words in ["samples", "for 1/256", "~ extrapolated; – not known"] {
@@ -71,54 +64,26 @@ fn people_get_a_table_and_an_answer() {
     }
     let answers = text.lines().filter(|line| line.starts_with("Use "));
     assert_eq!(answers.count(), 1, "{text}");
-    assert!(is_narrow(&text), "{text}");
-}
 
-fn is_narrow(text: &str) -> bool {
-    text.lines().all(|line| line.chars().count() <= 100)
-}
-
-#[test]
-fn each_error_has_a_table_that_fits_a_terminal() {
-    let text = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
+    // Each error has a table.
+    let several = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
     for error in ["1/256", "0.0101", "0.0104"] {
-        for words in [
-            format!("use exact for an error of {error}: "),
-            format!(" for {error}\n"),
-        ] {
-            assert_eq!(text.matches(&words).count(), 1, "{text}");
+        let answer = format!("use exact for an error of {error}: ");
+        for words in [answer, format!(" for {error}\n")] {
+            assert_eq!(several.matches(&words).count(), 1, "{several}");
         }
     }
-    assert!(is_narrow(&text), "{text}");
     // A slope through two points has no standard error.
-    assert!(!text.contains('±'), "{text}");
-}
-
-#[test]
-fn the_answer_is_the_method_with_the_least_time() {
-    let report = report("--samples 1,16,256 --runs 3 --error 0.02");
-    for at in 0..2 {
-        let mut times = vec![(report["exact"]["time"].as_f64().unwrap(), "exact")];
-        for method in report["methods"].as_array().unwrap() {
-            let needed = &method["needed"][at];
-            let [time, least, most] =
-                ["time", "least_time", "greatest_time"].map(|key| needed[key].as_f64().unwrap());
-            assert!(least <= time && time <= most, "{needed}");
-            if needed["extrapolated"] == false {
-                times.push((time, method["method"].as_str().unwrap()));
-            }
-        }
-        let fastest = times.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-        let verdict = report["verdicts"][at].as_str().unwrap();
-        let start = format!("Use {}", fastest.unwrap().1);
-        let rest = verdict.strip_prefix(&start).expect(verdict);
-        assert!(rest.starts_with([',', ' ']), "{verdict}");
+    assert!(!several.contains('±'), "{several}");
+    for line in text.lines().chain(several.lines()) {
+        assert!(line.chars().count() <= 100, "it fits a terminal: {line}");
     }
 }
 
 #[test]
 fn programs_get_json_and_errors_fall() {
-    let report = report("--samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --threads 1");
+    let report =
+        report("--samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --error 0.02 --threads 1");
     for (key, value) in [
         ("scene", json!("a.scn")),
         ("image", json!({ "width": 48, "height": 32 })),
@@ -133,26 +98,25 @@ fn programs_get_json_and_errors_fall() {
     assert!(report["machine"]["processors"].as_u64().unwrap() >= 1);
     let methods = report["methods"].as_array().unwrap();
     assert_eq!(methods.len(), 9);
+    // What comes to each error without extrapolation, with its time.
+    let mut known = [(); 4].map(|()| vec![(number(&report["exact"]["time"]), "exact")]);
     for method in methods {
         let name = method["method"].as_str().unwrap();
         let measured = method["measured"].as_array().unwrap();
         assert_eq!(measured.len(), 4);
         for pair in measured.windows(2) {
-            let [coarse, fine] = [0, 1].map(|at: usize| pair[at]["rmse"].as_f64().unwrap());
+            let [coarse, fine] = [0, 1].map(|at: usize| number(&pair[at]["rmse"]));
             assert!(fine < 0.75 * coarse, "{name}: {coarse} to {fine}");
             assert_eq!(pair[0]["runs"]["rmse"].as_array().unwrap().len(), 3);
         }
-        for point in measured {
-            for time in ["time", "wall"] {
-                let median = point[time].as_f64().unwrap();
-                let runs = point["runs"][time].as_array().unwrap();
-                let mut runs: Vec<_> = runs.iter().map(|run| run.as_f64().unwrap()).collect();
-                runs.sort_by(f64::total_cmp);
-                assert_eq!((runs.len(), runs[1]), (3, median), "{name}");
-                assert!(runs[0] > 0.0, "{name}");
-            }
+        for (point, time) in measured.iter().flat_map(|p| [(p, "time"), (p, "wall")]) {
+            let runs = point["runs"][time].as_array().unwrap();
+            let mut runs: Vec<_> = runs.iter().map(number).collect();
+            runs.sort_by(f64::total_cmp);
+            assert_eq!((runs.len(), runs[1]), (3, number(&point[time])), "{name}");
+            assert!(runs[0] > 0.0, "{name}");
         }
-        let slope = method["fit"]["slope"].as_f64().unwrap();
+        let slope = number(&method["fit"]["slope"]);
         let expected = match name {
             "random" => -0.53..-0.47,
             "regular" => -0.8..-0.4,
@@ -161,17 +125,34 @@ fn programs_get_json_and_errors_fall() {
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
         // That of which everybody is told, and those that were asked for.
-        let needed = [0, 1, 2].map(|at| &method["needed"][at]);
-        let errors = needed.map(|needed| needed["error"].as_f64());
-        assert_eq!(errors, [1.0 / 256.0, 0.5, 1e-6].map(Some));
-        assert_eq!(needed[1]["per_pixel"], 1.0, "{name}");
-        let extrapolated = [1, 2].map(|at| needed[at]["extrapolated"].as_bool());
-        assert_eq!(extrapolated, [Some(false), Some(true)], "{name}");
+        for (at, error) in [1.0 / 256.0, 0.5, 1e-6, 0.02].into_iter().enumerate() {
+            let needed = &method["needed"][at];
+            assert_eq!(number(&needed["error"]), error);
+            let times = ["least_time", "time", "greatest_time"].map(|key| number(&needed[key]));
+            assert!(times.is_sorted(), "{needed}");
+            if needed["extrapolated"] == false {
+                known[at].push((times[1], name));
+            }
+        }
+        assert_eq!(method["needed"][1]["per_pixel"], 1.0, "{name}");
+    }
+    assert_eq!([known[1].len(), known[2].len()], [10, 1], "{known:?}");
+    assert!(known[3].len() > 1, "{known:?}");
+    // The answer is the method with the least time.
+    for (at, mut known) in known.into_iter().enumerate() {
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let verdict = report["verdicts"][at].as_str().unwrap();
+        let rest = verdict.strip_prefix(&format!("Use {}", known[0].1));
+        assert!(rest.expect(verdict).starts_with([',', ' ']), "{verdict}");
     }
     // Each run draws its own seed's samples, and the errors of the seeds differ.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
-    let runs = random.next().unwrap()["measured"][3]["runs"]["rmse"].clone();
+    let runs = &random.next().unwrap()["measured"][3]["runs"]["rmse"];
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
 }
 
 #[test]
@@ -184,26 +165,21 @@ fn samples_go_on_until_the_error_is_reached() {
     }
     // Not beyond.
     let random = report["methods"][0]["measured"].as_array().unwrap();
-    let [.., before, last] = random.as_slice() else {
-        panic!("{random:?}");
-    };
-    assert!(before["rmse"].as_f64() > Some(1.0 / 256.0), "{before}");
-    assert!(last["rmse"].as_f64() <= Some(1.0 / 256.0), "{last}");
+    let is_enough = |point: &Value| number(&point["rmse"]) <= 1.0 / 256.0;
+    assert_eq!(random.iter().position(is_enough), Some(random.len() - 1));
 }
 
 #[test]
 fn no_method_comes_nearer_than_the_reference_is_known() {
     // Where the bound is, and below what any number of samples is worth.
     let report = report("--methods exact,sobol --samples 1,4 --runs 1 --error 1e-17");
-    let bound = report["reference"]["root_mean_square_bound"].as_f64();
-    let (bound, largest) = (bound.unwrap(), report["exact"]["bound"].as_f64().unwrap());
+    let bound = number(&report["reference"]["root_mean_square_bound"]);
+    let largest = number(&report["exact"]["bound"]);
     assert!(1e-17 < bound && bound <= largest, "{bound} {largest}");
     let needed = &report["methods"][0]["needed"];
     assert!(needed[0]["per_pixel"].is_number() && needed[1]["per_pixel"].is_null());
-    assert_eq!(
-        report["verdicts"][1],
-        "No method is known to come to an error of 1e-17."
-    );
+    let verdict = "No method is known to come to an error of 1e-17.";
+    assert_eq!(report["verdicts"][1], verdict);
 }
 
 #[test]
@@ -241,35 +217,26 @@ fn wrong_arguments_are_told() {
     folder.write("bad.scn", "sphere { radus 2 }");
     // A report never writes over a scene.
     folder.write("index.html", SCENE);
-    for line in list(
-        "
-        a.scn --samples 0
-        a.scn --samples 1,x
-        a.scn --runs 0
-        a.scn --error 0
-        a.scn --error 1/0
-        a.scn --error nan
-        a.scn --error 2
-        a.scn --budget 0
-        a.scn --numerics
-        --numerics --runs 3
-        none.scn
-        - -
-    ",
-    ) {
-        folder.told(&format!("report {line}"), 2);
-    }
-    for [line, status, words] in rows("
-        a.scn --methods sobol,jitered -> 2 -> 'jittered'
-        a.scn --methods exact --samples 4 -o new -> 2 -> error: `--samples` is for methods that take samples
-        a.scn -o file -> 2 -> error: file is a file, and the report is a folder of files\n
-        a.scn --samples 9007199254740992 -> 2 -> more than 2^53
-        a.scn bad.scn --samples 1 -> 1 -> pinhole::unknown_field
-        index.html --samples 1 -o . -> 2 -> would write over the scene
-    ") {
-        let told = folder.told(&format!("report {line}"), status.parse().unwrap());
-        assert!(told.contains(words), "{told}");
-    }
+    folder.tells("
+        report a.scn --samples 0 -> 2 -> error: …
+        report a.scn --samples 1,x -> 2 -> error: …
+        report a.scn --runs 0 -> 2 -> error: …
+        report a.scn --error 0 -> 2 -> error: …
+        report a.scn --error 1/0 -> 2 -> error: …
+        report a.scn --error nan -> 2 -> error: …
+        report a.scn --error 2 -> 2 -> error: …
+        report a.scn --budget 0 -> 2 -> error: …
+        report a.scn --numerics -> 2 -> error: …
+        report --numerics --runs 3 -> 2 -> error: …
+        report none.scn -> 2 -> error: …
+        report - - -> 2 -> error: …
+        report a.scn --methods sobol,jitered -> 2 -> …'jittered'…
+        report a.scn --methods exact --samples 4 -o new -> 2 -> …error: `--samples` is for methods that take samples…
+        report a.scn -o file -> 2 -> …error: file is a file, and the report is a folder of files
+        report a.scn --samples 9007199254740992 -> 2 -> …more than 2^53…
+        report a.scn bad.scn --samples 1 -> 1 -> …pinhole::unknown_field…
+        report index.html --samples 1 -o . -> 2 -> …would write over the scene…
+    ");
     assert_eq!(folder.names(), ["a.scn", "bad.scn", "file", "index.html"]);
     assert_eq!(folder.text("file"), "kept");
     assert_eq!(folder.text("index.html"), SCENE);

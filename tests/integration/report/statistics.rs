@@ -1,6 +1,6 @@
 //! Numbers about numbers: medians, slopes, what an error takes, and what is said of that.
 
-use std::{cell::RefCell, num::NonZero, time::Duration};
+use std::{cell::RefCell, time::Duration};
 
 use pinhole::{
     area::Area,
@@ -15,7 +15,10 @@ use pinhole::{
 };
 
 use super::SCENE;
-use crate::exact::read;
+use crate::{
+    scenes::{one_thread, read},
+    table::rows,
+};
 
 #[test]
 fn the_median_is_the_middle_one() {
@@ -26,14 +29,6 @@ fn the_median_is_the_middle_one() {
 }
 
 #[test]
-fn a_power_law_is_fitted_exactly() {
-    let points = [1.0, 4.0, 16.0, 64.0].map(|n: f64| (n, 0.3 / (n * n.sqrt()).sqrt()));
-    let fit = PowerLaw::fit(&points).unwrap();
-    assert!((fit.slope + 0.75).abs() < 1e-14, "{}", fit.slope);
-    assert!(fit.slope_error.unwrap() < 1e-14);
-}
-
-#[test]
 fn the_slopes_standard_error_is_that_of_the_textbook() {
     // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 has x̄ = 1.5, ȳ = −1, S = 5, b = −3/5, residuals −0.1, 0.3, −0.3, 0.1
     // but for signs, Σr² = 0.2, and the standard error √(0.2 / 2 / 5) = √0.02.
@@ -41,10 +36,8 @@ fn the_slopes_standard_error_is_that_of_the_textbook() {
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
     // Few points have a line and next to nothing to judge it by, one has none, and an error of 0 has no logarithm.
-    for few in [
-        &[(1.0, 1.0), (4.0, 0.5)][..],
-        &[(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)],
-    ] {
+    let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
+    for few in [&few[..], &few[1..]] {
         let few = PowerLaw::fit(few).unwrap();
         assert_eq!((few.slope, few.slope_error), (-0.5, None));
     }
@@ -53,9 +46,9 @@ fn the_slopes_standard_error_is_that_of_the_textbook() {
 }
 
 /// Numbers of samples with their seconds and errors, in one run.
-fn series(points: &[(u64, f64, f64)]) -> Series {
-    let point = |&(per_pixel, cpu, error): &(u64, f64, f64)| Point {
-        per_pixel,
+fn series(method: Method, points: &[[f64; 3]]) -> Series {
+    let point = |&[per_pixel, cpu, error]: &[f64; 3]| Point {
+        per_pixel: per_pixel as u64,
         runs: vec![Run {
             cpu,
             wall: cpu / 2.0,
@@ -63,105 +56,87 @@ fn series(points: &[(u64, f64, f64)]) -> Series {
         }],
     };
     Series {
-        method: Method::Random,
+        method,
         points: points.iter().map(point).collect(),
         picture: None,
     }
 }
 
-fn estimate(points: &[(u64, f64, f64)], error: f64) -> Option<Estimate> {
-    series(points).estimate(error)
+fn estimate(points: &[[f64; 3]], error: f64) -> Option<Estimate> {
+    series(Method::Random, points).estimate(error)
 }
 
-/// Checks samples, CPU time, and whether they are extrapolated.
-#[track_caller]
-fn is(points: &[(u64, f64, f64)], error: f64, samples: f64, cpu: f64, is_extrapolated: bool) {
-    let estimate = estimate(points, error).unwrap();
-    let found = (estimate.per_pixel, estimate.is_extrapolated);
-    assert_eq!(found, (Some(samples), is_extrapolated), "{estimate:?}");
-    assert!((estimate.cpu - cpu).abs() < 1e-9, "{estimate:?}");
-    assert!((estimate.wall - cpu / 2.0).abs() < 1e-9, "{estimate:?}");
-    assert_eq!(estimate.cpu_runs, [estimate.cpu; 2]);
+fn numbers(text: &str) -> Vec<f64> {
+    let words = text.split_whitespace();
+    words.map(|word| word.parse().unwrap()).collect()
 }
 
+/// Rows of points, and of errors with the samples and the CPU time that each takes, as far as they are known, and whether they are extrapolated.
 #[test]
 fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
-    let straight = [(1, 0.5, 0.4), (4, 1.0, 0.2), (16, 3.0, 0.1)];
-    // Half-way in logarithms, and a third of the way in time.
-    let half = 0.02f64.sqrt() + 1e-9;
-    is(&straight, half, 8.0, 5.0 / 3.0, false);
-    is(&straight, 0.2, 4.0, 1.0, false);
-    // Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
-    let beyond = 0.05 + 1e-9;
-    is(&straight, beyond, 64.0, 0.5 + 63.0 / 6.0, true);
-    // That slope is the one of the last three points: with logarithms to base 4 it is that of x = −1, 0, 1.
-    let bent = [(1, 0.4), (4, 0.2), (16, 0.1), (64, 0.09)];
-    let bent = bent.map(|(n, error)| (n, n as f64, error));
-    let slope = libm::log(0.09 / 0.2) / 2.0 / libm::log(4.0);
-    let samples = (64.0 * libm::exp2(-1.0 / slope)).ceil();
-    is(&bent, 0.045, samples, samples, true);
-    // Times that fall by chance do not fall on.
-    let falling = [(1, 1.2, 0.4), (4, 1.1, 0.2), (16, 1.0, 0.1)];
-    is(&falling, beyond, 64.0, 1.0, true);
-    // The first number is enough, alone or not, whatever the others do.
-    is(&[(64, 1.0, 0.2)], 0.4, 64.0, 1.0, false);
-    is(&[(4, 1.0, 0.0), (16, 5.0, 0.0)], 0.4, 4.0, 1.0, false);
-    is(
-        &[(4, 1.0, 0.2), (16, 3.0, 0.1)],
-        0.4 - 1e-9,
-        4.0,
-        1.0,
-        false,
-    );
-    is(&straight, 0.9, 1.0, 0.5, false);
-    // No error at all is one that is small enough.
-    is(&[(1, 1.0, 0.4), (4, 2.0, 0.0)], 0.1, 4.0, 2.0, false);
-}
-
-#[test]
-fn an_error_that_comes_back_was_not_reached() {
-    // A grid that falls into step with the picture.
-    let wave = [(1, 0.4), (4, 0.05), (16, 0.2), (64, 0.05)];
-    let found = estimate(&wave.map(|(n, error)| (n, n as f64, error)), 0.1).unwrap();
+    for [points, expected] in rows("
+        -- Half-way in logarithms, and a third of the way in time.
+        1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.1414213572373095 8 1.6666666666666667 0
+        1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.2 4 1 0
+        -- Beyond the last point the slope of −1/2 goes on; the time goes on from the first to the last.
+        1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.050000001 64 11 1
+        -- That slope b is the one of the last three points: ln(0.09/0.2) / 2 / ln 4; and 711 is above 64 · 2^(−1/b).
+        1 1 0.4  4 4 0.2  16 16 0.1  64 64 0.09 -> 0.045 711 711 1
+        -- Times that fall by chance do not fall on.
+        1 1.2 0.4  4 1.1 0.2  16 1 0.1 -> 0.050000001 64 1 1
+        -- The first number is enough, alone or not, whatever the others do.
+        64 1 0.2 -> 0.4 64 1 0
+        4 1 0  16 5 0 -> 0.4 4 1 0
+        4 1 0.2  16 3 0.1 -> 0.399999999 4 1 0
+        1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.9 1 0.5 0
+        -- No error at all is one that is small enough.
+        1 1 0.4  4 2 0 -> 0.1 4 2 0
+        -- Nothing is known where more samples do not help.
+        1 1 0.4  4 1 0.4 -> 0.1
+        1 1 0.1  4 1 0.4 -> 0.01
+        4 1 0.4 -> 0.1
+    ") {
+        let (points, expected) = (numbers(points), numbers(expected));
+        let found = estimate(points.as_chunks().0, expected[0]);
+        let Some(found) = found else {
+            assert_eq!(expected.len(), 1, "{points:?}");
+            continue;
+        };
+        let is_extrapolated = f64::from(u8::from(found.is_extrapolated));
+        let is = [found.per_pixel.unwrap(), found.cpu, is_extrapolated];
+        let is_close = |(a, b): (f64, &f64)| (a - b).abs() < 1e-9;
+        assert!(is.into_iter().zip(&expected[1..]).all(is_close), "{found:?}");
+        assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.cpu_runs, [found.cpu; 2]);
+    }
+    // An error that comes back was not reached: a grid falls into step with the picture.
+    let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
+    let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
     assert!((16.0..64.0).contains(&samples), "{found:?}");
-}
-
-#[test]
-fn nothing_is_known_where_more_samples_do_not_help() {
-    assert_eq!(estimate(&[(1, 1.0, 0.4), (4, 1.0, 0.4)], 0.1), None);
-    assert_eq!(estimate(&[(1, 1.0, 0.1), (4, 1.0, 0.4)], 0.01), None);
-    assert_eq!(estimate(&[(4, 1.0, 0.4)], 0.1), None);
-}
-
-#[test]
-fn a_time_has_its_samples() {
-    let series = series(&[(1, 1.0, 0.4), (4, 2.0, 0.2), (16, 6.0, 0.1)]);
+    let series = series(
+        Method::Random,
+        &[[1.0, 1.0, 0.4], [4.0, 2.0, 0.2], [16.0, 6.0, 0.1]],
+    );
     let times = [0.5, 1.0, 2.0, 4.0, 6.0, 100.0].map(|cpu| series.samples_in(cpu));
     assert_eq!(times, [1, 1, 4, 10, 16, 16].map(Some));
 }
 
 #[test]
 fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
-    let points = [1, 4, 16, 64, 256, 1024_u64].map(|n| (n, n as f64, 1.0 / (n as f64).sqrt()));
-    let grids = Series {
-        method: Method::MultiJittered,
-        ..series(&points)
-    };
-    for (samples, grid) in [
-        (401, 420.0),
-        (400, 400.0),
-        (419, 420.0),
-        (421, 441.0),
-        (1020, 1024.0),
-        // The last number.
-        (1024, 1024.0),
-    ] {
-        let error = 1.0 / f64::from(samples).sqrt() + 1e-12;
-        let found = grids.estimate(error).unwrap();
+    let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
+    // The last is the last number.
+    let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
+    let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
+    for (samples, grid) in samples.into_iter().zip(grids) {
+        let error = 1.0 / f64::sqrt(samples) + 1e-12;
+        let found = series(Method::MultiJittered, &points)
+            .estimate(error)
+            .unwrap();
         assert_eq!(found.per_pixel, Some(grid));
         assert!((found.cpu - grid).abs() < 1e-9, "{found:?}");
-        is(&points, error, samples.into(), samples.into(), false);
+        let any = estimate(&points, error).unwrap();
+        assert_eq!(any.per_pixel, Some(samples));
     }
 }
 
@@ -181,11 +156,10 @@ fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
         errors: vec![0.1],
         budget: Duration::from_secs(1),
     };
-    let control = Control::default();
     let told = RefCell::new(Vec::new());
     let tell = |share| told.borrow_mut().push(share);
+    let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
-    assert_eq!(measured.rungs, [1, 4]);
     assert!(measured.exact.is_none());
     // The first run goes up, the second in an order of its own.
     let told = told.into_inner();
@@ -194,31 +168,32 @@ fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
 }
 
 /// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2 and 0.1.
-fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement {
-    let world = World::new(&read(SCENE));
-    let control = Control {
-        threads: NonZero::new(1),
-        ..Control::default()
-    };
-    let timed = |times: &[f64], share: f64, error: f64| -> Vec<_> {
-        let times = times.iter().map(|time| time * share);
-        let run = |cpu| Run {
-            cpu,
-            wall: cpu,
+fn measured(methods: &str) -> Measurement {
+    let timed = |times: &str, share: f64, error: f64| -> Vec<_> {
+        let run = |time: f64| Run {
+            cpu: time * share,
+            wall: time * share,
             error,
         };
-        times.map(run).collect()
+        numbers(times).into_iter().map(run).collect()
     };
-    let series = methods.iter().map(|&(method, times)| Series {
-        method,
-        points: [(4, 0.25, 0.2), (16, 1.0, 0.1)]
-            .map(|(per_pixel, share, error)| Point {
-                per_pixel,
-                runs: timed(times, share, error),
-            })
-            .into(),
-        picture: None,
-    });
+    let (mut sampled, mut exact) = (Vec::new(), None);
+    for method in methods.split("; ") {
+        let (name, times) = method.split_once(' ').unwrap();
+        match Method::SAMPLED.into_iter().find(|m| m.name() == name) {
+            None => exact = Some(timed(times, 1.0, f64::NAN)),
+            Some(method) => sampled.push(Series {
+                points: [(4, 0.25, 0.2), (16, 1.0, 0.1)]
+                    .map(|(per_pixel, share, error)| Point {
+                        per_pixel,
+                        runs: timed(times, share, error),
+                    })
+                    .into(),
+                ..series(method, &[])
+            }),
+        }
+    }
+    let world = World::new(&read(SCENE));
     Measurement {
         subject: subject(),
         machine: Machine::here(),
@@ -226,56 +201,29 @@ fn measured(methods: &[(Method, &[f64])], exact: Option<&[f64]>) -> Measurement 
         seed: 0,
         rungs: vec![4, 16],
         errors: Vec::new(),
-        reference: render_exact(&world, Area::whole(48, 32), &control).unwrap(),
-        exact: exact.map(|times| timed(times, 1.0, f64::NAN)),
-        series: series.collect(),
+        reference: render_exact(&world, Area::whole(48, 32), &one_thread()).unwrap(),
+        exact,
+        series: sampled,
         interrupted: false,
     }
 }
 
 #[test]
 fn an_answer_is_as_sure_as_what_it_rests_on() {
-    let (sobol, halton, random) = (Method::Sobol, Method::Halton, Method::Random);
-    let said =
-        |methods: &[(Method, &[f64])], exact, error| verdict(&measured(methods, exact), error);
-    // Apart, within the spread of one method's runs, and in a single run.
-    let apart: [(Method, &[f64]); 2] = [(sobol, &[1.0, 1.1, 1.2]), (halton, &[1.3, 1.4, 1.5])];
-    assert_eq!(
-        said(&apart, None, 0.1),
-        "Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. \
-         For comparison, halton takes 1.40 s, with 16 samples per pixel."
-    );
-    let close: [(Method, &[f64]); 3] = [
-        (sobol, &[1.0, 1.1, 1.2]),
-        (halton, &[1.11, 1.12, 1.3]),
-        (random, &[4.0, 4.1, 4.2]),
-    ];
-    assert_eq!(
-        said(&close, Some(&[1.05, 1.15, 9.0]), 0.1),
-        "Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, \
-         and exact makes none. For comparison, random takes 4.10 s, with 16 samples per pixel."
-    );
-    let one: [(Method, &[f64]); 2] = [(sobol, &[1.0]), (halton, &[1.3])];
-    assert!(
-        said(&one, None, 0.1).starts_with("By one run alone, use sobol for an error of 0.1: it")
-    );
-    // What is extrapolated decides only where there is nothing else.
-    assert_eq!(
-        said(&apart, Some(&[9.0, 9.1, 9.2]), 0.051),
-        "Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. \
-         For comparison, sobol would take ~4.3 s, with ~62 samples per pixel."
-    );
-    assert!(
-        said(&apart, None, 0.051)
-            .starts_with("By extrapolation, use sobol for an error of 0.051: it")
-    );
-    assert_eq!(
-        said(&apart[..1], None, 0.051),
-        "By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: \
-         sobol would take ~4.3 s, with ~62 samples per pixel."
-    );
-    assert_eq!(
-        said(&apart, None, 1e-17),
-        "No method is known to come to an error of 1e-17."
-    );
+    for [methods, error, expected] in rows("
+        -- Apart, within the spread of one method's runs, and in a single run.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.1 -> Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. For comparison, halton takes 1.40 s, with 16 samples per pixel.
+        sobol 1 1.1 1.2; halton 1.11 1.12 1.3; random 4 4.1 4.2; exact 1.05 1.15 9 -> 0.1 -> Use sobol, halton or exact for an error of 0.1: they are about as fast, with 1.10 s to 1.15 s of CPU time, and exact makes none. For comparison, random takes 4.10 s, with 16 samples per pixel.
+        sobol 1; halton 1.3 -> 0.1 -> By one run alone, use sobol for an error of 0.1: it
+        -- What is extrapolated decides only where there is nothing else.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5; exact 9 9.1 9.2 -> 0.051 -> Use exact for an error of 0.051: it takes 9.10 s of CPU time and makes none. For comparison, sobol would take ~4.3 s, with ~62 samples per pixel.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.051 -> By extrapolation, use sobol for an error of 0.051: it
+        sobol 1 1.1 1.2 -> 0.051 -> By extrapolation, use sobol for an error of 0.051, the only method that is known to come to it: sobol would take ~4.3 s, with ~62 samples per pixel.
+        sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 1e-17 -> No method is known to come to an error of 1e-17.
+    ") {
+        let said = verdict(&measured(methods), error.parse().unwrap());
+        let is_whole = expected.ends_with('.');
+        assert!(said.starts_with(expected), "{said}");
+        assert!(!is_whole || said == expected, "{said}");
+    }
 }
