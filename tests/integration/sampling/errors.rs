@@ -2,45 +2,42 @@
 
 use super::*;
 
+/// For each of some boxes, the mean share of the points within it over many pixels is its area.
 #[test]
 fn all_but_regular_are_unbiased() {
-    // For each of some boxes, the mean share of the points within it over many pixels is its area.
-    let boxes = [
-        (DVec2::new(-0.5, -0.5), DVec2::new(-0.2, 0.1)),
-        (DVec2::new(0.13, -0.5), DVec2::new(0.5, 0.5)),
-        (DVec2::new(-0.31, 0.22), DVec2::new(0.17, 0.41)),
-    ];
     for method in Method::SAMPLED {
         if matches!(method, Method::Regular | Method::Scatter) {
             continue;
         }
         for n in [1, 2, 3, 5, 7, 12, 17] {
             let sampling = sampling(method, n, 1);
-            let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
-            for (x, y) in Area::whole(64, 64).iter() {
-                let points = placed(&sampling, [x, y], 0..n);
-                for (i, (min, max)) in boxes.iter().enumerate() {
-                    let inside = points
-                        .iter()
-                        .filter(|point| point.cmpge(*min).all() && point.cmplt(*max).all())
-                        .count();
-                    let share = inside as f64 / n as f64;
-                    sums[i] += share;
-                    squares[i] += share * share;
-                }
-            }
-            for (i, (min, max)) in boxes.iter().enumerate() {
-                let pixels = 4096.0;
-                let area = (*max - *min).element_product();
-                let mean = sums[i] / pixels;
-                let error = ((squares[i] / pixels - mean * mean) / pixels).sqrt();
-                assert!(
-                    (mean - area).abs() <= 4.0 * error + 1e-12,
-                    "{method:?}, {n}: {mean} for {area} ± {error}"
-                );
+            let pixels = Area::whole(64, 64).iter();
+            let pixels = pixels.map(|(x, y)| placed(&sampling, [x, y], 0..n));
+            let pixels: Vec<_> = pixels.collect();
+            for (min, max) in [
+                (DVec2::new(-0.5, -0.5), DVec2::new(-0.2, 0.1)),
+                (DVec2::new(0.13, -0.5), DVec2::new(0.5, 0.5)),
+                (DVec2::new(-0.31, 0.22), DVec2::new(0.17, 0.41)),
+            ] {
+                let is_in = |point: &&DVec2| point.cmpge(min).all() && point.cmplt(max).all();
+                let area = (max - min).element_product();
+                let off = pixels
+                    .iter()
+                    .map(|points| points.iter().filter(is_in).count() as f64 / n as f64 - area);
+                let (mean, error) = mean_and_error(off.collect());
+                let most = 4.0 * error + 1e-12;
+                assert!(mean.abs() <= most, "{method:?}, {n}: {mean} ± {error}");
             }
         }
     }
+}
+
+/// The mean of some numbers, and its standard error.
+fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
+    let count = numbers.len() as f64;
+    let mean = numbers.iter().sum::<f64>() / count;
+    let squares = numbers.iter().map(|one| (one - mean) * (one - mean));
+    (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
 /// An edge: its normal, its distance from the pixel's middle, and the area on its inner side.
@@ -59,15 +56,13 @@ fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
 
 /// The mean of the squares of some errors less what they should be, and its standard error.
 fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
-    let excess = errors
-        .iter()
-        .zip(expected)
-        .map(|(error, e)| error * error - e);
-    let excess: Vec<f64> = excess.collect();
-    let count = excess.len() as f64;
-    let mean = excess.iter().sum::<f64>() / count;
-    let squares = excess.iter().map(|one| (one - mean) * (one - mean));
-    (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
+    let squares = errors.iter().map(|error| error * error);
+    mean_and_error(
+        squares
+            .zip(expected)
+            .map(|(square, e)| square - e)
+            .collect(),
+    )
 }
 
 /// The area of the part of the pixel where normal · p < distance, by clipping.
@@ -85,34 +80,27 @@ fn area(normal: DVec2, distance: f64) -> f64 {
         }
     }
     let next = clipped.iter().cycle().skip(1);
-    clipped
-        .iter()
-        .zip(next)
-        .map(|(a, b)| a.perp_dot(*b))
-        .sum::<f64>()
-        / 2.0
+    let twice = clipped.iter().zip(next).map(|(a, b)| a.perp_dot(*b));
+    twice.sum::<f64>() / 2.0
 }
 
 /// Edges at random angles through a random point of the pixel, or parallel to an axis.
 fn edges(parallel: bool) -> Vec<Edge> {
     let points = points(Method::Random, 4 * 900, 123, [1, 1]);
-    points
-        .chunks_exact(2)
-        .enumerate()
-        .take(if parallel { 1200 } else { 1800 })
-        .map(|(i, pair)| {
-            let normal = match (parallel, i % 2) {
-                (true, 0) => DVec2::X,
-                (true, _) => DVec2::Y,
-                (false, _) => {
-                    let angle = (pair[0].x + 0.5) * std::f64::consts::TAU;
-                    DVec2::new(libm::cos(angle), libm::sin(angle))
-                }
-            };
-            let distance = pair[1].dot(normal);
-            (normal, distance, area(normal, distance))
-        })
-        .collect()
+    let edge = |(i, pair): (usize, &[DVec2])| {
+        let normal = match (parallel, i % 2) {
+            (true, 0) => DVec2::X,
+            (true, _) => DVec2::Y,
+            (false, _) => {
+                let (sin, cos) = libm::sincos((pair[0].x + 0.5) * std::f64::consts::TAU);
+                DVec2::new(cos, sin)
+            }
+        };
+        let distance = pair[1].dot(normal);
+        (normal, distance, area(normal, distance))
+    };
+    let pairs = points.chunks_exact(2).enumerate().map(edge);
+    pairs.take(if parallel { 1200 } else { 1800 }).collect()
 }
 
 /// The variance of the share of so many points for an edge.
@@ -183,11 +171,7 @@ fn errors_are_within_their_bounds() {
         assert!(excess < 4.0 * error, "{n}: {excess} ± {error}");
         // The n points of a sequence in base 3 are as many evenly spaced sets as n has ones in that base, a two counted twice, and each is less
         // than a point off.
-        let mut digits = 0;
-        let mut rest = n;
-        while rest > 0 {
-            (digits, rest) = (digits + rest % 3, rest / 3);
-        }
+        let digits: u64 = (0..8).map(|place| n / 3_u64.pow(place) % 3).sum();
         for error in errors(Method::Halton, n, &parallel) {
             assert!(error.abs() < digits as f64 / n as f64, "{n}: {error}");
         }
