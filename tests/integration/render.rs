@@ -9,12 +9,15 @@ use pinhole::{
     area::Area,
     film::Film,
     render::{Control, RenderError, render},
-    sampling::Sampling,
     scene::{Count, Method, Scene},
     tracer::World,
 };
 
-use crate::{figure::figure, scenes::sampled_by};
+use crate::scenes::{example, sampled_by, sampling, whole, with_samples};
+
+fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
+    with_samples(&example("figure_9_9", width, height), method, count)
+}
 
 fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
     let control = Control {
@@ -25,36 +28,26 @@ fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
 }
 
 #[test]
-fn any_number_of_threads_makes_the_same_picture() {
+fn threads_and_crops_change_no_pixel() {
     for method in Method::SAMPLED {
         let scene = figure(61, 37, method, Count::Total(61 * 37 * 5 + 300));
-        let whole = Area::whole(61, 37);
-        let one = picture(&scene, whole, 1);
-        assert_eq!(one, picture(&scene, whole, 2));
-        assert_eq!(one, picture(&scene, whole, 7));
-    }
-}
-
-#[test]
-fn a_crop_is_the_part_of_the_whole_picture() {
-    for method in Method::SAMPLED {
-        let scene = figure(61, 37, method, Count::Total(61 * 37 * 5 + 300));
-        let whole = picture(&scene, Area::whole(61, 37), 2);
-        for part in [
-            "0,0,1,1",
-            "60,36,1,1",
-            "13,7,20,29",
-            "0,0,61,37",
-            "5,0,1,37",
+        let one = picture(&scene, whole(&scene), 1);
+        for (threads, part) in [
+            (2, "0,0,61,37"),
+            (7, "0,0,61,37"),
+            (2, "0,0,1,1"),
+            (2, "60,36,1,1"),
+            (2, "13,7,20,29"),
+            (2, "5,0,1,37"),
         ] {
             let part: Area = part.parse().unwrap();
-            let cropped = picture(&scene, part, 2);
+            let cropped = picture(&scene, part, threads);
             assert_eq!(
-                [cropped.width(), cropped.height()],
-                [part.width, part.height]
+                (cropped.width(), cropped.height()),
+                (part.width, part.height)
             );
             for (x, y) in part.iter() {
-                assert_eq!(cropped.pixel(x - part.x, y - part.y), whole.pixel(x, y));
+                assert_eq!(cropped.pixel(x - part.x, y - part.y), one.pixel(x, y));
             }
         }
     }
@@ -64,17 +57,12 @@ fn a_crop_is_the_part_of_the_whole_picture() {
 fn pixels_without_a_sample_show_the_background() {
     let mut scene = figure(40, 30, Method::Random, Count::Total(100));
     scene.image.background = pinhole::color::Color::from_bytes([1, 2, 3]);
-    let background = scene.image.background.to_linear();
-    let film = picture(&scene, Area::whole(40, 30), 2);
-    let sampling = Sampling::new(&scene.sampler, 40, 30);
-    let mut empty = 0;
-    for (x, y) in Area::whole(40, 30).iter() {
-        if sampling.count(x, y) == 0 {
-            empty += 1;
-            assert_eq!(film.pixel(x, y), background);
-        }
-    }
-    assert_eq!(empty, 1100);
+    let film = picture(&scene, whole(&scene), 2);
+    let sampling = sampling(&scene);
+    let pixels = whole(&scene).iter();
+    let empty = pixels.filter(|&(x, y)| sampling.count(x, y) == 0);
+    let empty: Vec<_> = empty.map(|(x, y)| film.pixel(x, y)).collect();
+    assert_eq!(empty, [scene.image.background.to_linear(); 1100]);
 }
 
 #[test]
@@ -83,15 +71,14 @@ fn a_render_without_end_can_be_ended() {
         let scene = figure(size, size, Method::Random, Count::PerPixel(count));
         let cancel = AtomicBool::new(false);
         let control = Control {
-            threads: None,
             progress: &|_| cancel.store(true, Ordering::Relaxed),
             cancel: &cancel,
+            ..Control::default()
         };
-        let sampling = Sampling::new(&scene.sampler, size, size);
         let ended = render(
             &World::new(&scene),
-            &sampling,
-            Area::whole(size, size),
+            &sampling(&scene),
+            whole(&scene),
             &control,
         );
         assert!(matches!(ended, Err(RenderError::Cancelled)));
