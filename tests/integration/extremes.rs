@@ -15,7 +15,8 @@ use crate::{
     culling::one_by_one,
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
-    scenes::{exact, one_thread, read, resized, sampling, scenes, whole, with_samples},
+    scenes::{exact, one_thread, read, rendered, resized, sampling, scenes, whole, with_samples},
+    table::list,
     tracer::Random,
 };
 
@@ -109,18 +110,11 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
             width: 1 + below(width - x),
             height: 1 + below(height - y),
         };
-        let world = World::new(&scene);
         for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
             let scene = with_samples(&scene, method, Count::PerPixel(n.into()));
-            let picture = |part: Area| match method {
-                Method::Exact => render_exact(&world, part, &control).unwrap().film,
-                _ => render(&world, &sampling(&scene), part, &control).unwrap(),
-            };
+            let picture = |part| rendered::<[f64; 3]>(&scene, part, &control).into_film();
             let (all, part) = (picture(whole(&scene)), picture(crop));
-            for (x, y) in crop.iter() {
-                let here = part.pixel(x - crop.x, y - crop.y);
-                assert_eq!(here, all.pixel(x, y), "{x}, {y} in {crop} of {scene:?}");
-            }
+            assert_eq!(part, all.part(crop).unwrap(), "{crop} of {scene:?}");
         }
     }
 }
@@ -174,22 +168,18 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
 /// There a ray's direction is next to nothing beside all others', and so are the numbers that its surfaces are compared by.
 #[test]
 fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
-    let spheres = "sphere { center (1, 1.2, 2) radius 9 color red }
-                   sphere { center (1, 1.2, 2) radius 0.8 color white }";
-    let boxes = "box { center (1, 1.2, 2) size (9, 9, 9) color red }
-                 box { center (1, 1.2, 2) size (0.8, 0.9, 0.8) color white }";
-    let planes = "checkerboard { y 0 square 1e9 colors (red, red) }
-                  triangle { centroid (1, 1.2, 2) normal (0, 1, 0) sides (90, 90, 90) color white }";
     for view in [
         "direction (0, -1, 0) up (0, 0, -1)",
         "direction (0.3, -1, 0.2)",
     ] {
         for d in ["1e-30", "1e-80", "1e-100", "1e-150", "1e-300"] {
-            for objects in [spheres, boxes, planes] {
+            for objects in list("
+                sphere { center (1, 1.2, 2) radius 9 color red } sphere { center (1, 1.2, 2) radius 0.8 color white }
+                box { center (1, 1.2, 2) size (9, 9, 9) color red } box { center (1, 1.2, 2) size (0.8, 0.9, 0.8) color white }
+                checkerboard { square 1e9 colors (red, red) } triangle { centroid (1, 1.2, 2) normal (0, 1, 0) sides (90, 90, 90) color white }
+            ") {
                 let text = format!(
-                    "image {{ width 1 height 1 background black }}
-                     camera {{ eye (1, 1.4, 2) {view} d {d} far 100 }}
-                     {objects}"
+                    "image {{ width 1 height 1 }} camera {{ eye (1, 1.4, 2) {view} d {d} far 100 }} {objects}"
                 );
                 let world = World::new(&read(&text));
                 let seen = world.slot_at(0, 0, DVec2::ZERO);

@@ -6,7 +6,7 @@ use std::{fs, path::Path};
 
 use pinhole::film::Encoder;
 
-use crate::scenes::{example_names, example_text, read_with, sampled, whole};
+use crate::scenes::{example_names, example_text, read_with, sampled};
 
 fn rendered(text: &str) -> image::RgbImage {
     let scene = read_with(
@@ -17,7 +17,7 @@ fn rendered(text: &str) -> image::RgbImage {
             "sampler.total=160 * 90 * 4",
         ],
     );
-    let (film, encoder) = (sampled(&scene, whole(&scene)), Encoder::default());
+    let (film, encoder) = (sampled(&scene), Encoder::default());
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 

@@ -7,48 +7,74 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::Film,
-    render::{Control, RenderError, render},
+    film::{Encoder, certified},
+    render::{Control, RenderError, Rendered, render},
     scene::{Count, Method, Scene},
     tracer::World,
 };
 
-use crate::scenes::{example, sampled_by, sampling, whole, with_samples};
+use crate::scenes::{example, example_names, rendered, sampled, sampling, whole, with_samples};
 
 fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     with_samples(&example("figure_9_9", width, height), method, count)
 }
 
-fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
-    let control = Control {
-        threads: NonZero::new(threads),
-        ..Control::default()
-    };
-    sampled_by(scene, part, &control)
+#[test]
+fn threads_and_crops_change_no_pixel() {
+    let pictures =
+        Method::SAMPLED.map(|method| ([61, 37], method, Count::Total(61 * 37 * 5 + 300)));
+    // Tiles of all sizes, and more than threads.
+    let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
+    for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
+        let scene = figure(width, height, method, count);
+        let picture = |part, threads| {
+            let control = Control {
+                threads: NonZero::new(threads),
+                ..Control::default()
+            };
+            rendered::<[f64; 3]>(&scene, part, &control).into_film()
+        };
+        let one = picture(whole(&scene), 1);
+        assert!(
+            [2, 7]
+                .iter()
+                .all(|&threads| picture(whole(&scene), threads) == one)
+        );
+        for part in ["0,0,1,1", "60,36,1,1", "13,7,20,29", "5,0,1,37"] {
+            let part: Area = part.parse().unwrap();
+            assert_eq!(picture(part, 2), one.part(part).unwrap());
+        }
+    }
 }
 
 #[test]
-fn threads_and_crops_change_no_pixel() {
-    for method in Method::SAMPLED {
-        let scene = figure(61, 37, method, Count::Total(61 * 37 * 5 + 300));
-        let one = picture(&scene, whole(&scene), 1);
-        for (threads, part) in [
-            (2, "0,0,61,37"),
-            (7, "0,0,61,37"),
-            (2, "0,0,1,1"),
-            (2, "60,36,1,1"),
-            (2, "13,7,20,29"),
-            (2, "5,0,1,37"),
+fn bytes_are_those_of_the_light() {
+    let (encoder, control) = (Encoder::default(), Control::default());
+    let part: Area = "3,9,66,40".parse().unwrap();
+    for name in example_names() {
+        for (method, count) in [
+            (Method::Exact, Count::PerPixel(1)),
+            (Method::MultiJittered, Count::PerPixel(1)),
+            (Method::MultiJittered, Count::PerPixel(13)),
+            (Method::MultiJittered, Count::Total(2_000)),
+            (Method::MultiJittered, Count::Total(40_000)),
         ] {
-            let part: Area = part.parse().unwrap();
-            let cropped = picture(&scene, part, threads);
-            assert_eq!(
-                (cropped.width(), cropped.height()),
-                (part.width, part.height)
+            let scene = with_samples(&example(&name, 70, 52), method, count);
+            let (bytes, light) = (
+                rendered::<[u8; 3]>(&scene, part, &control),
+                rendered::<[f64; 3]>(&scene, part, &control),
             );
-            for (x, y) in part.iter() {
-                assert_eq!(cropped.pixel(x - part.x, y - part.y), one.pixel(x, y));
+            if let (Rendered::Exact(bytes), Rendered::Exact(light)) = (&bytes, &light) {
+                assert_eq!(bytes.bounds, light.bounds, "{name}");
+                assert_eq!(
+                    bytes.certain,
+                    certified(&light.film, &light.bounds),
+                    "{name}"
+                );
             }
+            let (bytes, light) = (bytes.into_film(), light.into_film());
+            let expected = light.pixels().iter().map(|light| encoder.pixel(*light));
+            assert!(expected.eq(bytes.pixels().iter().copied()), "{name}");
         }
     }
 }
@@ -57,7 +83,7 @@ fn threads_and_crops_change_no_pixel() {
 fn pixels_without_a_sample_show_the_background() {
     let mut scene = figure(40, 30, Method::Random, Count::Total(100));
     scene.image.background = pinhole::color::Color::from_bytes([1, 2, 3]);
-    let film = picture(&scene, whole(&scene), 2);
+    let film = sampled(&scene);
     let sampling = sampling(&scene);
     let pixels = whole(&scene).iter();
     let empty = pixels.filter(|&(x, y)| sampling.count(x, y) == 0);

@@ -8,8 +8,8 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::Film,
-    render::{Control, Exact, render, render_exact},
+    film::{Film, Pixel},
+    render::{Control, Exact, Rendered, render_as_asked, render_exact},
     sampling::Sampling,
     scene::{self, Count, Method, Sampler, Scene},
     source::{Source, Sources},
@@ -97,13 +97,14 @@ pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Sce
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// A part of a scene's picture by its own samples.
-pub fn sampled(scene: &Scene, part: Area) -> Film {
-    sampled_by(scene, part, &Control::default())
+/// A scene's picture by its own samples.
+pub fn sampled(scene: &Scene) -> Film {
+    rendered(scene, whole(scene), &Control::default()).into_film()
 }
 
-pub fn sampled_by(scene: &Scene, part: Area, control: &Control<'_>) -> Film {
-    render(&World::new(scene), &sampling(scene), part, control).unwrap()
+/// A part of a scene's picture as its sampler asks for.
+pub fn rendered<P: Pixel>(scene: &Scene, part: Area, control: &Control<'_>) -> Rendered<P> {
+    render_as_asked(&World::new(scene), &sampling(scene), part, control).unwrap()
 }
 
 /// The samples that a scene asks for.

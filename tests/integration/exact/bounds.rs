@@ -1,14 +1,9 @@
 //! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
 
 use glam::DVec3;
-use pinhole::{
-    color::linear_to_srgb,
-    film,
-    render::{Rendered, render_as_asked},
-};
+use pinhole::{color::linear_to_srgb, film};
 
 use super::*;
-use crate::scenes::sampling;
 
 /// The share of pixels that are certain in 16 bits a channel.
 fn certified_words(exact: &Exact) -> f64 {
@@ -86,28 +81,6 @@ fn many_lines_that_are_one() {
     }
     is_known(&boards);
     is_known(&fan);
-}
-
-#[test]
-fn bytes_are_those_of_the_means() {
-    let encoder = film::Encoder::default();
-    for name in example_names() {
-        let scene = with_samples(&example(&name, 70, 52), Method::Exact, Count::PerPixel(1));
-        let area: Area = "3,1,66,50".parse().unwrap();
-        let (world, sampling) = (World::new(&scene), sampling(&scene));
-        let bytes = render_as_asked(&world, &sampling, area, &Control::default()).unwrap();
-        let Rendered::<[u8; 3]>::Exact(bytes) = bytes else {
-            panic!("{name}: not exact")
-        };
-        let means = part(&scene, area);
-        assert_eq!(bytes.bounds, means.bounds, "{name}");
-        let certain = film::certified(&means.film, &means.bounds);
-        assert_eq!(bytes.certain, certain, "{name}");
-        assert!(certain <= area.pixels());
-        for (bytes, light) in bytes.film.pixels().iter().zip(means.film.pixels()) {
-            assert_eq!(*bytes, encoder.pixel(*light), "{name}");
-        }
-    }
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn is_known(text: &str) {
 /// Compares a picture with one of so many random samples a pixel.
 fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
-    let sampled = sampled(&scene, whole(&scene));
+    let sampled = sampled(&scene);
     // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By Bernstein's inequality no more than one of 10¹⁰ sums of
     // independent ones is farther off than this.
     let log = libm::log(2e10);

@@ -1,7 +1,5 @@
 //! The computed picture against itself in other ways: in pieces, turned, in parts, on other threads.
 
-use std::num::NonZero;
-
 use super::*;
 
 #[test]
@@ -142,22 +140,5 @@ fn a_quarter_turn_sweeps_the_other_way() {
             let limit = bound + other_bound + 4.0 * f64::EPSILON;
             assert!(difference <= limit, "{x}, {y}: {difference:e} of {scene:?}");
         }
-    }
-}
-
-#[test]
-fn any_number_of_threads_computes_the_same_picture() {
-    for name in ["figure_9_9", "rolled", "piercing"] {
-        // Tiles of all sizes, and more than threads.
-        let scene = example(name, 201, 140);
-        let world = World::new(&scene);
-        let [one, two, five] = [1, 2, 5].map(|threads| {
-            let control = Control {
-                threads: NonZero::new(threads),
-                ..Control::default()
-            };
-            render_exact(&world, whole(&scene), &control).unwrap()
-        });
-        assert!(one == two && one == five, "{name}");
     }
 }

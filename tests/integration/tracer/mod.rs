@@ -17,7 +17,7 @@ use rand::{Rng, RngExt, SeedableRng};
 
 use crate::{
     generated::{Numbers, generated},
-    scenes::{exact, example, read, resized, sampled, whole, with_samples},
+    scenes::{exact, example, read, resized, sampled, with_samples},
     table::rows,
 };
 
@@ -290,7 +290,7 @@ fn two_halves_of_a_square_leave_no_gap() {
                  triangle {{ {other} color white }}"
             ));
             let scene = with_samples(&scene, Method::Regular, Count::PerPixel(1));
-            let (sampled, exact) = (sampled(&scene, whole(&scene)), exact(&scene));
+            let (sampled, exact) = (sampled(&scene), exact(&scene));
             let mut seen = 0;
             for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
                 // Half of a gap would show; outside of the square both are 0.
@@ -324,7 +324,7 @@ fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
              sampler {{ per_pixel 1 }}
              triangle {{ {triangle} normal (-0.3, 0.2, 1) color lime }}"
         ));
-        for film in [sampled(&scene, whole(&scene)), exact(&scene).film] {
+        for film in [sampled(&scene), exact(&scene).film] {
             let greens = film.pixels().iter().map(|pixel| pixel[1]);
             let most = greens.fold(0.0, f64::max);
             assert!(most < 1e-12, "{triangle}: {most}");
