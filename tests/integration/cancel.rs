@@ -13,14 +13,13 @@ use std::{
 use glam::dvec3;
 use pinhole::{
     cancel::Cancelled,
-    render::{Control, render_exact},
     scene::{self, Shape},
     source::SourceId,
     syntax,
     tracer::World,
 };
 
-use crate::scenes::{read, sources, whole};
+use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
@@ -63,25 +62,6 @@ fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Syn
             "{what}, given up after 1/{share} of it"
         );
     }
-}
-
-#[test]
-fn an_exact_pixel_is_given_up_while_it_is_cut() {
-    // All outlines lie within a millionth of a pixel, so that cutting it does not tell them apart.
-    let spheres =
-        (0..24).map(|index| format!("sphere {{ center (0, 2, -5) radius 2 + 1e-7 * {index} }}\n"));
-    let scene = read(&format!(
-        "image {{ width 2 height 2 }} camera {{ eye (0, 2, 0) direction (0, 0, -1) d 1.5 }} {}",
-        spheres.collect::<String>()
-    ));
-    let world = World::new(&scene);
-    check("an exact picture", |cancel| {
-        let control = Control {
-            cancel,
-            ..Control::default()
-        };
-        render_exact(&world, whole(&scene), &control).map_err(|_| Cancelled)
-    });
 }
 
 #[test]

@@ -43,8 +43,7 @@ fn assert_light(film: &Film, text: &str) {
 /// hundreds of bits where squares and places are numbers of all sizes, and not asked then.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
-    let scene = with_samples(scene, Method::Random, Count::PerPixel(SAMPLES));
-    let (world, sampling, whole) = (World::new(&scene), sampling(&scene), whole(&scene));
+    let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
     let culled = render(&world, &sampling, whole, &control).unwrap();
     assert_light(&culled, text);
     let plain = one_by_one(&world, &sampling, whole);

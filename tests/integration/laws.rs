@@ -106,7 +106,7 @@ fn swap_colors(scene: &mut Scene) {
 #[track_caller]
 fn agree(before: &Scene, after: &Scene, is_mirrored: bool) {
     let of = |width: u32, x: u32| if is_mirrored { width - 1 - x } else { x };
-    let [one, other] = [before, after].map(|scene| sampled(scene));
+    let [one, other] = [before, after].map(sampled);
     for (x, y) in whole(before).iter() {
         let [one, other] = [one.pixel(x, y), other.pixel(of(one.width(), x), y)];
         assert_eq!(

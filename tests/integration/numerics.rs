@@ -82,12 +82,12 @@ fn the_table_is_the_same_for_any_number_of_threads() {
 fn it_can_be_watched_and_cancelled() {
     let (done, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
     let control = Control {
-        threads: None,
         progress: &|inputs| {
             done.fetch_add(inputs, Ordering::Relaxed);
             cancel.store(true, Ordering::Relaxed);
         },
         cancel: &cancel,
+        ..Control::default()
     };
     let table = numerics::run(1_000_000, &control).unwrap();
     let done = done.load(Ordering::Relaxed);
@@ -105,22 +105,16 @@ fn the_table_fits_a_terminal_and_a_program() {
     let json = table().to_json();
     assert_eq!(json["complete"], true);
     let rows = json["numerics"].as_array().unwrap();
-    let ids: BTreeSet<_> = rows
-        .iter()
-        .map(|row| row["case"].as_str().unwrap())
-        .collect();
+    let ids = rows.iter().map(|row| row["case"].as_str().unwrap());
+    let ids: BTreeSet<_> = ids.collect();
     assert_eq!(ids.len(), numerics::cases().count());
     let families: BTreeSet<_> = ids.iter().map(|id| &id[..1]).collect();
     assert!(families.into_iter().eq(["B", "C", "K", "P", "S", "T"]));
     let first = &rows[0];
-    assert_eq!(
-        (&first["case"], &first["inputs"]),
-        (&"S1a".into(), &INPUTS.into())
-    );
-    assert_eq!(
-        (&first["pinhole"]["wrong"], &first["unit"]),
-        (&0.into(), &"ulp".into())
-    );
+    assert_eq!(first["case"], "S1a");
+    assert_eq!(first["inputs"], INPUTS);
+    assert_eq!(first["pinhole"]["wrong"], 0);
+    assert_eq!(first["unit"], "ulp");
     assert!(first["pinhole"]["error"].as_f64().unwrap() <= 1.0);
     assert!(first["textbook"]["wrong"].as_u64().unwrap() > 0);
     let axes = rows.iter().find(|row| row["case"] == "C1").unwrap();

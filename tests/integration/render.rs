@@ -13,7 +13,7 @@ use pinhole::{
     tracer::World,
 };
 
-use crate::scenes::{example, example_names, rendered, sampled, sampling, whole, with_samples};
+use crate::scenes::{example, example_names, rendered, sampling, whole, with_samples};
 
 fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     with_samples(&example("figure_9_9", width, height), method, count)
@@ -77,18 +77,6 @@ fn bytes_are_those_of_the_light() {
             assert!(expected.eq(bytes.pixels().iter().copied()), "{name}");
         }
     }
-}
-
-#[test]
-fn pixels_without_a_sample_show_the_background() {
-    let mut scene = figure(40, 30, Method::Random, Count::Total(100));
-    scene.image.background = pinhole::color::Color::from_bytes([1, 2, 3]);
-    let film = sampled(&scene);
-    let sampling = sampling(&scene);
-    let pixels = whole(&scene).iter();
-    let empty = pixels.filter(|&(x, y)| sampling.count(x, y) == 0);
-    let empty: Vec<_> = empty.map(|(x, y)| film.pixel(x, y)).collect();
-    assert_eq!(empty, [scene.image.background.to_linear(); 1100]);
 }
 
 #[test]

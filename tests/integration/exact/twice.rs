@@ -42,14 +42,14 @@ fn objects_that_pierce_each_other_in_part_add_up() {
             "image { width 2 height 2 } camera { eye (0.3, 0.2, 20) lookat (0, 0, 0) d 20 }\n",
         );
         for color in ["red", "lime", "blue", "gold", "cyan", "white"] {
-            let [center, half, centroid, normal] = [1.0, 0.25, 1.0, 2.0].map(|size| {
+            let [center, half, centroid, normal] = [1.0, 0.5, 1.0, 2.0].map(|size| {
                 let [x, y, z] = random.vector(size).to_array();
                 format!("({x}, {y}, {z})")
             });
             let _ = writeln!(
                 text,
                 "box {{ center 0.7 * {center} size (0.6, 0.6, 0.6) + {half} color {color} }}
-                 triangle {{ centroid 0.6 * {centroid} normal {normal} sides (1.6, 1.5, 0.4) color {color} }}"
+                 triangle {{ centroid 0.6 * {centroid} normal {normal} + (0, 0, 2) sides (1.6, 1.5, 0.4) color {color} }}"
             );
         }
         adds_up(&read(&text));

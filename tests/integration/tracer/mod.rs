@@ -17,7 +17,7 @@ use rand::{Rng, RngExt, SeedableRng};
 
 use crate::{
     generated::{Numbers, generated},
-    scenes::{exact, example, read, resized, sampled, with_samples},
+    scenes::{exact, read, resized, sampled, with_samples},
     table::rows,
 };
 
@@ -150,16 +150,6 @@ fn agrees(scene: &Scene, points: usize) -> usize {
         }
     }
     boundaries
-}
-
-#[test]
-fn the_figure_agrees_with_the_oracle() {
-    for (roll, near, far) in [(0.0, 0.0, None), (90.0, 0.0, None), (33.0, 7.0, Some(10.0))] {
-        let mut scene = example("figure_9_9", 64, 64);
-        scene.camera.roll.degrees = roll;
-        (scene.camera.near, scene.camera.far) = (near, far);
-        assert_eq!(agrees(&scene, 60), 60);
-    }
 }
 
 #[test]
