@@ -16,7 +16,6 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-#[path = "../tests/integration/figure.rs"]
 mod figure;
 mod one_by_one;
 

@@ -10,15 +10,16 @@ use std::{
     time::Instant,
 };
 
+use glam::dvec3;
 use pinhole::{
-    area::Area,
     cancel::Cancelled,
-    render::{Control, render_exact},
-    scene,
-    source::{Source, SourceId, Sources},
+    scene::{self, Shape},
+    source::SourceId,
     syntax,
     tracer::World,
 };
+
+use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
@@ -33,10 +34,6 @@ pub fn spheres(count: usize) -> String {
         );
     }
     text
-}
-
-fn sources(text: &str) -> Sources {
-    Sources::new(Source::from_text("long.scn", text))
 }
 
 /// Does something to the end, and has it given up at two early moments by another thread: what is left then takes at least three quarters of
@@ -68,65 +65,35 @@ fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Syn
 }
 
 #[test]
-fn an_exact_pixel_is_given_up_while_it_is_cut() {
-    // All outlines lie within a millionth of a pixel, so that cutting it does not tell them apart.
-    let mut text =
-        "image { width 2 height 2 } camera { eye (0, 2, 0) direction (0, 0, -1) d 1.5 }\n"
-            .to_owned();
-    for index in 0..24 {
-        let radius = 2.0 + 1e-7 * f64::from(index);
-        let _ = writeln!(text, "sphere {{ center (0, 2, -5) radius {radius} }}");
-    }
-    let scene = scene::read(&sources(&text)).scene.unwrap();
-    let world = World::new(&scene);
-    check("an exact picture", |cancel| {
-        let control = Control {
-            threads: None,
-            progress: &|_| {},
-            cancel,
-        };
-        render_exact(&world, Area::whole(2, 2), &control).map_err(|_| Cancelled)
-    });
-}
-
-#[test]
 fn a_reading_is_given_up_whichever_way_it_goes() {
     let good = spheres(1_000);
-    let mut lets = CAMERA.to_owned();
-    for index in 0..1_500 {
-        let _ = writeln!(lets, "let a_{index} = 1 + 2 * {index}");
-    }
-    let texts = [
-        ("in parts", good.clone(), ""),
-        (
-            "without braces",
-            format!("{lets}sphere {{ center (0, 0, 0) }}"),
-            "",
-        ),
-        ("as a whole", format!("{good}sphere {{ radus 2 }}"), ""),
-        ("with many mistakes", good.replace("radius", "radus"), ""),
+    let lets = (0..1_500).map(|index| format!("let a_{index} = 1 + 2 * {index}\n"));
+    let lets: String = lets.collect();
+    let ball = "sphere Ball { center (0, 0, 0) }";
+    for (what, text, set) in [
+        ("in parts", good.clone(), None),
+        ("without braces", format!("{CAMERA}{lets}{ball}"), None),
+        ("as a whole", format!("{good}sphere {{ radus 2 }}"), None),
+        ("with many mistakes", good.replace("radius", "radus"), None),
         (
             "with an argument",
-            format!("{good}sphere Ball {{ center (0, 0, 0) }}"),
-            "Ball.radius=2",
+            format!("{good}{ball}"),
+            Some("Ball.radius=2"),
         ),
-    ];
-    for (what, text, set) in texts {
-        let sets = Some(set).filter(|set| !set.is_empty());
-        let sources = sources(&text).with_sets(sets);
+    ] {
+        let sources = sources(&text).with_sets(set);
         check(what, |cancel| scene::read_unless(&sources, cancel));
     }
 }
 
 #[test]
 fn the_preparation_of_objects_is_given_up() {
-    let mut scene = scene::read(&sources(&spheres(1))).scene.expect("a scene");
-    let one = scene.objects[0].clone();
-    let mut objects = vec![one; 200_000];
+    let mut scene = read(&spheres(1));
+    let mut objects = vec![scene.objects[0].clone(); 200_000];
     for (index, object) in (0u32..).zip(&mut objects) {
-        if let scene::Shape::Sphere(sphere) = &mut object.shape {
+        if let Shape::Sphere(sphere) = &mut object.shape {
             let [x, y] = [index % 447, index / 447].map(f64::from);
-            sphere.center = glam::DVec3::new(x - 223.0, y - 223.0, -400.0);
+            sphere.center = dvec3(x - 223.0, y - 223.0, -400.0);
         }
     }
     scene.objects = Arc::new(objects);
@@ -136,42 +103,21 @@ fn the_preparation_of_objects_is_given_up() {
 }
 
 #[test]
-fn what_is_unwanted_from_the_start_is_not_begun() {
-    let text = format!("// Spheres.\n{}", spheres(100));
-    let sources = sources(&text);
+fn what_is_unwanted_is_not_begun_or_ends_there() {
+    let sources = sources(&format!("// Spheres.\n{}", spheres(100)));
+    for parts in [0, 1] {
+        let cancel = AtomicBool::new(parts == 0);
+        let mut handed = 0;
+        let all = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
+            handed += 1;
+            cancel.store(true, Ordering::Relaxed);
+            true
+        });
+        assert_eq!((all, handed), (false, parts));
+    }
     let cancel = AtomicBool::new(true);
     let parsed = syntax::parse_unless(&sources.file, SourceId::File, &cancel);
     assert_eq!(parsed, syntax::Parsed::default());
-    let unwanted = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
-        unreachable!("nothing is handed over")
-    });
-    assert!(!unwanted);
     let reading = scene::read_unless(&sources, &cancel);
     assert_eq!(reading.err(), Some(Cancelled));
-}
-
-#[test]
-fn what_is_wanted_no_more_on_the_way_ends_there() {
-    let sources = sources(&spheres(100));
-    let cancel = AtomicBool::new(false);
-    let mut handed = 0;
-    let all = syntax::parse_in_parts(&sources.file, SourceId::File, 1, &cancel, |_| {
-        handed += 1;
-        cancel.store(true, Ordering::Relaxed);
-        true
-    });
-    assert_eq!((all, handed), (false, 1));
-}
-
-#[test]
-fn what_is_wanted_is_the_same() {
-    let sources = sources(&spheres(2_000));
-    let cancel = AtomicBool::new(false);
-    let reading = scene::read_unless(&sources, &cancel).expect("a reading");
-    let plain = scene::read(&sources);
-    assert_eq!(reading.diagnostics, plain.diagnostics);
-    assert_eq!(reading.scene, plain.scene);
-    let scene = plain.scene.expect("a scene");
-    let world = World::new_unless(&scene, &cancel).expect("a world");
-    assert_eq!(world.object_count(), scene.objects.len());
 }

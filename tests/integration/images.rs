@@ -2,78 +2,57 @@
 //!
 //! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `examples/pictures`: look at them before they are kept.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::{fs, path::Path};
 
-use pinhole::{
-    area::Area,
-    film::{Recipe, write_png},
-    scene,
-    source::{Source, Sources},
-};
+use pinhole::film::Encoder;
 
-use crate::scenes::sampled;
+use crate::scenes::{example_names, example_text, read_with, sampled};
 
 fn rendered(text: &str) -> image::RgbImage {
-    let sources = Sources::new(Source::from_text("example.scn", text)).with_sets([
-        "image.width=160",
-        "image.height=90",
-        "sampler.total=160 * 90 * 4",
-    ]);
-    let scene = scene::read(&sources).scene.expect("the example is right");
-    let film = sampled(&scene, Area::whole(160, 90));
-    let recipe = Recipe {
-        scene: String::new(),
-        overrides: Vec::new(),
-        crop: None,
-    };
-    let mut png = Vec::new();
-    write_png(&film, Some(&recipe), &mut png).unwrap();
-    image::load_from_memory(&png).unwrap().into_rgb8()
-}
-
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")
-}
-
-/// The names of the files in `folder` that have such an ending, without it, sorted.
-fn names(folder: &Path, ending: &str) -> Vec<String> {
-    let names = crate::program::names(folder).into_iter();
-    let names = names.filter_map(|name| Some(name.strip_suffix(ending)?.to_owned()));
-    names.collect()
+    let scene = read_with(
+        text,
+        [
+            "image.width=160",
+            "image.height=90",
+            "sampler.total=160 * 90 * 4",
+        ],
+    );
+    let (film, encoder) = (sampled(&scene), Encoder::default());
+    image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 
 #[test]
 fn the_examples_look_as_they_did() {
     let bless = std::env::var_os("PINHOLE_BLESS").is_some();
-    let scenes = names(&examples(), ".scn");
-    for name in &scenes {
-        let text = fs::read_to_string(examples().join(format!("{name}.scn"))).unwrap();
+    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/pictures");
+    let names = example_names();
+    for name in &names {
+        let text = example_text(name);
         assert!(
             text.starts_with("// "),
             "{name}: the first line says what it shows"
         );
         let picture = rendered(&text);
-        let kept = examples().join(format!("pictures/{name}.png"));
+        let kept = pictures.join(format!("{name}.png"));
         if bless {
             picture.save(&kept).unwrap();
         }
         let kept = image::open(&kept).unwrap_or_else(|error| panic!("{}: {error}", kept.display()));
-        let kept = kept.into_rgb8();
-        let pairs = picture.pixels().zip(kept.pixels());
-        let differing = pairs.filter(|(a, b)| a != b).count();
-        assert_eq!(picture.dimensions(), kept.dimensions(), "{name}");
-        assert_eq!(differing, 0, "{name}");
+        assert!(picture == kept.into_rgb8(), "{name}");
     }
-    let kept = names(&examples().join("pictures"), ".png");
-    assert_eq!(scenes, kept, "a picture for each example and no other");
+    let kept = names.iter().map(|name| format!("{name}.png"));
+    let kept: Vec<_> = kept.collect();
+    assert_eq!(
+        crate::program::names(&pictures),
+        kept,
+        "a picture for each example and no other"
+    );
 }
 
 #[test]
 fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
-    let gallery = fs::read_to_string(examples().join("README.md")).unwrap();
+    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/README.md");
+    let gallery = fs::read_to_string(gallery).unwrap();
     let mut shown = Vec::new();
     for line in gallery.lines().filter(|line| line.starts_with("| ![")) {
         let (_, rest) = line.split_once("](pictures/").expect("a picture");
@@ -85,5 +64,5 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
         shown.push(name.to_owned());
     }
     shown.sort();
-    assert_eq!(shown, names(&examples(), ".scn"));
+    assert_eq!(shown, example_names());
 }

@@ -38,14 +38,12 @@ fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Said, Duration)
 
 /// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes more than a minute.
 pub fn long_pixel() -> String {
-    let mut scene = "image { width 1  height 1 }\n\
-                     camera { eye (0, 0, 100)  direction (0, 0, -1)  d 1 }\n\
-                     sampler { method exact }\n"
-        .to_owned();
-    for i in 0..150 {
-        scene += &format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n");
-    }
-    scene
+    let spheres = (0..150).map(|i| format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n"));
+    format!(
+        "image {{ width 1  height 1 }} camera {{ eye (0, 0, 100)  direction (0, 0, -1)  d 1 }}
+         sampler {{ method exact }}\n{}",
+        spheres.collect::<String>()
+    )
 }
 
 #[test]

@@ -14,11 +14,11 @@ mod effort;
 mod exact;
 mod explain;
 mod extremes;
-mod figure;
 mod film;
 mod fixes;
 mod fmt;
 mod format;
+mod generated;
 mod grade;
 mod images;
 #[cfg(unix)]

@@ -7,35 +7,26 @@ use std::{
     sync::{LazyLock, atomic::AtomicBool},
 };
 
-use pinhole::{
-    scene,
-    source::{Source, SourceId, Sources},
-    syntax,
-};
+use pinhole::{scene, source::SourceId, syntax};
 use proptest::{prelude::*, sample::select};
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
-    scenes::scenes,
-    table::list,
+    scenes::{example_text, scenes, sources},
+    table::{lines, list},
 };
 
 /// Every scene that there is beside the source.
 static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let folders = [
-        "examples",
-        "tests/diagnostics",
-        "tests/syntax/bad",
-        "tests/syntax/ok",
-    ];
+    let folders = "examples tests/diagnostics tests/syntax/bad tests/syntax/ok".split(' ');
     let text = |path| String::from_utf8_lossy(&fs::read(path).expect("a scene")).into_owned();
-    folders.into_iter().flat_map(scenes).map(text).collect()
+    folders.flat_map(scenes).map(text).collect()
 });
 
 /// Compares the two ways; answers whether the text was parsed in parts.
 #[track_caller]
 fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
-    let sources = Sources::new(Source::from_text("test.scn", text)).with_sets(sets);
+    let sources = sources(text).with_sets(sets);
     let whole = syntax::parse(&sources.file, SourceId::File);
     let mut items = Vec::new();
     let (file, wanted) = (&sources.file, AtomicBool::new(false));
@@ -65,7 +56,7 @@ fn every_scene() {
 sampled_and_exhaustive!(every_prefix_of_a_scene_of_everything);
 
 fn every_prefix_of_a_scene_of_everything(effort: Effort) {
-    let text = fs::read_to_string("examples/language_tour.scn").expect("the tour");
+    let text = example_text("language_tour");
     let step = if effort == Effort::Sample { 7 } else { 1 };
     for (end, _) in text.char_indices().step_by(step) {
         check(&text[..end], 1, &[]);
@@ -114,7 +105,7 @@ fn mistakes_at_the_end_of_a_part() {
 #[test]
 fn arguments() {
     let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) } sphere Ball { center (0, a, 0) } let b = 2 sphere { center (b, 1, 0) }";
-    for set in list(
+    for sets in lines(
         "
         image.width=64
         camera.d=b
@@ -129,52 +120,34 @@ fn arguments() {
         Bal.radius=b
         sphere.radius=b
         sampler.total=100
+        -- Both of one block, be it in the text or not; and of the objects, the first one is read last.
+        camera.eye=(b, 2, 8) -> camera.lens=(2, 4)
+        image.width=64 -> image.height=48
+        image.width=64 -> image.height=b
+        Ball.radius=b -> b=3
+        Ball.radius=2 -> Ball.radius=b
     ",
     ) {
-        assert!(check(text, 1, &[set]));
-    }
-    // Both of one block, be it in the text or not; and of the objects, the first one is read last.
-    for sets in [
-        ["camera.eye=(b, 2, 8)", "camera.lens=(2, 4)"],
-        ["image.width=64", "image.height=48"],
-        ["image.width=64", "image.height=b"],
-        ["Ball.radius=b", "b=3"],
-        ["Ball.radius=2", "Ball.radius=b"],
-    ] {
         assert!(check(text, 1, &sets));
     }
 }
 
-/// One change of a text, at a place in it.
-#[derive(Clone, Debug)]
-enum Change {
-    PutIn(&'static str),
-    TakeOut(usize),
-    CutOff,
-}
+/// A place in a text, how much is taken out there, and what is put in.
+type Change = (prop::sample::Index, usize, &'static str);
 
 fn change() -> impl Strategy<Value = Change> {
-    let signs = "/*|*/|//|\"|'|{|}|}}|(|)|[|]|,|;|=|let |let x = 1 |let x = |\n| x| 2| radius|sphere {|sphere A { |\u{a0}";
+    let signs = "|/*|*/|//|\"|'|{|}|}}|(|)|[|]|,|;|=|let |let x = 1 |let x = |\n| x| 2| radius|sphere {|sphere A { |\u{a0}";
     let signs: Vec<&str> = signs.split('|').collect();
-    prop_oneof![
-        6 => select(signs).prop_map(Change::PutIn),
-        3 => (1..4_usize).prop_map(Change::TakeOut),
-        1 => Just(Change::CutOff),
-    ]
+    let taken = prop_oneof![6 => Just(0), 3 => 1..4_usize, 1 => Just(usize::MAX)];
+    (any::<prop::sample::Index>(), taken, select(signs))
 }
 
-fn changed(mut text: String, changes: &[(prop::sample::Index, Change)]) -> String {
-    for (place, change) in changes {
+fn changed(mut text: String, changes: &[Change]) -> String {
+    for (place, taken, sign) in changes {
         let boundary = |at: usize| (0..=at).rev().find(|&at| text.is_char_boundary(at));
         let at = boundary(place.index(text.len() + 1)).unwrap_or(0);
-        match change {
-            Change::PutIn(sign) => text.insert_str(at, sign),
-            Change::CutOff => text.truncate(at),
-            Change::TakeOut(count) => {
-                let end = boundary(text.len().min(at + count)).unwrap_or(at);
-                text.replace_range(at..end, "");
-            }
-        }
+        let end = boundary(text.len().min(at.saturating_add(*taken))).unwrap_or(at);
+        text.replace_range(at..end, sign);
     }
     text
 }
@@ -184,7 +157,7 @@ proptest! {
     fn changed_scenes(
         one in select(&SCENES[..]),
         other in select(&SCENES[..]),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), change()), 0..4),
+        changes in prop::collection::vec(change(), 0..4),
         bytes in 1_usize..100,
     ) {
         check(&changed(format!("{one}\n{other}"), &changes), bytes, &[]);

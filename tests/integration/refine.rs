@@ -7,20 +7,14 @@ use pinhole::{
     area::Area,
     refine::{SIDES, coarse_to_fine},
     render::{Control, RenderError},
-    scene::{Count, Method},
     tracer::World,
 };
 
-use crate::figure::figure;
-
-fn figure_of(width: u32, height: u32) -> World {
-    World::new(&figure(width, height, Method::Random, Count::PerPixel(1)))
-}
+use crate::scenes::example;
 
 #[test]
 fn steps_become_finer_and_show_what_is_there() {
-    let world = figure_of(101, 67);
-    let control = Control::default();
+    let world = World::new(&example("figure_9_9", 101, 67));
     let part: Area = "3,2,97,61".parse().unwrap();
     for (finest, sides) in [
         (1, &[16, 8, 4, 2, 1][..]),
@@ -29,7 +23,8 @@ fn steps_become_finer_and_show_what_is_there() {
         (40, &[40]),
     ] {
         let mut shown = Vec::new();
-        coarse_to_fine(&world, part, finest, &control, |coarse| shown.push(coarse)).unwrap();
+        let show = |coarse| shown.push(coarse);
+        coarse_to_fine(&world, part, finest, &Control::default(), show).unwrap();
         assert!(shown.iter().map(|coarse| &coarse.side).eq(sides));
         for coarse in shown {
             assert_eq!(coarse.film.width(), 97_u32.div_ceil(coarse.side));
@@ -48,13 +43,12 @@ fn steps_become_finer_and_show_what_is_there() {
 
 #[test]
 fn a_preview_can_be_ended_at_every_step() {
-    let world = figure_of(64, 36);
+    let world = World::new(&example("figure_9_9", 64, 36));
     for end in 1..=SIDES.len() {
         let cancel = AtomicBool::new(false);
         let control = Control {
-            threads: None,
-            progress: &|_| {},
             cancel: &cancel,
+            ..Control::default()
         };
         let mut steps = 0;
         let ended = coarse_to_fine(&world, Area::whole(64, 36), 1, &control, |_| {

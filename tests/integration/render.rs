@@ -7,74 +7,76 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::Film,
-    render::{Control, RenderError, render},
-    sampling::Sampling,
+    film::{Encoder, certified},
+    render::{Control, RenderError, Rendered, render},
     scene::{Count, Method, Scene},
     tracer::World,
 };
 
-use crate::{figure::figure, scenes::sampled_by};
+use crate::scenes::{example, example_names, rendered, sampling, whole, with_samples};
 
-fn picture(scene: &Scene, part: Area, threads: usize) -> Film {
-    let control = Control {
-        threads: NonZero::new(threads),
-        ..Control::default()
-    };
-    sampled_by(scene, part, &control)
+fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
+    with_samples(&example("figure_9_9", width, height), method, count)
 }
 
 #[test]
-fn any_number_of_threads_makes_the_same_picture() {
-    for method in Method::SAMPLED {
-        let scene = figure(61, 37, method, Count::Total(61 * 37 * 5 + 300));
-        let whole = Area::whole(61, 37);
-        let one = picture(&scene, whole, 1);
-        assert_eq!(one, picture(&scene, whole, 2));
-        assert_eq!(one, picture(&scene, whole, 7));
-    }
-}
-
-#[test]
-fn a_crop_is_the_part_of_the_whole_picture() {
-    for method in Method::SAMPLED {
-        let scene = figure(61, 37, method, Count::Total(61 * 37 * 5 + 300));
-        let whole = picture(&scene, Area::whole(61, 37), 2);
-        for part in [
-            "0,0,1,1",
-            "60,36,1,1",
-            "13,7,20,29",
-            "0,0,61,37",
-            "5,0,1,37",
-        ] {
+fn threads_and_crops_change_no_pixel() {
+    let pictures =
+        Method::SAMPLED.map(|method| ([61, 37], method, Count::Total(61 * 37 * 5 + 300)));
+    // Tiles of all sizes, and more than threads.
+    let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
+    for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
+        let scene = figure(width, height, method, count);
+        let picture = |part, threads| {
+            let control = Control {
+                threads: NonZero::new(threads),
+                ..Control::default()
+            };
+            rendered::<[f64; 3]>(&scene, part, &control).into_film()
+        };
+        let one = picture(whole(&scene), 1);
+        assert!(
+            [2, 7]
+                .iter()
+                .all(|&threads| picture(whole(&scene), threads) == one)
+        );
+        for part in ["0,0,1,1", "60,36,1,1", "13,7,20,29", "5,0,1,37"] {
             let part: Area = part.parse().unwrap();
-            let cropped = picture(&scene, part, 2);
-            assert_eq!(
-                [cropped.width(), cropped.height()],
-                [part.width, part.height]
-            );
-            for (x, y) in part.iter() {
-                assert_eq!(cropped.pixel(x - part.x, y - part.y), whole.pixel(x, y));
-            }
+            assert_eq!(picture(part, 2), one.part(part).unwrap());
         }
     }
 }
 
 #[test]
-fn pixels_without_a_sample_show_the_background() {
-    let mut scene = figure(40, 30, Method::Random, Count::Total(100));
-    scene.image.background = pinhole::color::Color::from_bytes([1, 2, 3]);
-    let background = scene.image.background.to_linear();
-    let film = picture(&scene, Area::whole(40, 30), 2);
-    let sampling = Sampling::new(&scene.sampler, 40, 30);
-    let mut empty = 0;
-    for (x, y) in Area::whole(40, 30).iter() {
-        if sampling.count(x, y) == 0 {
-            empty += 1;
-            assert_eq!(film.pixel(x, y), background);
+fn bytes_are_those_of_the_light() {
+    let (encoder, control) = (Encoder::default(), Control::default());
+    let part: Area = "3,9,66,40".parse().unwrap();
+    for name in example_names() {
+        for (method, count) in [
+            (Method::Exact, Count::PerPixel(1)),
+            (Method::MultiJittered, Count::PerPixel(1)),
+            (Method::MultiJittered, Count::PerPixel(13)),
+            (Method::MultiJittered, Count::Total(2_000)),
+            (Method::MultiJittered, Count::Total(40_000)),
+        ] {
+            let scene = with_samples(&example(&name, 70, 52), method, count);
+            let (bytes, light) = (
+                rendered::<[u8; 3]>(&scene, part, &control),
+                rendered::<[f64; 3]>(&scene, part, &control),
+            );
+            if let (Rendered::Exact(bytes), Rendered::Exact(light)) = (&bytes, &light) {
+                assert_eq!(bytes.bounds, light.bounds, "{name}");
+                assert_eq!(
+                    bytes.certain,
+                    certified(&light.film, &light.bounds),
+                    "{name}"
+                );
+            }
+            let (bytes, light) = (bytes.into_film(), light.into_film());
+            let expected = light.pixels().iter().map(|light| encoder.pixel(*light));
+            assert!(expected.eq(bytes.pixels().iter().copied()), "{name}");
         }
     }
-    assert_eq!(empty, 1100);
 }
 
 #[test]
@@ -83,15 +85,14 @@ fn a_render_without_end_can_be_ended() {
         let scene = figure(size, size, Method::Random, Count::PerPixel(count));
         let cancel = AtomicBool::new(false);
         let control = Control {
-            threads: None,
             progress: &|_| cancel.store(true, Ordering::Relaxed),
             cancel: &cancel,
+            ..Control::default()
         };
-        let sampling = Sampling::new(&scene.sampler, size, size);
         let ended = render(
             &World::new(&scene),
-            &sampling,
-            Area::whole(size, size),
+            &sampling(&scene),
+            whole(&scene),
             &control,
         );
         assert!(matches!(ended, Err(RenderError::Cancelled)));

@@ -8,10 +8,10 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::Film,
-    render::{Control, render},
+    film::{Film, Pixel},
+    render::{Control, Exact, Rendered, render_as_asked, render_exact},
     sampling::Sampling,
-    scene::{self, Scene},
+    scene::{self, Count, Method, Sampler, Scene},
     source::{Source, Sources},
     tracer::World,
 };
@@ -33,6 +33,44 @@ pub fn examples() -> Vec<String> {
     texts.map(|text| text.expect("a text")).collect()
 }
 
+/// The names of the examples.
+pub fn example_names() -> Vec<String> {
+    let paths = scenes("examples").into_iter();
+    let name = |path: PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
+    paths.map(name).collect()
+}
+
+pub fn example_text(name: &str) -> String {
+    let path = format!("{}/examples/{name}.scn", env!("CARGO_MANIFEST_DIR"));
+    fs::read_to_string(path).unwrap()
+}
+
+/// An example at another size.
+pub fn example(name: &str, width: u32, height: u32) -> Scene {
+    resized(read(&example_text(name)), width, height)
+}
+
+pub fn resized(mut scene: Scene, width: u32, height: u32) -> Scene {
+    (scene.image.width, scene.image.height) = (width, height);
+    scene
+}
+
+pub fn with_samples(scene: &Scene, method: Method, count: Count) -> Scene {
+    let sampler = Sampler {
+        method,
+        count,
+        seed: 5,
+    };
+    Scene {
+        sampler,
+        ..scene.clone()
+    }
+}
+
+pub fn whole(scene: &Scene) -> Area {
+    Area::whole(scene.image.width, scene.image.height)
+}
+
 /// How a picture is rendered by the calling thread alone.
 pub fn one_thread() -> Control<'static> {
     Control {
@@ -47,21 +85,36 @@ pub fn sources(text: &str) -> Sources {
 
 /// A scene without errors; its warnings may be some.
 pub fn read(text: &str) -> Scene {
-    let reading = scene::read(&sources(text));
+    read_with(text, [])
+}
+
+/// The same with overrides.
+pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Scene {
+    let reading = scene::read(&sources(text).with_sets(sets));
     let found = &reading.diagnostics;
     reading
         .scene
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// A part of a scene's picture by its own samples.
-pub fn sampled(scene: &Scene, part: Area) -> Film {
-    sampled_by(scene, part, &Control::default())
+/// A scene's picture by its own samples.
+pub fn sampled(scene: &Scene) -> Film {
+    rendered(scene, whole(scene), &Control::default()).into_film()
 }
 
-pub fn sampled_by(scene: &Scene, part: Area, control: &Control<'_>) -> Film {
-    let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
-    render(&World::new(scene), &sampling, part, control).unwrap()
+/// A part of a scene's picture as its sampler asks for.
+pub fn rendered<P: Pixel>(scene: &Scene, part: Area, control: &Control<'_>) -> Rendered<P> {
+    render_as_asked(&World::new(scene), &sampling(scene), part, control).unwrap()
+}
+
+/// The samples that a scene asks for.
+pub fn sampling(scene: &Scene) -> Sampling {
+    Sampling::new(&scene.sampler, scene.image.width, scene.image.height)
+}
+
+/// A scene's picture by exact means.
+pub fn exact(scene: &Scene) -> Exact {
+    render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
 /// The contents of a document's fences of this kind.

@@ -1,7 +1,6 @@
 //! Views along a diagonal of the board, where most is left of its squares, be they too small to be seen.
 
 use super::*;
-use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the widest views along x = z with the eye over that line, of
 /// which both sides are the same, up to what the eye's coordinates are off and the view's depth; and two whose millions of pieces were added up
@@ -42,13 +41,9 @@ const KNOWN: [(&str, [u32; 2], f64, f64); 4] = [
 #[test]
 fn what_is_known_otherwise_is_within_the_bound() {
     for (text, [x, y], truth, off) in KNOWN {
-        let exact = exact(&read(&format!("{text} sampler {{ method exact }}")));
-        let bound = exact.bounds[(y * exact.film.width() + x) as usize];
-        let error = (exact.film.pixel(x, y)[0] - truth).abs();
-        assert!(
-            error <= f64::from(bound) + off,
-            "{error:e} > {bound:e} of {text}"
-        );
+        let ([light, ..], bound) = pixel(&exact(&read(text)), x, y);
+        let error = (light - truth).abs();
+        assert!(error <= bound + off, "{error:e} > {bound:e} of {text}");
     }
 }
 
@@ -64,7 +59,7 @@ fn the_longest_lenses_end(effort: Effort) {
            near 1.1380496007412987e-202 far 1.7976931348623157e308 }
          checkerboard { y -241717738976317.66 square 2.2868347391406466e96 colors (red, olive) }",
     ]) {
-        let exact = exact(&read(&format!("image {{ width 2 height 2 }} sampler {{ method exact }} {text}")));
+        let exact = exact(&read(&format!("image {{ width 2 height 2 }} {text}")));
         assert!(exact.film.pixels().iter().flatten().all(|light| (0.0..=1.0).contains(light)));
     }
 }

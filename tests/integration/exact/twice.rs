@@ -1,48 +1,35 @@
 //! The computed picture against itself in other ways: in pieces, turned, in parts, on other threads.
 
-use std::sync::Arc;
-
 use super::*;
-use crate::effort::{Effort, sampled_and_exhaustive};
 
 #[test]
 fn four_quarters_are_the_pixel() {
-    for name in examples() {
-        adds_up(&example(&name, 48, 32), &name);
-    }
+    let examples = example_names().into_iter();
+    let examples = examples.map(|name| example(&name, 48, 32));
     // Scenes whose objects pierce each other.
-    let mut random = Random::new(7);
-    for round in 0..24 {
-        let scene = random_scene(&mut random, round % 2 == 0);
-        adds_up(&scene, &format!("round {round}"));
+    for scene in examples.chain(ordinary([24, 18], 7).take(24)) {
+        adds_up(&scene);
     }
 }
 
 /// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of them lie above each other.
-fn side_by_side(random: &mut Random, rows: u32) -> String {
-    let mut text = String::from(
-        "image { width 1 height 1 background black }\ncamera { eye (0, 0, 20) lookat (0, 0, 0) d 20 }\n",
-    );
-    let step = 2.0 / f64::from(rows);
-    for (x, y) in Area::whole(rows, rows).iter() {
-        let [x, y] = [x, y].map(|at| (f64::from(at) + 0.5) * step - 1.0);
-        let [tilt, turn] = [0.3, 0.3].map(|most| random.within(-most, most));
-        let side = 0.6 * step;
-        writeln!(
-            text,
-            "triangle {{ centroid ({x}, {y}, 0) normal ({tilt}, {turn}, 1) sides ({side}, {side}, {side}) }}"
-        )
-        .unwrap();
-    }
-    text
-}
-
 #[test]
 fn objects_side_by_side_add_up() {
     let mut random = Random::new(71);
     for rows in [3, 5, 8] {
-        let scene = read(&side_by_side(&mut random, rows));
-        adds_up(&scene, &format!("{rows} rows of triangles"));
+        let mut text = String::from(
+            "image { width 1 height 1 } camera { eye (0, 0, 20) lookat (0, 0, 0) d 20 }\n",
+        );
+        let step = 2.0 / f64::from(rows);
+        for (x, y) in Area::whole(rows, rows).iter() {
+            let [x, y] = [x, y].map(|at| (f64::from(at) + 0.5) * step - 1.0);
+            let [tilt, turn] = [0.3, 0.3].map(|most| random.within(-most, most));
+            let _ = writeln!(
+                text,
+                "triangle {{ centroid ({x}, {y}, 0) normal ({tilt}, {turn}, 1) sides 0.6 * {step} * (1, 1, 1) }}"
+            );
+        }
+        adds_up(&read(&text));
     }
 }
 
@@ -50,69 +37,60 @@ fn objects_side_by_side_add_up() {
 #[test]
 fn objects_that_pierce_each_other_in_part_add_up() {
     let mut random = Random::new(72);
-    for which in 0..20 {
+    for _ in 0..20 {
         let mut text = String::from(
-            "image { width 2 height 2 background black }\ncamera { eye (0.3, 0.2, 20) lookat (0, 0, 0) d 20 }\n",
+            "image { width 2 height 2 } camera { eye (0.3, 0.2, 20) lookat (0, 0, 0) d 20 }\n",
         );
         for color in ["red", "lime", "blue", "gold", "cyan", "white"] {
-            let mut number = |most: f64| random.within(-most, most);
-            let center = [number(0.7), number(0.7), number(0.3)];
-            let half = [0.3 + number(0.25), 0.3 + number(0.25), 0.3 + number(0.25)];
-            let corner = |sign: f64| [0, 1, 2].map(|i| center[i] + sign * half[i]);
-            let ([x0, y0, z0], [x1, y1, z1]) = (corner(-1.0), corner(1.0));
-            writeln!(
+            let [center, half, centroid, normal] = [1.0, 0.5, 1.0, 2.0].map(|size| {
+                let [x, y, z] = random.vector(size).to_array();
+                format!("({x}, {y}, {z})")
+            });
+            let _ = writeln!(
                 text,
-                "box {{ min ({x0}, {y0}, {z0}) max ({x1}, {y1}, {z1}) color {color} }}"
-            )
-            .unwrap();
-            let [x, y, z] = [number(0.6), number(0.6), number(0.2)];
-            let [a, b] = [number(2.0), number(2.0)];
-            writeln!(
-                text,
-                "triangle {{ centroid ({x}, {y}, {z}) normal ({a}, {b}, 1) sides (1.6, 1.5, 0.4) color {color} }}"
-            )
-            .unwrap();
+                "box {{ center 0.7 * {center} size (0.6, 0.6, 0.6) + {half} color {color} }}
+                 triangle {{ centroid 0.6 * {centroid} normal {normal} + (0, 0, 2) sides (1.6, 1.5, 0.4) color {color} }}"
+            );
         }
-        adds_up(&read(&text), &format!("planks {which}"));
+        adds_up(&read(&text));
     }
 }
 
 sampled_and_exhaustive!(four_quarters_are_the_pixel_of_extreme_cameras);
 
+/// The figure with other words in it.
 fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
-    let figure = example("figure_9_9.scn", 24, 16);
-    let with = |change: &dyn Fn(&mut Scene)| {
-        let mut scene = figure.clone();
-        change(&mut scene);
-        scene
-    };
-    let wide = |d: f64| with(&|scene| scene.camera.lens = Lens::Distance(d));
-    let height = |y: f64| with(&|scene| scene.camera.eye.y = y);
-    let sized = |width: u32, height: u32| {
-        with(&|scene| (scene.image.width, scene.image.height) = (width, height))
-    };
-    let squares = |side: f64| {
-        with(&|scene| {
-            for object in Arc::make_mut(&mut scene.objects) {
-                if let Shape::Checkerboard(board) = &mut object.shape {
-                    board.square = side;
-                }
-            }
-        })
-    };
-    let mut along_an_axis = wide(1e-12);
-    along_an_axis.camera.view = View::Direction(dvec3(0.0, 0.0, -1.0));
-    let lenses = [0.1, 0.02, 1e-3, 1e-5, 1e5].map(wide).into_iter();
-    let boards = [1e-3, 1e-6, 1e-100, 1e6, 1e300].map(squares);
-    let eyes = [1e-6, 1e8].map(height);
-    let sizes = [(1, 1), (60, 1), (1, 60)].map(|(width, height)| sized(width, height));
-    let table = lenses
-        .chain(boards)
-        .chain(eyes)
-        .chain(sizes)
-        .chain([along_an_axis]);
-    for scene in effort.first(3, table) {
-        adds_up(&scene, &format!("{:?} of {:?}", scene.camera, scene.image));
+    let figure = include_str!("../../../examples/figure_9_9.scn");
+    let figure = figure.replace("width 1280  height 720", "width 24  height 16");
+    for [old, new] in effort.first(
+        3,
+        rows(
+            "
+            d      2.75 -> d 0.1
+            d      2.75 -> d 0.02
+            d      2.75 -> d 1e-3
+            d      2.75 -> d 1e-5
+            d      2.75 -> d 1e5
+            square 1 -> square 1e-3
+            square 1 -> square 1e-6
+            square 1 -> square 1e-100
+            square 1 -> square 1e6
+            square 1 -> square 1e300
+            (3, 3.5, 8) -> (3, 1e-6, 8)
+            (3, 3.5, 8) -> (3, 1e8, 8)
+            width 24  height 16 -> width 1  height 1
+            width 24  height 16 -> width 60  height 1
+            width 24  height 16 -> width 1  height 60
+            lookat (0.2, 0.8, 0) -> d 1e-12  direction (0, 0, -1)
+        ",
+        ),
+    ) {
+        let text = match new.contains("direction") {
+            true => figure.replace("d      2.75", ""),
+            false => figure.clone(),
+        };
+        assert!(text.contains(old), "{old}");
+        adds_up(&read(&text.replace(old, new)));
     }
 }
 
@@ -135,63 +113,32 @@ fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
         let eye = format!("({}, {height:e}, 3)", random.within(-0.5, 0.5));
         for below in [face, board] {
             let scene = view(&eye, 2, below);
-            let bound = exact(&scene).bound();
+            let bound = part_adds_up(&scene, whole(&scene)).bound();
             assert!(bound <= 1e-9, "{eye}: {bound:e}");
-            adds_up(&scene, &eye);
         }
     }
     // By an integral along x of 50 digits, split where the outline meets the pixel's sides.
     let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", 1, face);
-    let found = exact(&scene);
-    let off = (found.film.pixel(0, 0)[0] - 0.500_000_064_227_617_3).abs();
-    assert!(off <= found.bound() && found.bound() < 1e-9, "{off:e}");
+    let ([red, ..], bound) = pixel(&exact(&scene), 0, 0);
+    let off = (red - 0.500_000_064_227_617_3).abs();
+    assert!(off <= bound && bound < 1e-9, "{off:e}");
 }
 
 #[test]
 fn a_quarter_turn_sweeps_the_other_way() {
-    let mut scenes: Vec<_> = examples()
-        .iter()
-        .map(|name| example(name, 40, 40))
-        .collect();
-    let mut random = Random::new(8);
-    scenes.extend((0..12).map(|round| {
-        let mut scene = random_scene(&mut random, round % 2 == 0);
-        (scene.image.width, scene.image.height) = (24, 24);
-        scene
-    }));
-    for (index, scene) in scenes.into_iter().enumerate() {
-        let side = scene.image.width;
+    let examples = example_names().into_iter();
+    let examples = examples.map(|name| example(&name, 40, 40));
+    for scene in examples.chain(ordinary([24, 24], 8).take(12)) {
         let mut turned = scene.clone();
         turned.camera.roll.degrees += 90.0;
         let (straight, turned) = (exact(&scene), exact(&turned));
-        for (x, y) in Area::whole(side, side).iter() {
+        for (x, y) in whole(&scene).iter() {
             // Rolled to the right, the camera sees the world turned counter-clockwise.
-            let (u, v) = (y, side - 1 - x);
-            let bounds = [
-                straight.bounds[(y * side + x) as usize],
-                turned.bounds[(v * side + u) as usize],
-            ];
-            for channel in 0..3 {
-                let difference =
-                    (straight.film.pixel(x, y)[channel] - turned.film.pixel(u, v)[channel]).abs();
-                assert!(
-                    difference <= allowed(&bounds),
-                    "scene {index} at {x}, {y}: {difference:e}"
-                );
-            }
-        }
-    }
-}
-
-#[test]
-fn any_number_of_threads_computes_the_same_picture() {
-    for name in ["figure_9_9.scn", "rolled.scn", "piercing.scn"] {
-        // Tiles of all sizes, and more than threads.
-        let scene = example(name, 201, 140);
-        let whole = Area::whole(201, 140);
-        let one = part_by(&scene, whole, Some(1));
-        for threads in [2, 5] {
-            assert_eq!(one, part_by(&scene, whole, Some(threads)), "{name}");
+            let (light, bound) = pixel(&straight, x, y);
+            let (other, other_bound) = pixel(&turned, y, scene.image.width - 1 - x);
+            let difference = difference(light, other);
+            let limit = bound + other_bound + 4.0 * f64::EPSILON;
+            assert!(difference <= limit, "{x}, {y}: {difference:e} of {scene:?}");
         }
     }
 }

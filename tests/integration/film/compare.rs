@@ -1,7 +1,6 @@
 //! How far two pictures are apart.
 
 use pinhole::{
-    area::Area,
     color::srgb_to_linear,
     film::{Film, Largest, Tolerance, compare, heat_map},
 };
@@ -12,15 +11,17 @@ const HALF: Tolerance = Tolerance {
 };
 
 fn film(pixels: &[[f64; 3]]) -> Film {
-    let mut film = Film::new(pixels.len() as u32, 1).unwrap();
-    film.put(Area::whole(pixels.len() as u32, 1), pixels);
-    film
+    Film::from_fn(pixels.len() as u32, 1, |x, _| pixels[x as usize]).unwrap()
+}
+
+/// The light of steps of 255.
+fn light(steps: f64) -> f64 {
+    srgb_to_linear(steps / 255.0)
 }
 
 #[test]
 fn the_largest_difference_has_a_place() {
-    let a = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(10.0 / 255.0)]]);
-    let b = film(&[[0.0; 3], [0.5, 0.25, srgb_to_linear(13.0 / 255.0)]]);
+    let [a, b] = [10.0, 13.0].map(|steps| film(&[[0.0; 3], [0.5, 0.25, light(steps)]]));
     let found = compare(&a, &b, HALF).unwrap();
     let Largest {
         steps,
@@ -38,46 +39,36 @@ fn the_largest_difference_has_a_place() {
 
 #[test]
 fn the_root_mean_square_is_of_all_channels() {
-    let found = compare(
-        &film(&[[0.0; 3], [0.6, 0.0, 0.0]]),
-        &film(&[[0.0; 3]; 2]),
-        HALF,
-    );
-    assert!((found.unwrap().rmse - (0.36f64 / 6.0).sqrt()).abs() < 1e-15);
+    let [a, b] = [0.0, 0.6].map(|red| film(&[[0.0; 3], [red, 0.0, 0.0]]));
+    let rmse = compare(&a, &b, HALF).unwrap().rmse;
+    assert!((rmse - (0.36f64 / 6.0).sqrt()).abs() < 1e-15);
 }
 
 #[test]
 fn a_tolerance_takes_its_own_steps_and_the_bound() {
-    let at = |k: f64| film(&[[srgb_to_linear(k / 255.0); 3]]);
     for k in 0..255 {
         let k = f64::from(k);
-        assert!(
-            compare(&at(k), &at(k + 0.5), HALF).unwrap().is_equal(),
-            "{k}"
-        );
-        assert!(
-            !compare(&at(k), &at(k + 0.501), HALF).unwrap().is_equal(),
-            "{k}"
-        );
+        for (more, is_equal) in [(0.5, true), (0.501, false)] {
+            let [a, b] = [k, k + more].map(|steps| film(&[[light(steps); 3]]));
+            assert_eq!(compare(&a, &b, HALF).unwrap().is_equal(), is_equal, "{k}");
+        }
     }
-    let bounded = Tolerance {
-        bounds: Some(&[1e-3]),
-        ..HALF
-    };
-    let (dark, light) = (
-        film(&[[0.0; 3]]),
-        film(&[[1e-3 + 0.4 / (12.92 * 255.0); 3]]),
-    );
-    assert!(!compare(&dark, &light, HALF).unwrap().is_equal());
-    let found = compare(&dark, &light, bounded).unwrap();
-    assert!(found.is_equal() && found.undecided == 1);
-    // As far as the bound alone may reach, too.
-    assert_eq!(compare(&dark, &dark, bounded).unwrap().undecided, 1);
-    let little = Tolerance {
-        bounds: Some(&[1e-6]),
-        ..HALF
-    };
-    assert_eq!(compare(&dark, &dark, little).unwrap().undecided, 0);
+    let dark = film(&[[0.0; 3]]);
+    let bright = film(&[[1e-3 + 0.4 / (12.92 * 255.0); 3]]);
+    for (other, bound, is_equal, undecided) in [
+        (&bright, None, false, 0),
+        (&bright, Some([1e-3]), true, 1),
+        // As far as the bound alone may reach, too.
+        (&dark, Some([1e-3]), true, 1),
+        (&dark, Some([1e-6]), true, 0),
+    ] {
+        let tolerance = Tolerance {
+            bounds: bound.as_ref().map(|bound| &bound[..]),
+            ..HALF
+        };
+        let found = compare(&dark, other, tolerance).unwrap();
+        assert_eq!((found.is_equal(), found.undecided), (is_equal, undecided));
+    }
 }
 
 #[test]
@@ -88,18 +79,12 @@ fn sizes_that_differ_are_told() {
 
 #[test]
 fn heat_grows_ever_brighter() {
-    let black = film(&[[0.0; 3]; 256]);
-    let steps = (0..256).map(|step| [srgb_to_linear(f64::from(step) / 255.0); 3]);
-    let map = heat_map(&black, &film(&steps.collect::<Vec<_>>()), HALF).unwrap();
-    let brightness = map
-        .pixels()
-        .iter()
-        .map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b);
+    let steps: Vec<_> = (0..256).map(|step| [light(step.into()); 3]).collect();
+    let map = heat_map(&film(&[[0.0; 3]; 256]), &film(&steps), HALF).unwrap();
+    let pixels = map.pixels().iter();
+    let brightness = pixels.map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b);
     let brightness: Vec<_> = brightness.collect();
     assert!(brightness[0] == 0.0 && brightness.is_sorted_by(|a, b| a < b));
-    assert!(
-        map.pixel(255, 0)
-            .iter()
-            .all(|light| (light - 1.0).abs() < 1e-12)
-    );
+    let last = map.pixel(255, 0);
+    assert!(last.iter().all(|light| (light - 1.0).abs() < 1e-12));
 }

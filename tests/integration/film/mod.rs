@@ -3,8 +3,9 @@
 mod compare;
 mod light;
 
-use std::{fs, io, io::Cursor, sync::atomic::AtomicBool};
+use std::{fs, io, io::Cursor, iter, path::Path, sync::atomic::AtomicBool};
 
+use exr::meta::attribute::SampleType;
 use image::ImageFormat;
 use pinhole::{
     area::Area,
@@ -15,28 +16,15 @@ use pinhole::{
     },
 };
 
-use crate::program::names;
+use crate::program::Folder;
 
 /// A film of colours from dark to light, some out of the ordinary.
 fn film(width: u32, height: u32) -> Film {
-    let mut film = Film::new(width, height).unwrap();
-    let area = Area::whole(width, height);
-    let pixels: Vec<_> = area
-        .iter()
-        .map(|(x, y)| {
-            let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
-            [light, 1.0 - light, light * light]
-        })
-        .collect();
-    film.put(area, &pixels);
-    film
-}
-
-/// The file of an EXR.
-fn exr_bytes(film: &Film, part: Area, whole: Area) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    write_exr(film, part, whole, &mut bytes).unwrap();
-    bytes.into_inner()
+    Film::from_fn(width, height, |x, y| {
+        let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
+        [light, 1.0 - light, light * light]
+    })
+    .unwrap()
 }
 
 /// What sRGB makes of the light of a channel, by its definition.
@@ -63,18 +51,16 @@ fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
 }
 
 /// The chunks of a PNG: their kinds and contents.
-fn chunks(mut png: &[u8]) -> Vec<(String, Vec<u8>)> {
-    png = &png[8..];
-    let mut chunks = Vec::new();
-    while let Some((length, rest)) = png.split_first_chunk::<4>() {
-        let length = u32::from_be_bytes(*length) as usize;
-        chunks.push((
-            String::from_utf8(rest[..4].to_vec()).unwrap(),
-            rest[4..4 + length].to_vec(),
-        ));
-        png = &rest[4 + length + 4..];
-    }
-    chunks
+fn chunks(png: &[u8]) -> Vec<(&str, &[u8])> {
+    let mut rest = &png[8..];
+    iter::from_fn(|| {
+        let (length, chunk) = rest.split_first_chunk::<4>()?;
+        let (kind, chunk) = chunk.split_at(4);
+        let (content, checksum_and_more) = chunk.split_at(u32::from_be_bytes(*length) as usize);
+        rest = &checksum_and_more[4..];
+        Some((str::from_utf8(kind).unwrap(), content))
+    })
+    .collect()
 }
 
 #[test]
@@ -82,15 +68,12 @@ fn png_is_true_colour_and_nothing_but() {
     let film = film(31, 17);
     let png = png_bytes(&film, &recipe());
     let chunks = chunks(&png);
-    let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| kind.as_str()).collect();
+    let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| *kind).collect();
     kinds.dedup();
     assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
     // Width, height, 8 bits, truecolour, and not interlaced.
     assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
-    let read = image::load_from_memory(&png).unwrap();
-    let image::DynamicImage::ImageRgb8(read) = read else {
-        panic!("not RGB of 8 bits")
-    };
+    let read = image::load_from_memory(&png).unwrap().into_rgb8();
     for (x, y, pixel) in read.enumerate_pixels() {
         for (light, byte) in film.pixel(x, y).into_iter().zip(pixel.0) {
             assert!((255.0 * encoded(light) - f64::from(byte)).abs() < 0.5001);
@@ -100,19 +83,20 @@ fn png_is_true_colour_and_nothing_but() {
 
 #[test]
 fn png_carries_its_recipe_to_the_letter() {
-    let png = png_bytes(&film(3, 2), &recipe());
-    assert_eq!(read_recipe(&png).unwrap(), recipe());
-    assert_eq!(png, png_bytes(&film(3, 2), &recipe()));
     let plain = Recipe {
         overrides: Vec::new(),
         crop: None,
         ..recipe()
     };
-    assert_eq!(read_recipe(&png_bytes(&film(3, 2), &plain)).unwrap(), plain);
-    let chunks = chunks(&png).into_iter();
-    let mut texts = chunks.filter(|(kind, _)| kind == "iTXt");
-    for start in [&b"Software\0\x01\0"[..], b"pinhole:scene\0\x01\0"] {
-        assert!(texts.next().unwrap().1.starts_with(start));
+    for recipe in [recipe(), plain] {
+        let png = png_bytes(&film(3, 2), &recipe);
+        assert_eq!(read_recipe(&png).unwrap(), recipe);
+        assert_eq!(png, png_bytes(&film(3, 2), &recipe));
+        let chunks = chunks(&png).into_iter();
+        let mut texts = chunks.filter(|(kind, _)| *kind == "iTXt");
+        for start in [&b"Software\0\x01\0"[..], b"pinhole:scene\0\x01\0"] {
+            assert!(texts.next().unwrap().1.starts_with(start));
+        }
     }
 }
 
@@ -125,40 +109,35 @@ fn a_long_recipe_is_left_out() {
         };
         assert_eq!(long.fits(), fits);
         let png = png_bytes(&film(3, 2), &long);
-        if fits {
-            assert_eq!(read_recipe(&png).unwrap(), long);
-        } else {
-            assert!(matches!(read_recipe(&png), Err(NotOurs::NoScene)));
+        match read_recipe(&png) {
+            Ok(read) => assert!(fits && read == long),
+            Err(error) => assert!(!fits && matches!(error, NotOurs::NoScene)),
         }
     }
+    let many = Recipe {
+        overrides: vec![String::new(); 1001],
+        ..recipe()
+    };
+    assert!(!many.fits());
 }
 
 #[test]
-fn pictures_of_others_are_told_from_ours() {
-    let mut foreign = Vec::new();
-    image::DynamicImage::new_rgb8(4, 4)
-        .write_to(&mut Cursor::new(&mut foreign), ImageFormat::Png)
-        .unwrap();
-    assert!(matches!(read_recipe(&foreign), Err(NotOurs::NoScene)));
+fn what_is_damaged_is_told_from_what_is_whole() {
     let png = png_bytes(&film(3, 2), &recipe());
     let idat = png.windows(4).position(|four| four == b"IDAT").unwrap();
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // Whatever byte is wrong, it is no panic; nor is anything behind the scene looked at.
-    for at in 0..png.len() {
-        for bit in 0..8 {
-            let mut flipped = png.clone();
-            flipped[at] ^= 1 << bit;
-            if let Ok(read) = read_recipe(&flipped) {
-                assert_eq!(read, recipe());
-            }
+    // Whatever bit is wrong, it is no panic; of the header it is found by its checksum; and nothing behind the scene is looked at.
+    for bit in 0..8 * png.len() {
+        let mut flipped = png.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        let is_in_header = (8..33).contains(&(bit / 8));
+        match read_recipe(&flipped) {
+            Ok(read) => assert!(!is_in_header && read == recipe()),
+            Err(error) => assert!(!is_in_header || matches!(error, NotOurs::Damaged)),
         }
     }
-    // A bit of the header flipped is found by its checksum; a header of a huge picture is not believed.
-    let mut flipped = png.clone();
-    flipped[18] ^= 1;
-    assert!(matches!(read_recipe(&flipped), Err(NotOurs::Damaged)));
 }
 
 /// The beginning of a PNG with such texts.
@@ -182,25 +161,13 @@ fn what_is_wrong_with_a_text_is_told() {
         read_recipe(&carrying([scene].into_iter().chain([set].repeat(count))))
     };
     assert_eq!(with(OVERRIDES_LIMIT, b"h=1").unwrap().overrides.len(), 1000);
-    for (count, text, told) in [
-        (
-            100_000,
-            &b"h=1"[..],
-            "the picture carries more than 1000 overrides",
-        ),
-        (
-            1,
-            b"h=\xff",
-            "the picture carries a scene or an override that is not UTF-8 text",
-        ),
-    ] {
-        assert_eq!(with(count, text).unwrap_err().to_string(), told);
-    }
-    let many = Recipe {
-        overrides: vec![String::new(); 1001],
-        ..recipe()
-    };
-    assert!(!many.fits());
+    let told = with(100_000, b"h=1").unwrap_err().to_string();
+    assert_eq!(told, "the picture carries more than 1000 overrides");
+    let told = with(1, b"h=\xff").unwrap_err().to_string();
+    assert!(
+        told.ends_with("an override that is not UTF-8 text"),
+        "{told}"
+    );
     // What others wrote may be anything.
     let foreign = ("Comment", &b"\xff"[..]);
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
@@ -208,9 +175,8 @@ fn what_is_wrong_with_a_text_is_told() {
 
 #[test]
 fn pictures_in_all_formats_are_read() {
-    let picture =
-        image::RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8 * 60, y as u8 * 100, 40]));
-    let picture = picture.into();
+    let color = |x, y| image::Rgb([x as u8 * 60, y as u8 * 100, 40]);
+    let picture = image::RgbImage::from_fn(5, 3, color).into();
     let expected = png_bytes(&read_of(&picture, ImageFormat::Png).film, &recipe());
     for (format, coding) in [
         (ImageFormat::Png, Coding::Exact),
@@ -230,10 +196,8 @@ fn pictures_in_all_formats_are_read() {
     }
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
     assert_eq!(read_picture(webp).unwrap().coding, Coding::Lossy);
-    assert_eq!(
-        read_picture(b"P2 2 1 4 0 4").unwrap().film.pixel(1, 0),
-        [1.0; 3]
-    );
+    let plain = read_picture(b"P2 2 1 4 0 4").unwrap().film;
+    assert_eq!(plain.pixel(1, 0), [1.0; 3]);
     assert!(read_picture(b"P2let = 1").is_err());
 }
 
@@ -261,17 +225,15 @@ fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
     use exr::prelude::{Image, SpecificChannels, WritableImage, f16};
 
     let half = f16::from_f32(0.5);
-    let mut float = Cursor::new(Vec::new());
+    let [mut float, mut mixed] = [(); 2].map(|()| Cursor::new(Vec::new()));
     let channels = SpecificChannels::rgba(|_| (0.1_f32, 0.2_f32, 0.3_f32, half));
     let image = Image::from_channels((2, 1), channels);
     image.write().to_buffered(&mut float).unwrap();
-    let mut mixed = Cursor::new(Vec::new());
     let channels = SpecificChannels::rgb(|_| (0.1_f32, half, 0.3_f32));
     let image = Image::from_channels((2, 1), channels);
     image.write().to_buffered(&mut mixed).unwrap();
-    for (file, rounding) in [(float, Rounding::Float), (mixed, Rounding::Half)] {
-        assert_eq!(read_picture(file.get_ref()).unwrap().rounding, rounding);
-    }
+    let roundings = [float, mixed].map(|file| read_picture(file.get_ref()).unwrap().rounding);
+    assert_eq!(roundings, [Rounding::Float, Rounding::Half]);
 }
 
 #[test]
@@ -321,61 +283,53 @@ fn a_text_that_unpacks_without_end_is_refused() {
 }
 
 #[test]
-fn exr_holds_the_means_as_floats() {
-    use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-
-    let (film, whole) = (film(33, 70), Area::whole(33, 70));
-    let bytes = exr_bytes(&film, whole, whole);
-    let channels = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(&bytes))
-        .unwrap()
-        .layer_data
-        .channel_data
-        .list;
-    for (index, name) in ["B", "G", "R"].into_iter().enumerate() {
-        assert!(channels[index].name.eq(name));
-        let FlatSamples::F32(samples) = &channels[index].sample_data else {
-            panic!("not floats of 32 bits")
-        };
-        let light = film.pixels().iter().map(|pixel| pixel[2 - index] as f32);
-        assert!(light.eq(samples.iter().copied()));
-    }
-    assert_eq!(channels.len(), 3);
-    assert!(bytes == exr_bytes(&film, whole, whole));
-    assert_eq!(read_picture(&bytes).unwrap().crop, None);
-}
-
-#[test]
-fn a_crop_as_exr_has_a_data_and_a_display_window() {
+fn exr_holds_the_means_as_floats_and_where_they_are() {
+    let film = film(33, 70);
     let part: Area = "7,5,33,70".parse().unwrap();
-    let bytes = exr_bytes(&film(33, 70), part, Area::whole(64, 90));
-    let meta = exr::meta::MetaData::read_from_buffered(&bytes[..], true).unwrap();
-    let header = &meta.headers[0];
-    let display = header.shared_attributes.display_window;
-    assert_eq!(display.position, (0, 0).into());
-    assert_eq!(display.size, (64, 90).into());
-    assert_eq!(header.own_attributes.layer_position, (7, 5).into());
-    assert_eq!(header.layer_size, (33, 70).into());
-    let read = read_picture(&bytes).unwrap();
-    assert_eq!(read.crop, Some(part));
-    let light = film(33, 70).pixel(3, 60);
-    let light = light.map(|light| f64::from(light as f32));
-    assert_eq!(read.film.pixel(3, 60), light);
+    for (part, whole, crop) in [
+        (Area::whole(33, 70), Area::whole(33, 70), None),
+        (part, Area::whole(64, 90), Some(part)),
+    ] {
+        let mut bytes = Cursor::new(Vec::new());
+        write_exr(&film, part, whole, &mut bytes).unwrap();
+        let bytes = bytes.into_inner();
+        let meta = exr::meta::MetaData::read_from_buffered(&bytes[..], true).unwrap();
+        let header = &meta.headers[0];
+        let channels = header.channels.list.iter();
+        let channels = channels.map(|channel| (channel.name.to_string(), channel.sample_type));
+        let float = |name: &str| (name.to_owned(), SampleType::F32);
+        assert!(channels.eq(["B", "G", "R"].map(float)));
+        let display = header.shared_attributes.display_window;
+        assert_eq!(display.position, (0, 0).into());
+        assert_eq!(
+            display.size,
+            (whole.width as usize, whole.height as usize).into()
+        );
+        assert_eq!(
+            header.own_attributes.layer_position,
+            (part.x as i32, part.y as i32).into()
+        );
+        assert_eq!(header.layer_size, (33, 70).into());
+        let read = read_picture(&bytes).unwrap();
+        assert_eq!((read.crop, read.rounding), (crop, Rounding::Float));
+        let rounded = film.pixels().iter();
+        let rounded = rounded.map(|pixel| pixel.map(|light| f64::from(light as f32)));
+        assert!(rounded.eq(read.film.pixels().iter().copied()));
+    }
 }
 
-fn write(path: &std::path::Path, content: &[u8]) -> io::Result<()> {
-    write_whole(path, &AtomicBool::new(false), |out| out.write_all(content))
+/// A folder, and a way to write a file in it.
+fn folder() -> (Folder, impl Fn(&Path, &[u8]) -> io::Result<()>) {
+    let write = |path: &Path, content: &[u8]| {
+        write_whole(path, &AtomicBool::new(false), |out| out.write_all(content))
+    };
+    (Folder::with([]), write)
 }
 
 #[test]
 fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.png");
+    let (folder, write) = folder();
+    let path = folder.path("a.png");
     write(&path, b"old").unwrap();
     let failed = write_whole(&path, &AtomicBool::new(false), |out| {
         out.write_all(&[0; 1 << 20])?;
@@ -385,19 +339,19 @@ fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
     assert_eq!(failed.unwrap_err().to_string(), "the disk is full");
     let cancelled = write_whole(&path, &AtomicBool::new(true), |out| out.write_all(b"new"));
     assert!(cancelled.is_err());
-    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(folder.read("a.png"), b"old");
     write(&path, b"new").unwrap();
-    assert_eq!(fs::read(&path).unwrap(), b"new");
+    assert_eq!(folder.read("a.png"), b"new");
     check_writable(&path).unwrap();
-    check_writable(&folder.path().join("b.png")).unwrap();
-    assert_eq!(names(folder.path()), ["a.png"], "something was left behind");
+    check_writable(&folder.path("b.png")).unwrap();
+    assert_eq!(folder.names(), ["a.png"], "something was left behind");
 }
 
 #[test]
 fn a_temporary_file_that_is_being_written_is_left_alone() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.png");
-    let left = folder.path().join(".pinhole-a.png-abcdef.tmp");
+    let (folder, write) = folder();
+    let path = folder.path("a.png");
+    let left = folder.path(".pinhole-a.png-abcdef.tmp");
     write_whole(&path, &AtomicBool::new(false), |out| {
         fs::write(&left, b"")?;
         write(&path, b"inner")?;
@@ -405,19 +359,19 @@ fn a_temporary_file_that_is_being_written_is_left_alone() {
         out.write_all(b"outer")
     })
     .unwrap();
-    assert_eq!(fs::read(&path).unwrap(), b"outer");
-    let long = folder.path().join("ä".repeat(125) + ".png");
-    write(&long, b"long").unwrap();
-    assert_eq!(names(folder.path()).len(), 2);
+    assert_eq!(folder.read("a.png"), b"outer");
+    write(&folder.path(&("ä".repeat(125) + ".png")), b"long").unwrap();
+    assert_eq!(folder.names().len(), 2);
 }
 
 #[test]
 fn where_no_file_can_be_is_an_error() {
-    let folder = tempfile::tempdir().unwrap();
-    for (path, kind) in [
-        (folder.path().join("no/a.png"), io::ErrorKind::NotFound),
-        (folder.path().to_owned(), io::ErrorKind::IsADirectory),
+    let (folder, write) = folder();
+    for (name, kind) in [
+        ("no/a.png", io::ErrorKind::NotFound),
+        ("", io::ErrorKind::IsADirectory),
     ] {
+        let path = folder.path(name);
         assert_eq!(check_writable(&path).unwrap_err().kind(), kind);
         assert_eq!(write(&path, b"new").unwrap_err().kind(), kind);
     }
@@ -428,26 +382,25 @@ fn where_no_file_can_be_is_an_error() {
 fn links_permissions_and_devices_stay_what_they_are() {
     use std::os::unix::fs::{PermissionsExt, symlink};
 
-    let folder = tempfile::tempdir().unwrap();
-    let mode = |path: &std::path::Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
-    let [file, plain, link, dangling, created] =
-        ["file", "plain", "link", "dangling", "created"].map(|name| folder.path().join(name));
-
-    fs::write(&plain, b"").unwrap();
-    write(&file, b"old").unwrap();
-    assert_eq!(mode(&file), mode(&plain));
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
-    symlink("file", &link).unwrap();
-    write(&link, b"new").unwrap();
-    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-    assert_eq!(fs::read(&file).unwrap(), b"new");
-    assert_eq!(mode(&file), 0o640);
-
-    symlink("created", &dangling).unwrap();
-    write(&dangling, b"new").unwrap();
-    assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
-    assert_eq!(fs::read(&created).unwrap(), b"new");
-
+    let (folder, write) = folder();
+    let mode = |name| {
+        fs::metadata(folder.path(name))
+            .unwrap()
+            .permissions()
+            .mode()
+            & 0o777
+    };
+    folder.write("plain", b"");
+    write(&folder.path("file"), b"old").unwrap();
+    assert_eq!(mode("file"), mode("plain"));
+    fs::set_permissions(folder.path("file"), fs::Permissions::from_mode(0o640)).unwrap();
+    for (link, target) in [("link", "file"), ("dangling", "created")] {
+        symlink(target, folder.path(link)).unwrap();
+        write(&folder.path(link), b"new").unwrap();
+        assert!(folder.path(link).is_symlink());
+        assert_eq!(folder.read(target), b"new");
+    }
+    assert_eq!(mode("file"), 0o640);
     write("/dev/null".as_ref(), b"new").unwrap();
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
 }

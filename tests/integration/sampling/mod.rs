@@ -23,12 +23,7 @@ fn counts() -> impl Iterator<Item = u64> {
 }
 
 fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
-    let sampler = Sampler {
-        method,
-        count: Count::PerPixel(n),
-        seed,
-    };
-    Sampling::new(&sampler, 64, 64)
+    shared(method, 64 * 64 * n, seed, [64, 64])
 }
 
 /// The samples of a picture, so many in all.

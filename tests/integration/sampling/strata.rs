@@ -1,6 +1,11 @@
 //! Where points lie: each method's strata, offsets taken apart with whole numbers.
 
+use std::collections::HashSet;
+
 use super::*;
+
+/// Seeds and pixels that properties are tested on.
+const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
 /// Which of n strata an offset lies in: ⌊(offset + 1/2)·n⌋, without rounding.
 fn stratum(offset: f64, n: u64) -> u64 {
@@ -19,7 +24,15 @@ fn fraction(offset: f64) -> u128 {
 fn each_once(numbers: impl Iterator<Item = u64>) -> bool {
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_unstable();
-    numbers.iter().enumerate().all(|(i, &n)| i as u64 == n)
+    (0..).zip(numbers).all(|(i, number)| number == i)
+}
+
+/// There is one point in each cell of a grid of as many columns and rows.
+#[track_caller]
+fn one_in_each(points: &[DVec2], columns: u64, rows: u64) {
+    assert_eq!(points.len() as u64, columns * rows);
+    let cell = |point: &DVec2| stratum(point.y, rows) * columns + stratum(point.x, columns);
+    assert!(each_once(points.iter().map(cell)), "{columns} × {rows}");
 }
 
 /// The lengths of the rows of `n` cells, as the reference describes them.
@@ -30,16 +43,8 @@ fn rows(n: u64) -> Vec<u64> {
         .min_by(|a, b| f64::total_cmp(&(*a as f64 - root).abs(), &(*b as f64 - root).abs()))
         .unwrap();
     let points = points(Method::Regular, n, 0, [0, 0]);
-    let mut rows: Vec<u64> = Vec::new();
-    let mut last = f64::NAN;
-    for point in points {
-        if point.y == last {
-            *rows.last_mut().unwrap() += 1;
-        } else {
-            rows.push(1);
-            last = point.y;
-        }
-    }
+    let rows = points.chunk_by(|one, next| one.y == next.y);
+    let rows: Vec<_> = rows.map(|row| row.len() as u64).collect();
     assert_eq!(rows.len() as u64, count, "{n}");
     rows
 }
@@ -63,24 +68,20 @@ fn rows_of_cells_are_as_even_as_they_can_be() {
 
 #[test]
 fn regular_is_an_even_grid_symmetric_to_the_bit() {
+    let middle = |first: u64, parts: u64, n: u64| {
+        (2.0 * first as f64 + parts as f64 - n as f64) / (2.0 * n as f64)
+    };
     for n in counts() {
         let points = points(Method::Regular, n, 0, [5, 7]);
-        let mut first = 0;
+        let mut expected = Vec::new();
         for cells in rows(n) {
-            for i in 0..cells {
-                let point = points[(first + i) as usize];
-                let middle = |first: u64, parts: u64, n: u64| {
-                    (2.0 * first as f64 + parts as f64 - n as f64) / (2.0 * n as f64)
-                };
-                assert_eq!(point.x, middle(i, 1, cells));
-                assert_eq!(point.y, middle(first, cells, n));
-            }
-            first += cells;
+            let y = middle(expected.len() as u64, cells, n);
+            expected.extend((0..cells).map(|i| DVec2::new(middle(i, 1, cells), y)));
         }
+        assert_eq!(points, expected);
         for mirrored in [DVec2::new(-1.0, 1.0), DVec2::new(1.0, -1.0)] {
-            for &point in &points {
-                assert!(points.contains(&(point * mirrored)), "{n}: {point}");
-            }
+            let is_in = |point: &DVec2| points.contains(&(*point * mirrored));
+            assert!(points.iter().all(is_in), "{n}");
         }
     }
 }
@@ -88,16 +89,14 @@ fn regular_is_an_even_grid_symmetric_to_the_bit() {
 #[test]
 fn jittered_has_one_point_in_each_cell() {
     for n in counts() {
-        for (seed, pixel) in [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])] {
-            let mut points = points(Method::Jittered, n, seed, pixel).into_iter();
+        for (seed, pixel) in PLACES {
+            let points = points(Method::Jittered, n, seed, pixel);
             let mut first = 0;
             for cells in rows(n) {
-                let row: Vec<_> = points.by_ref().take(cells as usize).collect();
-                assert!(each_once(row.iter().map(|point| stratum(point.x, cells))));
-                assert!(
-                    row.iter()
-                        .all(|point| (first..first + cells).contains(&stratum(point.y, n)))
-                );
+                let row = &points[first as usize..(first + cells) as usize];
+                one_in_each(row, cells, 1);
+                let rows = first..first + cells;
+                assert!(row.iter().all(|point| rows.contains(&stratum(point.y, n))));
                 first += cells;
             }
         }
@@ -106,12 +105,14 @@ fn jittered_has_one_point_in_each_cell() {
 
 #[test]
 fn rooks_do_not_take_each_other() {
-    for method in [Method::NRooks, Method::MultiJittered] {
+    for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
         for n in counts() {
-            for (seed, pixel) in [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])] {
+            for (seed, pixel) in PLACES {
                 let points = points(method, n, seed, pixel);
-                assert!(each_once(points.iter().map(|point| stratum(point.x, n))));
-                assert!(each_once(points.iter().map(|point| stratum(point.y, n))));
+                one_in_each(&points, n, 1);
+                if method != Method::Hammersley || n.is_power_of_two() {
+                    one_in_each(&points, 1, n);
+                }
             }
         }
     }
@@ -121,24 +122,7 @@ fn rooks_do_not_take_each_other() {
 fn multi_jittered_has_one_point_in_each_cell_too() {
     for n in counts() {
         let rows = (1..=n).filter(|b| n % b == 0 && b * b <= n).max().unwrap();
-        let columns = n / rows;
-        let points = points(Method::MultiJittered, n, 9, [2, 1]);
-        assert!(each_once(points.iter().map(|point| {
-            stratum(point.y, rows) * columns + stratum(point.x, columns)
-        })));
-    }
-}
-
-#[test]
-fn hammersley_keeps_one_point_in_each_column() {
-    for n in counts() {
-        for pixel in [[0, 0], [3, 5], [63, 63]] {
-            let points = points(Method::Hammersley, n, 0, pixel);
-            assert!(each_once(points.iter().map(|point| stratum(point.x, n))));
-            if n.is_power_of_two() {
-                assert!(each_once(points.iter().map(|point| stratum(point.y, n))));
-            }
-        }
+        one_in_each(&points(Method::MultiJittered, n, 9, [2, 1]), n / rows, rows);
     }
 }
 
@@ -162,65 +146,35 @@ fn halton_is_its_sequence_shifted() {
         assert!(from(point.x, origin.x).abs_diff(inverse(2)) <= 1);
         assert!(from(point.y, origin.y).abs_diff(inverse(3)) <= 1);
     }
-    // Elementary boxes of the first 2^a·3^b points, once the shift is undone.
-    for (a, b) in [(1, 1), (3, 2), (4, 2), (5, 3), (8, 3)] {
-        let (columns, rows) = (2_u64.pow(a), 3_u64.pow(b));
-        assert!(each_once(
-            points.iter().take((columns * rows) as usize).map(|point| {
-                let place = |offset, origin, n: u64| {
-                    // Two are added, since a value on an interval's edge may have come out one or two below it.
-                    (((u128::from(from(offset, origin)) + 2) * u128::from(n)) >> 53) as u64 % n
-                };
-                place(point.y, origin.y, rows) * columns + place(point.x, origin.x, columns)
-            })
-        ));
-    }
 }
 
 #[test]
 fn sobol_has_one_point_in_each_elementary_interval() {
-    for n in [1, 4096, 5000, 16_384] {
-        for (seed, pixel) in [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])] {
+    for n in (0..=12).map(|m| 1 << m).chain([5000, 16_384]) {
+        for (seed, pixel) in PLACES {
             let points = points(Method::Sobol, n, seed, pixel);
             for m in 0..=n.ilog2() {
                 for block in points.chunks_exact(1 << m).take(3) {
-                    for a in 0..=m {
-                        let (columns, rows) = (1 << a, 1 << (m - a));
-                        assert!(each_once(block.iter().map(|point| {
-                            stratum(point.y, rows) * columns + stratum(point.x, columns)
-                        })));
-                    }
+                    (0..=m).for_each(|a| one_in_each(block, 1 << a, 1 << (m - a)));
                 }
             }
         }
-    }
-    for m in 0..=12 {
-        let n = 1 << m;
-        let points = points(Method::Sobol, n, 3, [1, 2]);
-        assert!(each_once(points.iter().map(|point| stratum(point.x, n))));
-        assert!(each_once(points.iter().map(|point| stratum(point.y, n))));
     }
 }
 
 #[test]
 fn sobol_goes_on_beyond_2_to_the_32() {
-    let n = 1 << 53;
     let sampling = sampling(Method::Sobol, 1 << 41, 0);
     for first in [1_u64 << 32, (1 << 41) - 4096] {
         let mut points = placed(&sampling, [3, 4], first..first + 4096);
-        for a in 0..=12 {
-            let (columns, rows) = (1 << a, 1 << (12 - a));
-            assert!(each_once(points.iter().map(|point| {
-                stratum(point.y, rows) * columns + stratum(point.x, columns)
-            })));
-        }
+        (0..=12).for_each(|a| one_in_each(&points, 1 << a, 1 << (12 - a)));
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         points.dedup_by_key(|point| point.x);
         assert_eq!(points.len(), 4096);
     }
+    let n = 1 << 53;
     let whole = shared(Method::Sobol, n, 0, [1, 1]);
-    let points = placed(&whole, [0, 0], n - 1024..n);
-    assert!(each_once(points.iter().map(|point| stratum(point.x, 1024))));
+    one_in_each(&placed(&whole, [0, 0], n - 1024..n), 1024, 1);
 }
 
 #[test]
@@ -229,26 +183,20 @@ fn the_largest_counts_keep_their_strata() {
     for n in [(1 << 53) - 111, 1 << 53, 1 << 33] {
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
             let sampling = shared(method, n, 4, [1, 1]);
-            let points =
-                [n / 2..n / 2 + 3000, n - 1..n].map(|part| placed(&sampling, [0, 0], part));
-            let mut columns: Vec<_> = points
-                .iter()
-                .flatten()
-                .map(|point| stratum(point.x, n))
-                .collect();
-            columns.sort_unstable();
-            columns.dedup();
+            let parts = [n / 2..n / 2 + 3000, n - 1..n];
+            let points = parts.map(|part| placed(&sampling, [0, 0], part)).concat();
+            let columns: HashSet<_> = points.iter().map(|point| stratum(point.x, n)).collect();
             assert_eq!(columns.len(), 3001);
         }
         for method in Method::SAMPLED {
             let sampling = shared(method, n, 4, [1, 1]);
             let points = placed(&sampling, [0, 0], n - 10..n);
             assert_eq!(points.len(), 10);
+            let offsets = points.iter().flat_map(DVec2::to_array);
             assert!(
-                points
-                    .iter()
-                    .all(|point| point.cmpge(DVec2::splat(-0.5)).all()
-                        && point.cmplt(DVec2::splat(0.5)).all())
+                offsets
+                    .into_iter()
+                    .all(|offset| (-0.5..0.5).contains(&offset))
             );
         }
     }

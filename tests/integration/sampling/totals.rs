@@ -5,15 +5,16 @@ use super::*;
 #[test]
 fn a_total_is_shared_out_to_the_last_sample() {
     for (width, height) in [(1, 1), (7, 3), (16, 16), (30, 17), (64, 1)] {
-        let pixels = u64::from(width) * u64::from(height);
+        let whole = Area::whole(width, height);
+        let pixels = whole.pixels();
         for method in Method::SAMPLED {
             let around = [pixels.max(2) - 1, pixels, pixels + 1, 5 * pixels / 2];
             for total in [1, 2, 1000 * pixels + 7].into_iter().chain(around) {
                 let sampling = shared(method, total, 2, [width, height]);
-                let counts = sampling.counts(Area::whole(width, height));
+                let counts = sampling.counts(whole);
                 assert_eq!(counts.iter().sum::<u64>(), total, "{method:?}");
                 assert_eq!(sampling.total(), total);
-                for ((x, y), &count) in Area::whole(width, height).iter().zip(&counts) {
+                for ((x, y), &count) in whole.iter().zip(&counts) {
                     assert_eq!(sampling.count(x, y), count);
                     if method != Method::Scatter {
                         assert!(count == total / pixels || count == total.div_ceil(pixels));
@@ -30,7 +31,7 @@ fn a_total_is_shared_out_to_the_last_sample() {
                     height: height - height / 3,
                 };
                 for ((x, y), count) in part.iter().zip(sampling.counts(part)) {
-                    assert_eq!(counts[Area::whole(width, height).index(x, y)], count);
+                    assert_eq!(counts[whole.index(x, y)], count);
                 }
             }
         }
@@ -56,13 +57,8 @@ fn the_extra_samples_are_spread_evenly_in_both_directions() {
 #[test]
 fn the_largest_picture_has_a_last_pixel() {
     let side = 1 << 20;
-    let sampler = Sampler {
-        method: Method::Random,
-        count: Count::Total((1 << 40) + 1),
-        seed: 0,
-    };
     // The curve ends at the top right.
-    let sampling = Sampling::new(&sampler, side, side);
+    let sampling = shared(Method::Random, (1 << 40) + 1, 0, [side, side]);
     let corners = [(0, 0), (0, side - 1), (side - 1, side - 1), (side - 1, 0)];
     assert_eq!(corners.map(|(x, y)| sampling.count(x, y)), [1, 1, 1, 2]);
 }
@@ -83,14 +79,13 @@ fn scattered_points_fall_like_rain() {
     let mut empty = 0;
     for seed in 0..20 {
         let of = |total| shared(Method::Scatter, total, seed, [40, 25]).counts(area);
-        let chi2: f64 = of(20_000)
+        let counts = of(20_000);
+        let terms = counts
             .iter()
-            .map(|&n| (n as f64 - 20.0) * (n as f64 - 20.0) / 20.0)
-            .sum();
-        assert!(
-            (chi2 - 999.0).abs() < 4.0 * (2.0 * 999.0_f64).sqrt(),
-            "{chi2}"
-        );
+            .map(|&n| (n as f64 - 20.0) * (n as f64 - 20.0) / 20.0);
+        let chi2: f64 = terms.sum();
+        let most = 4.0 * (2.0 * 999.0_f64).sqrt();
+        assert!((chi2 - 999.0).abs() < most, "{chi2}");
         empty += of(1000).iter().filter(|&&n| n == 0).count();
     }
     // With as many points as pixels, a share of 1/e stays empty: 7358 ± 48 of 20 000.

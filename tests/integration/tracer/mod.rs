@@ -1,46 +1,28 @@
 //! The tracer against the oracle, above all within the last bits of every boundary: what is beside the catalogue of hard cases, all of which
 //! the tests of `numerics` ask.
 
-mod mesh;
-pub mod planes;
-mod sizes;
-
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
 use pinhole::{
-    area::Area,
     color::Color,
-    math::Angle,
-    render::{Control, render, render_exact},
     report::numerics::{
         oracle::{ALL_SIZES, Oracle},
-        scenes::{self, SIZE},
+        scenes,
     },
-    sampling::{CounterRng, Sampling},
-    scene::{CenteredTriangle, Lens, Outline, Scene, Shape, Triangle, View},
+    sampling::CounterRng,
+    scene::{Camera, Count, Method, Outline, Scene, Shape, Triangle, View},
     tracer::World,
 };
 use rand::{Rng, RngExt, SeedableRng};
 
-use crate::exact::read;
+use crate::{
+    generated::{Numbers, generated},
+    scenes::{exact, read, resized, sampled, with_samples},
+    table::rows,
+};
 
 pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
-}
-
-/// A triangle turned about its normal by so many degrees.
-pub fn turned(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
-    let spin = Angle::from_degrees(spin);
-    let triangle = CenteredTriangle {
-        centroid,
-        normal,
-        sides,
-        spin,
-    };
-    Shape::Triangle(Triangle {
-        outline: Outline::Centered(triangle),
-        color: Color::BLACK,
-    })
 }
 
 /// A triangle by its vertices.
@@ -71,15 +53,6 @@ impl Random {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// A multiple of 1/2, at most `limit` halves from 0.
-    fn half(&mut self, limit: i64) -> f64 {
-        (self.bits() as i64 % (limit + 1)) as f64 / 2.0
-    }
-
-    fn point(&mut self, limit: i64) -> DVec3 {
-        dvec3(self.half(limit), self.half(limit), self.half(limit))
-    }
-
     pub fn offset(&mut self) -> DVec2 {
         dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
     }
@@ -90,115 +63,261 @@ impl Random {
     }
 }
 
-/// The colour that the oracle sees, in the numbering of [`scene`].
-fn expected(oracle: &Oracle, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
-    match oracle.seen(&oracle.direction(x, y, offset)) {
-        None => [0.0; 3],
-        Some(seen) => [seen.object as f64 + 1.0, f64::from(u8::from(seen.odd)), 0.0],
+/// Whether a camera does not look along its up vector, where a rule decides that knows the world's axes.
+pub fn is_upright(scene: &Scene) -> bool {
+    let Camera { eye, view, up, .. } = scene.camera;
+    let direction = match view {
+        View::Lookat(at) => at - eye,
+        View::Direction(direction) => direction,
+    };
+    direction.cross(up) != DVec3::ZERO
+}
+
+/// The tracer and the oracle, which tell objects and the colours of squares apart.
+struct Both {
+    scene: Scene,
+    world: World,
+    oracle: Oracle,
+}
+
+impl Both {
+    fn new(original: &Scene) -> Self {
+        let shapes: Vec<_> = original.objects.iter().map(|object| object.shape).collect();
+        let mut scene = scene(original.camera, &shapes);
+        scene.image = original.image;
+        scene.image.background = Color::BLACK;
+        Self {
+            world: World::new(&scene),
+            oracle: Oracle::new(&scene, ALL_SIZES),
+            scene,
+        }
+    }
+
+    fn color(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
+        self.world.palette()[self.world.slot_at(x, y, offset)].srgb
+    }
+
+    /// Compares what they see; answers it.
+    #[track_caller]
+    fn check(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
+        let expected = match self.oracle.seen(&self.oracle.direction(x, y, offset)) {
+            None => [0.0; 3],
+            Some(seen) => [seen.object as f64 + 1.0, f64::from(u8::from(seen.odd)), 0.0],
+        };
+        let found = self.color(x, y, offset);
+        let scene = &self.scene;
+        assert_eq!(found, expected, "pixel {x}, {y} at {offset:?} of {scene:?}");
+        found
     }
 }
 
 /// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides of the boundaries that
 /// random segments within pixels cross. Returns how many boundaries it found, so that a test can say that there were some.
+#[track_caller]
 fn agrees(scene: &Scene, points: usize) -> usize {
-    let world = World::new(scene);
-    let oracle = Oracle::new(scene, ALL_SIZES);
+    let both = Both::new(scene);
     let mut random = Random::new(points as u64);
-    let color = |x, y, offset| world.palette()[world.slot_at(x, y, offset)].srgb;
-    let check = |x, y, offset: DVec2| {
-        assert_eq!(
-            color(x, y, offset),
-            expected(&oracle, x, y, offset),
-            "pixel {x}, {y} at {offset:?} of {scene:?}"
-        );
-    };
     let mut boundaries = 0;
-    let mut tries = 0;
-    while boundaries < points && tries < 40 * points + 4000 {
-        tries += 1;
-        let (x, y) = (random.bits() as u32 % SIZE, random.bits() as u32 % SIZE);
+    for tries in 0..40 * points + 4000 {
+        let [x, y] = [scene.image.width, scene.image.height].map(|n| random.bits() as u32 % n);
         let (mut a, mut b) = (random.offset(), random.offset());
         if tries % 16 == 0 {
-            check(x, y, a);
-        }
-        if color(x, y, a) == color(x, y, b) {
-            continue;
+            both.check(x, y, a);
         }
         // Along x or y alone, down to neighbouring numbers.
-        let axis = usize::from(tries % 2 == 0);
-        let mut corner = a;
-        corner[axis] = b[axis];
-        if color(x, y, corner) == color(x, y, a) {
+        let axis = tries % 2;
+        b[1 - axis] = a[1 - axis];
+        let color = both.color(x, y, a);
+        if both.color(x, y, b) == color {
             continue;
         }
-        b = corner;
         loop {
             let mut middle = a;
             middle[axis] = a[axis] + (b[axis] - a[axis]) / 2.0;
             if middle == a || middle == b {
                 break;
             }
-            if color(x, y, middle) == color(x, y, a) {
-                a = middle;
-            } else {
-                b = middle;
+            match both.color(x, y, middle) == color {
+                true => a = middle,
+                false => b = middle,
             }
         }
-        check(x, y, a);
-        check(x, y, b);
+        both.check(x, y, a);
+        both.check(x, y, b);
         boundaries += 1;
+        if boundaries == points {
+            break;
+        }
     }
     boundaries
 }
 
 #[test]
-fn the_figure_agrees_with_the_oracle() {
-    let shapes = [
-        sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
-        triangle(dvec3(0.2, 1.0, 0.6), dvec3(0.3, 0.0, 1.0)),
-        cuboid(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
-        floor(),
-    ];
-    for (roll, near, far) in [(0.0, 0.0, None), (90.0, 0.0, None), (33.0, 7.0, Some(10.0))] {
-        let mut camera = camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0));
-        camera.roll = Angle::from_degrees(roll);
-        (camera.near, camera.far) = (near, far);
-        assert_eq!(agrees(&scene(camera, &shapes), 60), 60);
+fn scenes_of_random_numbers_agree_with_the_oracle() {
+    let scenes = generated(Numbers::Wild(0), [64, 64], 7).map(|(_, scene)| scene);
+    let scenes = scenes.filter(is_upright).take(48);
+    let found: usize = scenes.map(|scene| agrees(&scene, 16)).sum();
+    assert!(found > 200, "{found}");
+}
+
+#[test]
+fn scenes_full_of_ties_agree_with_the_oracle() {
+    // All sample points are multiples of 1/8 pixel.
+    let mut random = Random::new(11);
+    let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
+    for scene in scenes.filter(is_upright).take(150) {
+        let both = Both::new(&scene);
+        for _ in 0..30 {
+            let [x, y] = [(); 2].map(|()| random.bits() as u32 % 8);
+            let [right, down] = [(); 2].map(|()| (random.bits() % 8) as f64 / 8.0 - 0.5);
+            both.check(x, y, dvec2(right, down));
+        }
     }
 }
 
 #[test]
-fn random_objects_agree_with_the_oracle() {
-    let mut random = Random::new(7);
+fn fans_of_triangles_agree_with_the_oracle() {
+    let mut random = Random::new(11);
     let mut found = 0;
     for round in 0..24 {
-        let eye = random.vector(4.0);
-        let mut camera = camera(eye, random.vector(1.0));
-        camera.up = random.vector(1.0);
-        camera.roll = Angle {
-            degrees: random.within(-400.0, 400.0),
-            radians: random.within(-10.0, 10.0),
-        };
-        camera.lens = Lens::Fov(Angle::from_degrees(random.within(1.0, 179.0)));
-        if round % 2 == 0 {
-            (camera.near, camera.far) = (2.0, Some(6.0));
-        }
-        let mut shapes = vec![floor()];
-        for _ in 0..2 {
-            let corner = random.vector(2.0);
-            shapes.push(sphere(random.vector(2.0), random.within(0.1, 3.0)));
-            shapes.push(turned(
-                random.vector(2.0),
-                random.vector(1.0),
-                dvec3(2.0, random.within(1.1, 3.9), 2.0),
-                random.within(0.0, 360.0),
-            ));
-            shapes.push(cuboid(
-                corner,
-                corner + DVec3::splat(random.within(0.1, 2.0)),
-            ));
-        }
+        let camera = camera(random.vector(4.0), random.vector(1.0));
+        // Around one vertex, of all sizes.
+        let size = [1.0, 1e-3, 1e3][round % 3];
+        let middle = random.vector(1.0);
+        let rim: Vec<DVec3> = (0..5).map(|_| middle + random.vector(2.0) * size).collect();
+        let fan = (0..5).map(|at| by_vertices([middle, rim[at], rim[(at + 1) % 5]]));
+        let shapes: Vec<Shape> = fan.chain([floor()]).collect();
         found += agrees(&scene(camera, &shapes), 16);
     }
-    assert!(found > 200);
+    assert!(found > 200, "{found}");
+}
+
+/// Of a box and of a triangle in its face the first one is seen, whatever the vertices' differences round to.
+#[test]
+fn a_triangle_in_a_face_ties_with_it() {
+    let cuboid = "box { center (0, 0, 0) size (2, 2, 2) }";
+    for vertices in [
+        "v0 (-1, -1, 1) v1 (1, -1, 1) v2 (-1, 1, 1)",
+        "v0 (0.1, 0.3, 1) v1 (0.7, 0.2, 1) v2 (0.5, 0.9, 1)",
+    ] {
+        for [first, second] in [["", cuboid], [cuboid, ""]] {
+            let scene = read(&format!(
+                "camera {{ eye (0.3, 0.2, 5) lookat (0, 0, 0) }} {first} triangle {{ {vertices} }} {second}"
+            ));
+            assert_eq!(agrees(&resized(scene, 64, 64), 20), 20);
+        }
+    }
+}
+
+#[test]
+fn scenes_of_extreme_sizes_agree_with_the_oracle() {
+    for size in ["1e-300", "1e-160", "1e-5", "1e160", "1e300"] {
+        let scene = read(&format!(
+            "let s = {size} camera {{ eye s * (1, 2, 3) lookat (0, 0, 0) }}
+             sphere {{ center (0, 0, 0) radius 0.7 * s }}
+             box {{ min s * (0.1, 0.1, 0.1) max s * (0.6, 0.6, 0.6) }}
+             triangle {{ centroid s * (0.1, 0.4, 0.9) normal s * (0.2, 0.3, 1) sides s * (2, 2, 1) }}
+             checkerboard {{ y -0.5 * s square s }}"
+        ));
+        assert_eq!(agrees(&resized(scene, 64, 64), 10), 10);
+    }
+}
+
+#[test]
+fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
+    for [scene, values, boundaries] in rows(
+        "
+        -- A floor as close below the eye, and a box as close before it.
+        camera { eye (0.3, s, 5.3) direction (0, -0.3, -1) } checkerboard {} sphere { center (0, 1, 0) } -> 5e-324 1e-309 1e-300 -> 10
+        camera { eye (0, 0.1, 0) direction (0, -0.3, -1) } sphere { center (0, 0, -3) radius 0.5 } box { min (-1, -1, -1) max (1, 1, -s) } checkerboard {} -> 5e-324 1e-309 1e-300 -> 0
+        -- Just inside of a huge sphere, with something else before its far side.
+        camera { eye (0, -1, 0) direction (0, 0, -1) } sphere { center (0, -s, 0) radius s } box { min (-1, -2, -11) max (1, 1, -10) } -> 1e20 1e60 1e100 -> 10
+    ",
+    ) {
+        for value in values.split(' ') {
+            let scene = read(&format!("let s = {value} {scene}"));
+            let found = agrees(&resized(scene, 64, 64), 10);
+            assert!(found >= boundaries.parse().unwrap(), "{value}: {found}");
+        }
+    }
+    // Lenses of all ranges.
+    for (lens, expected) in [
+        ("d 1e-300 view_height 1e300", [0.0, 0.0, 0.0, 0.0]),
+        ("d 1e300 view_height 1e-30", [1.0, 1.0, 2.0, 2.0]),
+        ("d 1e300 view_height 1e300", [0.0, 1.0, 2.0, 0.0]),
+        ("d 1e-300 view_height 1e-300", [0.0, 1.0, 2.0, 0.0]),
+    ] {
+        let scene = read(&format!(
+            "camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
+             box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
+        ));
+        let both = Both::new(&resized(scene, 64, 64));
+        let mut random = Random::new(4);
+        // The boxes' common face is seen edge-on in the middle of the picture.
+        for (x, expected) in [0, 31, 32, 63].into_iter().zip(expected) {
+            assert_eq!(
+                both.color(x, 31, random.offset())[0],
+                expected,
+                "{lens}: {x}"
+            );
+        }
+    }
+}
+
+/// The two halves of a square, in front of red, beside the diagonal that crosses the middles of pixels.
+#[test]
+fn two_halves_of_a_square_leave_no_gap() {
+    for other in [
+        "v0 (-1, -1, 0) v1 (1, 1, 0) v2 (1, -1, 0)",
+        "v0 (1, 1, 0) v1 (-1, -1, 0) v2 (1, -1, 0)",
+        "v0 (1, -1, 0) v1 (1, 1, 0) v2 (-1, -1, 0)",
+    ] {
+        for eye in ["(0, 0, 2)", "(0.1, 0.2, -1.7)", "(1.2, 0.3, 0.9)"] {
+            let scene = read(&format!(
+                "image {{ width 40 height 40 background red }}
+                 camera {{ eye {eye} lookat (0, 0, 0) d 2 view_height 1 }}
+                 triangle {{ v0 (-1, -1, 0) v1 (1, 1, 0) v2 (-1, 1, 0) color white }}
+                 triangle {{ {other} color white }}"
+            ));
+            let scene = with_samples(&scene, Method::Regular, Count::PerPixel(1));
+            let (sampled, exact) = (sampled(&scene), exact(&scene));
+            let mut seen = 0;
+            for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
+                // Half of a gap would show; outside of the square both are 0.
+                assert!(sampled[0] == sampled[1] || *exact < 1.0, "from {eye}");
+                seen += u32::from(sampled[1] == 1.0);
+                if eye == "(0, 0, 2)" {
+                    assert!(
+                        *sampled == [1.0; 3] && (exact - 1.0).abs() <= 1e-9,
+                        "{exact}"
+                    );
+                }
+            }
+            assert!(seen > 400, "{seen} from {eye}");
+        }
+    }
+}
+
+#[test]
+fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
+    for [triangle, direction] in rows(
+        "
+        centroid (1e10, 1e100, -1e100) sides (1, 1, 1) -> (0.1, 0.7, -1)
+        centroid (0.1, 0.2, -1.7) sides (1e-95, 1e-95, 1e-95) -> (0.01, 0, -1)
+        centroid (0.1, 0.2, -1.7) sides (2e-300, 2e-300, 1e-300) -> (0.01, 0, -1)
+        centroid (0.1, 0.2, -1e160) sides (2, 2, 1) -> (0.01, 0, -1)
+    ",
+    ) {
+        let scene = read(&format!(
+            "image {{ width 300 height 200 background black }}
+             camera {{ eye (0.1, 0.2, 0.3) direction {direction} }}
+             sampler {{ per_pixel 1 }}
+             triangle {{ {triangle} normal (-0.3, 0.2, 1) color lime }}"
+        ));
+        for film in [sampled(&scene), exact(&scene).film] {
+            let greens = film.pixels().iter().map(|pixel| pixel[1]);
+            let most = greens.fold(0.0, f64::max);
+            assert!(most < 1e-12, "{triangle}: {most}");
+        }
+    }
 }

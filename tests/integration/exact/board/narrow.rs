@@ -1,7 +1,6 @@
 //! The board in views of less than a millionth of a degree.
 
-use super::super::{is_known, part_adds_up, read};
-use crate::{table::rows, tracer::Random};
+use super::*;
 
 /// A corner of squares close up, an odd number of squares from the eye: the share is as good as in any view.
 #[test]
@@ -10,7 +9,6 @@ fn a_corner_through_the_longest_lens() {
         is_known(&format!(
             "image {{ width 1 height 1 }}
              camera {{ eye (-1, 1, -4) direction (-1, -1, 1) d 1 view_height {height} }}
-             sampler {{ method exact }}
              checkerboard {{ colors (white, black) }}"
         ));
     }
@@ -30,11 +28,10 @@ fn the_horizon_through_the_longest_lenses() {
         let scene = read(&format!(
             "image {{ width 6 height 4 }}
              camera {{ {camera} }}
-             sampler {{ method exact }}
              checkerboard {{ y 0 square {square} }}
              {object}"
         ));
-        part_adds_up(&scene, "1,1,1,3".parse().unwrap(), camera);
+        part_adds_up(&scene, "1,1,1,3".parse().unwrap());
     }
 }
 
@@ -59,9 +56,8 @@ fn narrow_views_at_random() {
         let text = format!(
             "image {{ width 6 height 4 }}
              camera {{ eye (0.3, {height}, 0.2) direction ({cos}, {pitch:e}, {sin}) roll {roll}deg d {d:e} {far} }}
-             sampler {{ method exact }}
              checkerboard {{ y 0 square {square} }}"
         );
-        part_adds_up(&read(&text), "2,1,1,2".parse().unwrap(), &text);
+        part_adds_up(&read(&text), "2,1,1,2".parse().unwrap());
     }
 }

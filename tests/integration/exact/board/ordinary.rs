@@ -2,10 +2,9 @@
 
 use std::fmt::Write;
 
-use super::super::{agrees_with_samples, exact, part_adds_up, read};
-use crate::{
-    effort::{Effort, sampled_and_exhaustive},
-    tracer::Random,
+use super::{
+    super::{adds_up, agrees_with_samples},
+    *,
 };
 
 /// A view of a board, with some objects on it or without.
@@ -32,25 +31,21 @@ fn view(random: &mut Random) -> String {
          camera {{ eye ({off}, {height}, {off}) direction ({x}, {y}, {z}) roll {roll}deg fov {fov}deg }}
          checkerboard {{ y 0 square {square:e} colors (white, black) }}\n"
     );
-    for color in ["red", "lime", "gold"].iter().take(which / 512 % 4) {
+    for shape in ["sphere", "box", "box"].iter().take(which / 512 % 4) {
         let distance = height * libm::exp10(number(0.0, 1.0)) / libm::sqrt(x * x + y * y + z * z);
         let mut near = |place: f64| place + 0.4 * distance * number(-1.0, 1.0);
         let [cx, cy, cz] = [
-            near(off + x * distance),
-            near(height + y * distance),
-            near(off + z * distance),
-        ];
-        let radius = 0.4 * distance * number(0.1, 1.0);
-        let _ = match *color {
-            "red" => writeln!(
-                text,
-                "sphere {{ center ({cx}, {cy}, {cz}) radius {radius} color red }}"
-            ),
-            color => writeln!(
-                text,
-                "box {{ center ({cx}, {cy}, {cz}) size ({radius}, {radius}, {radius}) color {color} }}"
-            ),
+            off + x * distance,
+            height + y * distance,
+            off + z * distance,
+        ]
+        .map(&mut near);
+        let size = 0.4 * distance * number(0.1, 1.0);
+        let size = match *shape {
+            "sphere" => format!("radius {size} color red"),
+            _ => format!("size ({size}, {size}, {size}) color lime"),
         };
+        let _ = writeln!(text, "{shape} {{ center ({cx}, {cy}, {cz}) {size} }}");
     }
     text
 }
@@ -65,15 +60,11 @@ fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
         let text = view(&mut random);
         let scene = read(&text);
         let computed = exact(&scene);
-        let bound = computed.bound();
+        let (bound, bounds) = (computed.bound(), computed.bounds.iter());
         assert!(bound <= 1e-9, "{bound:e} of {text}");
-        pixels += computed.bounds.len();
-        above += computed
-            .bounds
-            .iter()
-            .filter(|bound| **bound > 1e-11)
-            .count();
-        agrees_with_samples(&scene, &computed, 64, &text);
+        pixels += bounds.len();
+        above += bounds.filter(|bound| **bound > 1e-11).count();
+        agrees_with_samples(&scene, &computed, 64);
     }
     let share = 100.0 * above as f64 / pixels as f64;
     println!("{above} of {pixels} bounds, {share:.2} %, are above 1e-11");
@@ -83,7 +74,6 @@ fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
 fn four_quarters_are_the_pixel_of_ordinary_views() {
     let mut random = Random::new(37);
     for _ in 0..30 {
-        let text = view(&mut random);
-        part_adds_up(&read(&text), "0,0,24,16".parse().unwrap(), &text);
+        adds_up(&read(&view(&mut random)));
     }
 }

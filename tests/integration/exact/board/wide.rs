@@ -1,10 +1,6 @@
 //! The board in views of nearly 180 degrees: the bound is honest there, however large it is.
 
-use super::super::{part_adds_up, read};
-use crate::{
-    effort::{Effort, sampled_and_exhaustive},
-    table::rows,
-};
+use super::{super::adds_up, *};
 
 /// Boards in views so wide that a pixel may see thousands of squares one behind another, a strip narrower than a square, all lines of the board in one
 /// point, or a billion rows.
@@ -33,9 +29,9 @@ fn four_quarters_are_the_pixel_of_the_widest_views(effort: Effort) {
         for square in ["6.3", "0.013", "1e-300"] {
             let scene = read(&format!(
                 "image {{ {image} }} camera {{ {camera} }}
-                 sampler {{ method exact }} checkerboard {{ y 0 square {square} }}"
+                 checkerboard {{ y 0 square {square} }}"
             ));
-            part_adds_up(&scene, area.parse().unwrap(), &format!("{camera} {square}"));
+            part_adds_up(&scene, area.parse().unwrap());
         }
     }
 }
@@ -51,10 +47,9 @@ fn outlines_at_a_wide_horizon(effort: Effort) {
         let scene = read(&format!(
             "image {{ width 6 height 6 }}
              camera {{ {camera} }}
-             sampler {{ method exact }}
              checkerboard {{ y 0 square {square} }}
              sphere {{ {sphere} color red }}"
         ));
-        part_adds_up(&scene, "0,0,6,6".parse().unwrap(), camera);
+        adds_up(&scene);
     }
 }

@@ -1,4 +1,4 @@
-//! The scene of the assignment, for the tests that need one.
+//! The scene of the assignment.
 
 use pinhole::{
     scene::{self, Count, Method, Scene},

@@ -1,0 +1,160 @@
+//! Scenes of random numbers, for what holds of every scene.
+
+use std::iter;
+
+use pinhole::scene::{self, Scene};
+
+use crate::{scenes::sources, tracer::Random};
+
+/// Which numbers a scene has.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Numbers {
+    /// Multiples of a unit. Of 1/2, eyes are on surfaces, rays in planes, through corners and along edges, faces in common planes and at the
+    /// depth of the near and the far plane.
+    MultiplesOf(f64),
+    /// Some whole, some round, some neither; but so many of a hundred have any size.
+    Wild(u64),
+}
+
+/// Pictures of up to eleven objects in each other's way, as texts and as scenes, without end.
+pub fn generated(
+    numbers: Numbers,
+    size: [u32; 2],
+    seed: u64,
+) -> impl Iterator<Item = (String, Scene)> {
+    let mut generator = Generator {
+        random: Random::new(seed),
+        numbers,
+        shared: [1.0; 3],
+    };
+    let texts = iter::repeat_with(move || generator.scene(size));
+    // Others have mistakes: a triangle's sides, a direction of length 0.
+    texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
+}
+
+struct Generator {
+    random: Random,
+    numbers: Numbers,
+    /// Numbers that several things of the scene have.
+    shared: [f64; 3],
+}
+
+impl Generator {
+    fn below(&mut self, n: u64) -> u64 {
+        self.random.bits() % n
+    }
+
+    fn choose<T: Copy>(&mut self, among: &[T]) -> T {
+        among[self.random.bits() as usize % among.len()]
+    }
+
+    /// A number of up to a size if it is not one of any size.
+    fn number(&mut self, size: f64) -> f64 {
+        let ordinary = self.random.within(-size, size);
+        let wild = match self.numbers {
+            Numbers::MultiplesOf(unit) => return (ordinary / unit).round() * unit,
+            Numbers::Wild(share) => self.below(100) < share,
+        };
+        let sign = ordinary.signum();
+        match self.below(10) {
+            0 if wild => sign * 5e-324,
+            1 if wild => sign * f64::MIN_POSITIVE,
+            2 if wild => sign * f64::MAX,
+            3 if wild => sign * 0.0,
+            4 if wild => sign * self.choose(&self.shared.clone()).next_up(),
+            5 if wild => sign * self.choose(&self.shared.clone()),
+            6 | 7 if wild => sign * libm::exp10(self.random.within(-20.0, 20.0)),
+            _ if wild => sign * libm::exp10(self.random.within(-323.0, 308.0)),
+            0 | 1 => ordinary.round(),
+            2 | 3 => (8.0 * ordinary).round() / 8.0,
+            _ => ordinary,
+        }
+    }
+
+    /// A number above 0, as those of 0 are mistakes.
+    fn length(&mut self, size: f64) -> f64 {
+        match self.number(size).abs() {
+            0.0 => size,
+            length => length,
+        }
+    }
+
+    fn vector(&mut self, size: f64) -> String {
+        let [x, y, z] = [(); 3].map(|()| self.number(size));
+        format!("({x:?}, {y:?}, {z:?})")
+    }
+
+    fn color(&mut self) -> &'static str {
+        self.choose(&[
+            "black", "white", "red", "olive", "#012345", "gold", "cyan", "lime",
+        ])
+    }
+
+    fn scene(&mut self, [width, height]: [u32; 2]) -> String {
+        self.shared = [(); 3].map(|()| self.number(2.0));
+        let (background, eye) = (self.color(), self.vector(6.0));
+        let view = self.choose(&["direction", "lookat", "lookat", "lookat", "lookat"]);
+        let mut camera = format!("eye {eye} {view} {}", self.vector(1.0));
+        if self.below(3) == 0 {
+            camera += &format!(" up {}", self.vector(1.0));
+        }
+        if self.below(3) == 0 {
+            camera += &format!(" roll {:?}deg", 90.0 * self.number(2.0));
+        }
+        camera += &match self.below(5) {
+            0 => format!(" d {:?}", self.length(2.0)),
+            1 | 2 => format!(" fov {:?}deg", 70.0 * self.length(2.0)),
+            3 => format!(" hfov {:?}deg", 80.0 * self.length(2.0)),
+            _ => " view_height 4".to_owned(),
+        };
+        for (clip, size) in [("near", 3.0), ("far", 12.0)] {
+            if self.below(5) == 0 {
+                camera += &format!(" {clip} {:?}", self.length(size));
+            }
+        }
+        let objects: String = (0..2 + self.below(10)).map(|_| self.object()).collect();
+        format!(
+            "image {{ width {width} height {height} background {background} }} camera {{ {camera} }}\n{objects}"
+        )
+    }
+
+    fn object(&mut self) -> String {
+        let [color, other] = [(); 2].map(|()| self.color());
+        let center = self.vector(2.0);
+        let shape = match self.below(8) {
+            0 | 1 => format!("sphere {{ center {center} radius {:?}", self.length(1.25)),
+            // Those with a vertex beyond 1e95 are wrong yet: what samples, culled or not, and sums say of them differs.
+            2 if !matches!(self.numbers, Numbers::Wild(1..)) => format!(
+                "triangle {{ v0 {center} v1 {} v2 {}",
+                self.vector(2.0),
+                self.vector(2.0)
+            ),
+            2..=4 => {
+                let [a, b] = [(); 2].map(|()| self.length(2.5));
+                // No longer than the other two together, and often just as long; or a triangle whose vertices are rational.
+                let sides = match self.below(4) {
+                    0 => [a, b, a + b],
+                    1 => [a, b, (a - b).abs()],
+                    2 => [a, b, a.max(b)],
+                    _ => [2.5, 2.5, 3.0],
+                };
+                let (normal, spin) = (self.vector(1.0), 90.0 * self.number(2.0));
+                let [a, b, c] = sides;
+                format!(
+                    "triangle {{ centroid {center} normal {normal} sides ({a:?}, {b:?}, {c:?}) spin {spin:?}deg"
+                )
+            }
+            5 | 6 => {
+                let [x, y, z] = [(); 3].map(|()| self.length(2.0));
+                format!("box {{ center {center} size ({x:?}, {y:?}, {z:?})")
+            }
+            _ => {
+                let (y, square) = (self.number(2.0), self.length(1.5));
+                return format!(
+                    "checkerboard {{ y {y:?} square {square:?} colors ({color}, {other}) }}\n"
+                );
+            }
+        };
+        format!("{shape} color {color} }}\n")
+    }
+}
