@@ -133,18 +133,32 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     let most = search.work.keep(0.5);
     let tiny = search.made_to_compare(&from.candidate)?;
     tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
+    let are_all_numbers_tried = search.work.may_go_on();
     search.work.restore(most);
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
     let finalists = tried
         .into_iter()
         .take(FINALISTS)
         .map(|(_, candidate)| candidate);
-    let judged = finalists.filter_map(|candidate| likelier(search, from, candidate));
-    let judged = judged.filter_map(|found| refined(search, found));
-    let mut judged: Vec<Found> = judged.collect();
+    let unfitted = finalists.filter_map(|candidate| likelier(search, from, candidate));
+    let mut unfitted: Vec<Found> = unfitted.collect();
+    unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    let mut judged: Vec<Found> = Vec::new();
+    // What explains all is taken to be beaten only by what has fewer numbers: more of them come nearer before all are fitted to the end.
+    let mut fewest = usize::MAX;
+    for found in unfitted {
+        if found.candidate.fitted() < fewest
+            && let Some(found) = refined(search, found)
+        {
+            if !is_open && search.explains_all(&found) {
+                fewest = found.candidate.fitted();
+            }
+            judged.push(found);
+        }
+    }
     judged.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     // Where not all were tried, the best of them need not be the best of all; what explains all is.
-    let are_all_tried = search.work.may_go_on() && !search.work.is_cut();
+    let are_all_tried = search.work.may_go_on() && are_all_numbers_tried;
     let is_better = |best: &Found| {
         let is_likelier = match is_open {
             true => search.gain(&search.middle, from, best) > 0.0,

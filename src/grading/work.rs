@@ -17,8 +17,8 @@ const PIXEL: f64 = 41.0;
 /// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking whether it hits a shape, and of comparing a cell.
 const WORLD_OBJECT: f64 = 20.0;
 const OBJECT: f64 = 6.0;
-const RAY: f64 = 2.0;
-const TEST: f64 = 0.05;
+const RAY: f64 = 0.5;
+const TEST: f64 = 0.08;
 const CELL: f64 = 2.0;
 
 /// The work that was spent, and how much may be.
@@ -103,14 +103,16 @@ impl<'a> Work<'a> {
         Some(Moments { mean, variance })
     }
 
-    /// A part of a picture of so many objects is to be sampled; none if that takes too much.
+    /// A part of a picture of so many objects is to be sampled; none if that takes more than is left, which is spent then.
     pub fn sampled(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;
         let all = objects * OBJECT + rays * (RAY + TEST * objects) + CELL * cells;
-        let is_too_much = self.spent.get() + all > self.most.get();
-        self.is_cut.set(self.is_cut.get() || is_too_much);
-        (!is_too_much).then(|| self.spend(all))
+        let left = (self.most.get() - self.spent.get()).max(0.0);
+        self.spend(all.min(left));
+        let fits = all <= left;
+        self.is_cut.set(self.is_cut.get() || !fits);
+        fits.then_some(())
     }
 
     /// So many cells are compared.
