@@ -188,11 +188,10 @@ impl Candidate {
         work: &Work,
     ) -> Option<Made> {
         let part = self.layout.sources(grid.cells, grid.size());
+        // Objects are seen only where they are.
+        let is_in_place = self.behaviour.behind == Behind::Unseen && !self.behaviour.is_squeezed;
         let is_alike = |like: &&Made| {
             let other = &like.candidate;
-            // Other behaviour is told by samples alone, and may show objects where they are not.
-            let is_in_place =
-                self.behaviour.behind == Behind::Unseen && !self.behaviour.is_squeezed;
             let behaves = samples.is_none() || other.behaviour == self.behaviour && is_in_place;
             let are_shifted = other.layout.is_shifted() == self.layout.is_shifted();
             like.part == part && are_shifted && behaves
@@ -232,8 +231,20 @@ impl Candidate {
             }
             _ => Arc::new(render(part)?),
         };
+        let is_local = is_in_place || changed.is_some_and(|changed| changed.pixels() == 0);
+        let is_near = |like: &&Made| like.candidate.behaviour == self.behaviour && is_local;
+        let near = like.filter(is_near).and_then(|like| like.behaved.clone());
         let behaved = match samples.is_none() && self.behaviour != Behaviour::RIGHT {
-            true => Some(Arc::new(behaved(&right, &sampled, self.behaviour, part)?)),
+            true => {
+                let doubt = || vec![[0.0; 3]; right.mean.len()];
+                let (mut behaved, area) = match near.zip(changed) {
+                    Some((near, changed)) => (near, changed),
+                    None => (Arc::new((Moments::clone(&right), doubt())), part),
+                };
+                let all = Arc::make_mut(&mut behaved);
+                behave(all, &right, &sampled, self.behaviour, [area, part])?;
+                Some(behaved)
+            }
             false => None,
         };
         Some(Made {
@@ -321,24 +332,29 @@ impl Candidate {
     }
 }
 
-/// What samples show of a program that behaves otherwise, which no scene can say, and the variance of these means; where samples of a right one show the same,
-/// it is what that shows exactly.
-fn behaved(
+/// Puts what samples show of a program that behaves otherwise, which no scene can say, and the variance of these means, into an area of a part; where samples of
+/// a right one show the same, it is what that shows exactly.
+fn behave(
+    (behaved, doubt): &mut (Moments, Vec<[f64; 3]>),
     right: &Moments,
     sampled: &dyn Fn(Behaviour, Area, usize) -> Option<Moments>,
     behaviour: Behaviour,
-    part: Area,
-) -> Option<(Moments, Vec<[f64; 3]>)> {
-    let own = sampled(Behaviour::RIGHT, part, SAMPLES)?;
-    let mut behaved = sampled(behaviour, part, SAMPLES)?;
-    let mut doubt = vec![[0.0; 3]; own.mean.len()];
-    for at in 0..own.mean.len() {
-        let is_alike = |one: &[[f64; 3]], other: &[[f64; 3]]| one[at] == other[at];
-        if is_alike(&own.mean, &behaved.mean) && is_alike(&own.variance, &behaved.variance) {
-            (behaved.mean[at], behaved.variance[at]) = (right.mean[at], right.variance[at]);
-        } else {
-            doubt[at] = behaved.variance[at].map(|one| one / SAMPLES as f64 + MISSED * MISSED);
-        }
+    [area, part]: [Area; 2],
+) -> Option<()> {
+    let own = sampled(Behaviour::RIGHT, area, SAMPLES)?;
+    let other = sampled(behaviour, area, SAMPLES)?;
+    for (from, (x, y)) in area.iter().enumerate() {
+        let at = part.index(x, y);
+        let is_alike = |one: &[[f64; 3]], other: &[[f64; 3]]| one[from] == other[from];
+        (behaved.mean[at], behaved.variance[at], doubt[at]) =
+            match is_alike(&own.mean, &other.mean) && is_alike(&own.variance, &other.variance) {
+                true => (right.mean[at], right.variance[at], [0.0; 3]),
+                false => {
+                    let variance = other.variance[from];
+                    let doubt = variance.map(|one| one / SAMPLES as f64 + MISSED * MISSED);
+                    (other.mean[from], variance, doubt)
+                }
+            };
     }
-    Some((behaved, doubt))
+    Some(())
 }

@@ -17,8 +17,8 @@ const PIXEL: f64 = 41.0;
 /// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking whether it hits a shape, and of comparing a cell.
 const WORLD_OBJECT: f64 = 20.0;
 const OBJECT: f64 = 6.0;
-const RAY: f64 = 0.5;
-const TEST: f64 = 0.08;
+const RAY: f64 = 0.3;
+const TEST: f64 = 0.06;
 const CELL: f64 = 2.0;
 
 /// The work that was spent, and how much may be.
