@@ -56,7 +56,7 @@ impl<T: Real> Ball<T> {
 
     /// The rounding of a more precise number.
     pub fn from_big(x: &Big) -> Self {
-        Self::rounded(T::from_big(x), T::Radius::ZERO)
+        Self::rounded(T::from_big(x), lost_of::<T>(x.is_zero()))
     }
 
     /// The size of its middle.
@@ -345,5 +345,12 @@ mod tests {
         assert_eq!((&overflow - &overflow).sign(), Err(Doubt));
         assert_eq!(overflow.compare(&huge), Err(Doubt));
         assert_eq!((&huge / &Ball::exact(0.0)).sign(), Err(Doubt));
+    }
+
+    #[test]
+    fn underflow_is_doubt() {
+        let tiny = Big::from_f64(1e-300).scaled(-1000);
+        assert_eq!(Ball::<Double>::from_big(&tiny).sign(), Err(Doubt));
+        assert_eq!(Ball::<Big>::from_big(&tiny).sign(), Ok(Ordering::Greater));
     }
 }

@@ -35,16 +35,26 @@ fn by_vertices<T: Real>(
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     let plane = SeenPlane::through(camera, vertices)?;
     let corners = vertices.map(|vertex| camera.turned(&camera.relative(vertex)));
-    // a × b = a × (b − a). The edges' forms matter by their signs alone, so each may have a scale of its own.
-    let edge = |a: usize, b: usize| {
-        let along: Ball3<T> = array::from_fn(|i| Ball::difference(vertices[b][i], vertices[a][i]));
-        cross(
-            &scaled_to_one(&corners[a]),
-            &camera.turned(&scaled_to_one(&along)),
-        )
-    };
+    let edge = |a: usize, b: usize| edge(camera, &corners[a], vertices[a], vertices[b]);
     let triangle = plane.with_edges(camera, [edge(0, 1), edge(1, 2), edge(2, 0)]);
     Some((triangle, corners))
+}
+
+/// The normal a × b of the plane through the eye and an edge from a corner to another. Its form matters by its sign alone, so it may have a scale of
+/// its own.
+fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
+    // a × b = a × (b − a)
+    let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
+    let along = camera.turned(&scaled_to_one(&along));
+    let normal = cross(&scaled_to_one(corner), &along);
+    let is_certain = |x: &Ball<T>| x.is_precise() && x.sign().is_ok();
+    if !T::LAST && normal.iter().all(is_certain) {
+        return normal;
+    }
+    // Corners may be so far away that they are in one direction but for hundreds of bits.
+    let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
+    let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
+    camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
 }
 
 fn by_centroid<T: Real>(

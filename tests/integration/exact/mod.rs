@@ -21,7 +21,7 @@ use crate::{
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
     scenes::{exact, example, example_names, resized, sampled, scenes, whole, with_samples},
-    table::rows,
+    table::{list, rows},
     tracer::Random,
 };
 

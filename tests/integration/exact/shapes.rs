@@ -30,9 +30,16 @@ fn half_planes() {
         is_share(&format!("{AHEAD} roll 90deg"), &object, expected);
     }
     // Rolled by 45° about an edge through the pixel's centre, and by any angle: half of it.
-    for roll in [45.0, 1e-9, 17.0, 89.999999] {
-        let object = "box { min (-100, -100, -5) max (0, 100, -4) color white }";
-        is_share(&format!("{AHEAD} roll {roll}deg"), object, 0.5);
+    for object in list(
+        "
+        box { min (-100, -100, -5) max (0, 100, -4) color white }
+        triangle { v0 (0, 1e97, -4) v1 (0, -9, -4) v2 (-9, -9, -4) color white }
+        triangle { v0 (0, 1e308, -4) v1 (0, -1e307, -4) v2 (-9, -9, -4) color white }
+        ",
+    ) {
+        for roll in [45.0, 1e-9, 17.0, 89.999999] {
+            is_share(&format!("{AHEAD} roll {roll}deg"), object, 0.5);
+        }
     }
 }
 
