@@ -1,10 +1,8 @@
 //! The answers to one who writes a scene: a text with `$0` where the cursor is, and what comes of it.
 
-mod completion;
-mod hover;
-mod names;
+mod answers;
 mod prefixes;
-mod shape;
+mod rules;
 mod viewport;
 mod words;
 
