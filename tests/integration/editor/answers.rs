@@ -4,17 +4,31 @@
 
 use std::{fs, path::Path};
 
+use glam::dvec2;
 use pinhole::{
     color::Color,
-    diagnostic::apply,
+    diagnostic::{Fix, apply},
     editor::{
         Analysis, Completion, Piece, Symbol, completions, definition, fixes, folds, formatting,
-        hints, hover, occurrences, presentations, renamable, rename, signature, swatches, symbols,
+        hints, hover, occurrences, presentations, renamable, rename, semantic_tokens, signature,
+        swatches, symbols,
+        viewport::{Along, Drag, drag},
     },
     source::{SourceId, Span},
 };
 
-use crate::{program::names, scenes::sources, snapshot::assert_file};
+use crate::{
+    program::names,
+    scenes::{read, sources},
+    snapshot::assert_file,
+};
+
+/// What stands before a text in which an object is dragged.
+const LEVEL: &str =
+    "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
+
+/// What stands before a camera that is moved.
+const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
 /// The labels of all that is offered, by their kinds.
 fn offered(all: &[Completion]) -> String {
@@ -78,6 +92,34 @@ fn outline(symbols: &[Symbol]) -> String {
         format!("{} [{}]", shown(symbol), children.join(", "))
     });
     lines.collect::<Vec<_>>().join(" | ")
+}
+
+/// The text after a handle was moved; or why it cannot be.
+pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
+    let sources = sources(text);
+    let dragged = drag(&Analysis::new(&sources), &read(text), moved)?;
+    Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
+}
+
+/// The text behind a start of it, of which a handle was dragged as the words say: its name, the points, and along what.
+fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
+    let words: Vec<&str> = words.split(' ').collect();
+    let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
+    let (from, to, along) = match object {
+        Some(_) => (1, 1, words.get(3)),
+        None => (1, 3, None),
+    };
+    let moved = Drag {
+        object,
+        handle: words[0],
+        from: point(from),
+        to: point(to),
+        along: along.and_then(|along| Along::named(along)),
+    };
+    match dragged(&format!("{start}{text}"), &moved) {
+        Ok(text) => text[start.len()..].to_owned(),
+        Err(why) => why,
+    }
 }
 
 /// What is answered to a question. The text that [`Color`]s are picked for stands in brackets.
@@ -152,9 +194,19 @@ fn answer(question: &str, text: &str, other: &str) -> String {
                 format!("{}: {text}", diagnostic.code.replace("pinhole::", ""))
             })
             .collect(),
+        "words" => semantic_tokens(analysis)
+            .into_iter()
+            .map(|token| {
+                let mark = if token.is_declaration { "!" } else { "" };
+                format!("{}:{:?}{mark}", analysis.slice(token.span), token.kind)
+            })
+            .collect(),
+        "dragged" if text.contains("camera") => vec![after_drag("", text, Some(0), other)],
+        "dragged" => vec![after_drag(LEVEL, text, Some(0), other)],
+        "moved" => vec![after_drag(SEEN, text, None, other)],
         _ => panic!("{question}"),
     };
-    parts.join(" | ")
+    parts.join(if question == "words" { " " } else { " | " })
 }
 
 #[test]
