@@ -11,15 +11,10 @@ use pinhole::{
 use serde_json::Value;
 
 use crate::{
-    scenes::{read, sources},
+    scenes::{example_text as example, read, sources},
     table::rows,
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
-
-fn example(name: &str) -> String {
-    let path = format!("{}/examples/{name}.scn", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).unwrap()
-}
 
 fn inspected(text: &str) -> Inspection {
     inspect(&read(text), &sources(text).file)

@@ -1,17 +1,12 @@
 //! The answers to one who writes a scene: a text with `$0` where the cursor is, and what comes of it.
 
-mod completion;
-mod hover;
-mod names;
+mod answers;
+mod drags;
 mod prefixes;
-mod shape;
-mod viewport;
+mod rules;
 mod words;
 
-use pinhole::{
-    editor::Analysis,
-    source::{Sources, Span},
-};
+use pinhole::{editor::Analysis, source::Sources};
 
 use crate::scenes::sources;
 
@@ -31,9 +26,4 @@ fn at_cursor<T>(text: &str, ask: impl FnOnce(&Analysis<'_>, usize) -> T) -> T {
 /// What is asked of a whole text.
 fn of_whole<T>(text: &str, ask: impl FnOnce(&Analysis<'_>) -> T) -> T {
     ask(&Analysis::new(&sources(text)))
-}
-
-/// The text under a span.
-fn under<'s>(analysis: &Analysis<'s>, span: Span) -> &'s str {
-    analysis.slice(span)
 }

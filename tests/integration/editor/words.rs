@@ -1,4 +1,4 @@
-//! What each word is, for colouring: by its place alone, and as the tree has it.
+//! What each word is, for colouring, is what the tree has it for.
 
 use std::{collections::BTreeMap, fs};
 
@@ -12,39 +12,8 @@ use pinhole::{
     },
 };
 
-use super::{of_whole, sources, under};
-use crate::{scenes::scenes, table::rows};
-
-/// The tokens, each with the first letters of what it is.
-fn shown(text: &str) -> String {
-    of_whole(text, |analysis| {
-        let tokens = semantic_tokens(analysis).into_iter().map(|token| {
-            let mark = if token.is_declaration { "!" } else { "" };
-            format!("{}:{:?}{mark}", under(analysis, token.span), token.kind)
-        });
-        tokens.collect::<Vec<_>>().join(" ")
-    })
-}
-
-#[test]
-fn words_are_what_their_place_makes_them() {
-    let table = r#"
-        let a = sin(30deg) // b -> let:Keyword a:Variable! =:Operator sin:Function 30deg:Number // b:Comment
-        sphere Ball { center a color olive radius -2 * pi } -> sphere:Keyword Ball:Class center:Property a:Variable color:Property olive:EnumMember radius:Property -:Operator 2:Number *:Operator pi:EnumMember
-        sampler { method sobol } image { background #fff } -> sampler:Keyword method:Property sobol:EnumMember image:Keyword background:Property #fff:Number
-        -- While others are typed.
-        sphere { radius color olive } -> sphere:Keyword radius:Property color:Property olive:EnumMember
-        let a =\nsphere { radius 1 } -> let:Keyword a:Variable! =:Operator sphere:Keyword radius:Property 1:Number
-        sphere {\n  center (0, 1\n  radius 2\nbox Crate { size -> sphere:Keyword center:Property 0:Number 1:Number radius:Property 2:Number box:Keyword Crate:Class size:Property
-        -- No word reaches into a comment.
-        "//"a -> //"a:Comment
-        '/*\na -> /*\na:Comment
-        let a = "/**/"// -> let:Keyword a:Variable! =:Operator /**/:Comment //:Comment
-    "#;
-    for [text, expected] in rows(table) {
-        assert_eq!(shown(text), expected, "{text}");
-    }
-}
+use super::{of_whole, sources};
+use crate::scenes::scenes;
 
 /// What the tree says of each word of a text without mistakes of syntax.
 fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
@@ -118,7 +87,7 @@ fn places_and_trees_agree() {
             let tokens = semantic_tokens(analysis).into_iter();
             let tokens: BTreeMap<_, _> = tokens.map(|token| (token.span, token.kind)).collect();
             for (span, kind) in words {
-                let (found, word) = (tokens.get(&span), under(analysis, span));
+                let (found, word) = (tokens.get(&span), analysis.slice(span));
                 assert_eq!(found, Some(&kind), "{} {word:?}", path.display());
             }
         })

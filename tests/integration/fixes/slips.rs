@@ -75,8 +75,6 @@ const ROWS: &str = r#"
     -- Words of other programs and other habits.
     sphere { location (0, 0, 0) } -> unknown_field -> sphere { center (0, 0, 0) }
     sphere { center (0, 0, 0)  diameter 2 } -> unknown_field -> sphere { center (0, 0, 0)  radius 1 }
-    sphere { center (0, 0, 0)  radius2 } -> missing_space -> sphere { center (0, 0, 0)  radius 2 }
-    sphere { center (0, 0, 0)  colorred } -> missing_space -> sphere { center (0, 0, 0)  color red }
     sphere { center (0, 0, 0)  color ff0000 } -> unknown_color -> sphere { center (0, 0, 0)  color #ff0000 }
     triangle { center (0, 1, 0)  normal (0, 0, 1) } -> unknown_field -> triangle { centroid (0, 1, 0)  normal (0, 0, 1) }
     triangle { vertices ((0, 0, 0), (1, 0, 0), (0, 1, 0)) } -> unknown_field -> triangle { v0 (0, 0, 0)  v1 (1, 0, 0)  v2 (0, 1, 0) }

@@ -1,13 +1,13 @@
 //! The warning of cameras that see nothing: when it comes, and that it is never false.
 
-use pinhole::{
-    area::Area,
-    render::{Control, render_exact},
-    tracer::World,
-};
+use pinhole::{color::Color, scene};
 
 use super::codes;
-use crate::{scenes::read, table::rows, tracer::Random};
+use crate::{
+    generated::{Numbers, generated},
+    scenes::{exact, sources},
+    table::rows,
+};
 
 /// Rows of a camera, objects, and what is said; where there are no objects, a ball is looked for.
 #[test]
@@ -44,41 +44,22 @@ fn a_camera_that_sees_nothing_is_warned_of() {
     }
 }
 
+/// The first objects of generated scenes, by themselves.
 #[test]
 fn a_warning_is_never_false_and_comes_often_enough() {
-    let mut random = Random::new(3);
     let (mut warned, mut black) = (0, 0);
-    for round in 0..250 {
-        let mut number = |low: f64, high: f64| random.within(low, high);
-        let mut vector = |size: f64| {
-            let [x, y, z] = [(); 3].map(|()| number(-size, size));
-            format!("({x}, {y}, {z})")
+    for (text, _) in generated(Numbers::Wild(0), [12, 8], 3).take(400) {
+        let (settings, objects) = text.split_once('\n').unwrap();
+        let (object, _) = objects.split_once('\n').unwrap();
+        let text = format!("{settings}\n{}", object.replace("black", "white"));
+        let Some(mut scene) = scene::read(&sources(&text)).scene else {
+            continue;
         };
-        let (a, b, c) = (vector(3.0), vector(3.0), vector(3.0));
-        let radius = [0.1, 0.5, 0.9, 1.5][round % 4];
-        let objects = match round % 5 {
-            0 => format!("sphere {{ center {a}  radius {radius}  color white }}"),
-            1 => format!("triangle {{ v0 {a}  v1 {b}  v2 {c}  color white }}"),
-            2 => format!("box {{ center {a}  color white }}"),
-            3 => format!("triangle {{ centroid {a}  normal {b}  color white }}"),
-            _ => "checkerboard { colors (white, white) }".to_owned(),
-        };
-        let (eye, lookat) = (vector(4.0), vector(2.0));
-        let (roll, angle) = (number(-180.0, 180.0), number(10.0, 120.0));
-        let clip = match round % 3 {
-            0 => format!("near {}  far {}", number(0.1, 3.0), number(3.0, 6.0)),
-            _ => String::new(),
-        };
-        let lens = ["fov", "hfov"][round % 2];
-        let text = format!(
-            "image {{ width 12  height 8 }}
-             camera {{ eye {eye}  lookat {lookat}  roll {roll}deg  {lens} {angle}deg  {clip} }}
-             {objects}"
-        );
-        let is_warned = codes(&text) == "nothing_seen";
-        let control = Control::default();
-        let exact = render_exact(&World::new(&read(&text)), Area::whole(12, 8), &control).unwrap();
-        let is_black = (0..8).all(|y| exact.film.row(y).iter().all(|pixel| pixel[0] <= 1e-9));
+        scene.image.background = Color::BLACK;
+        let is_warned = codes(&text).contains("nothing_seen");
+        let film = exact(&scene).film;
+        let is_dark = |pixel: &[f64; 3]| pixel.iter().all(|&part| part <= 1e-9);
+        let is_black = (0..8).all(|y| film.row(y).iter().all(is_dark));
         assert!(is_black || !is_warned, "{text}");
         warned += u32::from(is_warned);
         black += u32::from(is_black);

@@ -1,8 +1,11 @@
 //! A plain client: it writes messages, and reads every one that comes back.
 
 use std::{
-    io::{BufRead, BufReader, Read, Write},
-    process::{Child, ChildStdin, ChildStdout, Command, Stdio},
+    io::{BufRead, BufReader, Write},
+    process::{Child, ChildStdin, Command, Stdio},
+    sync::mpsc::{self, Receiver, RecvTimeoutError},
+    thread,
+    time::Duration,
 };
 
 use serde_json::{Value, json};
@@ -40,7 +43,11 @@ impl<C: Carrier> Client<C> {
         serde_json::from_str(&self.carrier.read()).expect("JSON")
     }
 
-    pub fn tell(&mut self, method: &str, params: Value) {
+    /// Tells something; of the document, if it is about one.
+    pub fn tell(&mut self, method: &str, mut params: Value) {
+        if method.starts_with("textDocument/") {
+            params["textDocument"]["uri"] = C::URI.into();
+        }
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
@@ -83,13 +90,6 @@ impl<C: Carrier> Client<C> {
         response["result"].clone()
     }
 
-    /// The message of the error that a request gets.
-    pub fn refused(&mut self, method: &str, params: Value) -> String {
-        let response = self.respond(method, params);
-        let message = response["error"]["message"].as_str();
-        message.expect("it is refused").to_owned()
-    }
-
     /// The parameters of the next notification of this name.
     pub fn told(&mut self, method: &str) -> Value {
         self.next(|message| message["method"] == method)["params"].take()
@@ -104,28 +104,27 @@ impl<C: Carrier> Client<C> {
     pub fn open(&mut self, capabilities: Value, text: &str) {
         self.ask("initialize", json!({ "capabilities": capabilities }));
         self.tell("initialized", json!({}));
-        let document = json!({ "uri": C::URI, "languageId": "scn", "version": 1, "text": text });
+        let document = json!({ "languageId": "scn", "version": 1, "text": text });
         self.tell("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
     /// Tells of a change that makes a version of the text.
     pub fn change(&mut self, version: usize, change: Value) {
-        let document = json!({ "uri": C::URI, "version": version });
+        let document = json!({ "version": version });
         let params = json!({ "textDocument": document, "contentChanges": [change] });
         self.tell("textDocument/didChange", params);
     }
-
-    pub fn close(&mut self) {
-        let document = json!({ "uri": C::URI });
-        self.tell("textDocument/didClose", json!({ "textDocument": document }));
-    }
 }
+
+/// The longest that anything may take.
+pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The program's standard streams.
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
+    /// The texts of its messages, which a thread of its own reads, so that none is waited for without end.
+    said: Receiver<String>,
 }
 
 impl Pipes {
@@ -143,22 +142,27 @@ impl Carrier for Pipes {
         self.put(&format!("Content-Length: {}\r\n\r\n{text}", text.len()));
     }
 
-    /// Everything up to it belongs to it.
     fn read(&mut self) -> String {
-        let mut line = || {
-            let mut line = String::new();
-            self.output.read_line(&mut line).expect("text");
-            line
-        };
-        let (header, end) = (line(), line());
-        let length = header.strip_prefix("Content-Length: ");
-        let length = length.and_then(|it| it.strip_suffix("\r\n")?.parse().ok());
-        let length = length.unwrap_or_else(|| panic!("not a header: {header:?}"));
-        assert_eq!(end, "\r\n");
-        let mut text = vec![0; length];
-        self.output.read_exact(&mut text).expect("the message");
-        String::from_utf8(text).expect("text")
+        let said = self.said.recv_timeout(PATIENCE);
+        said.expect("an answer in time")
     }
+}
+
+/// The text of the next message; everything up to it belongs to it.
+fn message(output: &mut impl BufRead) -> Option<String> {
+    let mut header = String::new();
+    for _ in 0..2 {
+        output.read_line(&mut header).expect("text");
+    }
+    if header.is_empty() {
+        return None;
+    }
+    let length = header.strip_prefix("Content-Length: ");
+    let length = length.and_then(|it| it.strip_suffix("\r\n\r\n")?.parse().ok());
+    let length = length.unwrap_or_else(|| panic!("not a header: {header:?}"));
+    let mut text = vec![0; length];
+    output.read_exact(&mut text).expect("the message");
+    Some(String::from_utf8(text).expect("text"))
 }
 
 impl Client<Pipes> {
@@ -168,11 +172,17 @@ impl Client<Pipes> {
         let command = command.arg("lsp").stdin(Stdio::piped());
         let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the server starts");
-        let output = BufReader::new(child.stdout.take().expect("it was asked for"));
+        let mut output = BufReader::new(child.stdout.take().expect("it was asked for"));
+        let (sender, said) = mpsc::channel();
+        thread::spawn(move || {
+            while let Some(text) = message(&mut output) {
+                let _ = sender.send(text);
+            }
+        });
         Self::new(Pipes {
             input: child.stdin.take(),
             child,
-            output,
+            said,
         })
     }
 
@@ -185,15 +195,11 @@ impl Client<Pipes> {
 
     /// Says nothing more: the status, and what was said on standard error.
     pub fn end(self) -> (Option<i32>, String) {
-        let Pipes {
-            child,
-            input,
-            mut output,
-        } = self.carrier;
+        let Pipes { child, input, said } = self.carrier;
         drop(input);
-        let mut rest = String::new();
-        output.read_to_string(&mut rest).expect("text");
-        assert_eq!(rest, "", "nothing but answers on standard output");
+        // Its standard output ends, so that it has nothing more to do.
+        let rest = said.recv_timeout(PATIENCE);
+        assert_eq!(rest, Err(RecvTimeoutError::Disconnected));
         let output = child.wait_with_output().expect("it ends");
         let log = String::from_utf8(output.stderr).expect("text");
         (output.status.code(), log)

@@ -100,23 +100,6 @@ fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
     let frame = talk.response(new)["result"].clone();
     assert_eq!(frame["version"], 2);
     assert!(shown(&frame) == rendered(&changed, ""));
-
-    talk.close();
-    let closed = talk.refused("pinhole/frame", json!({}));
-    assert_eq!(closed, "the document is not open");
-}
-
-#[test]
-fn a_frame_is_superseded_by_the_same_request_alone() {
-    let mut talk = Talk::with(SCENE);
-    let first = talk.request("pinhole/frame", json!({ "scale": 2 }));
-    let coarse = talk.request("pinhole/frame", json!({ "scale": 4 }));
-    let fine = talk.request("pinhole/frame", json!({ "scale": 2, "samples": 1 }));
-    let second = talk.request("pinhole/frame", json!({ "scale": 2 }));
-    assert_eq!(talk.response(first)["error"]["code"], CANCELLED);
-    for id in [coarse, fine, second] {
-        assert!(talk.response(id)["result"]["png"].is_string());
-    }
 }
 
 #[test]
@@ -148,36 +131,20 @@ fn a_frame_that_is_cancelled_ends_at_once() {
     assert!(talk.has_answered(shutdown));
 }
 
+/// Of very many objects those that one can tell apart, and the one that is asked for.
 #[test]
-fn what_is_too_much_for_a_frame_is_refused() {
-    let large = sized("1_048_576", "1_048_576");
-    let many = SCENE.replace("per_pixel 9", "per_pixel 1_000_000_000");
-    let zero = ": invalid value: integer `0`";
-    for (text, params, message) in [
-        (
-            &*large,
-            json!({}),
-            "a frame of 1048576 × 1048576 pixels is more than a page can show; at most 16777216 pixels can be asked for, by a larger `scale`",
-        ),
-        (
-            &many,
-            json!({}),
-            "1000000000 samples a pixel take too long for a frame; at most 1048576 can be asked for, by `samples`",
-        ),
-        (SCENE, json!({ "scale": 0 }), &format!("`scale`{zero}")),
-        (SCENE, json!({ "scale": 0.5 }), "`scale`: "),
-        (SCENE, json!({ "scale": -1 }), "`scale`: "),
-        (SCENE, json!({ "scale": 1e300 }), "`scale`: "),
-        (SCENE, json!({ "samples": 0 }), &format!("`samples`{zero}")),
-        (SCENE, json!({ "samples": "4" }), "`samples`: "),
+fn overlays_are_not_more_than_a_page_can_show() {
+    let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
+    let mut talk = Talk::with(&(SCENE.to_owned() + &many.collect::<String>()));
+    for (further, count, last) in [
+        (None, 1000, 999),
+        (Some(1400), 1001, 1400),
+        (Some(1), 1000, 999),
+        (Some(1503), 1000, 999),
     ] {
-        let found = Talk::with(text).refused("pinhole/frame", params);
-        assert!(found.starts_with(message), "{found}");
+        let found = talk.ask("pinhole/overlays", json!({ "object": further }));
+        let objects = found["objects"].as_array().expect("a list");
+        let found = (objects.len(), &objects[count - 1]["index"]);
+        assert_eq!(found, (count, &json!(last)));
     }
-    let params = json!({ "scale": 65536, "samples": 1 });
-    let frame = Talk::with(&large).ask("pinhole/frame", params);
-    assert_eq!(
-        (&frame["width"], &frame["size"]),
-        (&json!(16), &json!([1_048_576, 1_048_576]))
-    );
 }

@@ -3,7 +3,6 @@
 pub mod client;
 mod frames;
 mod neovim;
-mod order;
-mod picture_requests;
 mod session;
 mod talk;
+mod transcripts;

@@ -1,9 +1,11 @@
 //! A conversation with a server in this process, so that it is known what it has done by when.
 
-use std::collections::VecDeque;
+use std::{cell::RefCell, collections::VecDeque};
 
-use lsp_server::Message;
-use pinhole::lsp::{Server, messages};
+use pinhole::lsp::{
+    Server,
+    messages::{self, Malformed},
+};
 use serde_json::{Value, json};
 
 use super::client::{Carrier, Client};
@@ -11,22 +13,37 @@ use super::client::{Carrier, Client};
 /// A conversation with one text open, of version 1.
 pub type Talk = Client<Inside>;
 
+thread_local! {
+    static LOG: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+}
+
+/// What the servers of this thread have said to their log since this was asked last.
+pub fn logged() -> Vec<String> {
+    LOG.take()
+}
+
 /// A server, and what it has said and nobody has read.
 pub struct Inside {
     server: Server,
     pub said: VecDeque<String>,
 }
 
-impl Inside {
-    fn hear(&mut self, said: &[Message]) {
-        self.said.extend(said.iter().map(messages::written));
+impl Default for Inside {
+    fn default() -> Self {
+        let log = |message: &str| LOG.with_borrow_mut(|log| log.push(message.to_owned()));
+        Self {
+            server: Server::new(log),
+            said: VecDeque::new(),
+        }
     }
+}
 
+impl Inside {
     /// One piece of work. Says whether there was any.
     pub fn step(&mut self) -> bool {
         let is_busy = self.server.is_busy();
         let said = self.server.advance();
-        self.hear(&said);
+        self.said.extend(said.iter().map(messages::written));
         is_busy
     }
 }
@@ -35,9 +52,14 @@ impl Carrier for Inside {
     const URI: &'static str = "file:///a.scn";
 
     fn write(&mut self, text: &str) {
-        let message = messages::read(text.as_bytes()).expect("a message");
-        let said = self.server.handle(message);
-        self.hear(&said);
+        match messages::read(text.as_bytes()) {
+            Ok(message) => {
+                let said = self.server.handle(message);
+                self.said.extend(said.iter().map(messages::written));
+            }
+            Err(Malformed::Answered(response)) => self.said.push_back(response.to_string()),
+            Err(Malformed::Unanswered(what)) => panic!("{what}"),
+        }
     }
 
     fn read(&mut self) -> String {
@@ -49,16 +71,8 @@ impl Carrier for Inside {
 }
 
 impl Talk {
-    /// With a server that understands everything.
     pub fn with(text: &str) -> Self {
-        Self::logged(text, |message| panic!("{message}"))
-    }
-
-    pub fn logged(text: &str, log: fn(&str)) -> Self {
-        let mut talk = Self::new(Inside {
-            server: Server::new(log),
-            said: VecDeque::new(),
-        });
+        let mut talk = Self::new(Inside::default());
         talk.open(json!({}), text);
         talk
     }

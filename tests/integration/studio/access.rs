@@ -6,7 +6,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::client::{PATIENCE, Studio, studio};
+use super::client::{Studio, studio};
+use crate::lsp::client::PATIENCE;
 
 fn status(response: &str) -> &str {
     let line = response.strip_prefix("HTTP/1.1 ").unwrap_or_default();

@@ -4,7 +4,6 @@ use std::{
     io::{BufRead, BufReader, Read, Write},
     net::TcpStream,
     process::{Child, Command, Stdio},
-    time::Duration,
 };
 
 use pinhole::scene::SMALLEST;
@@ -15,12 +14,9 @@ use tungstenite::{
 };
 
 use crate::{
-    lsp::client::{Carrier, Client},
+    lsp::client::{Carrier, Client, PATIENCE},
     program::Folder,
 };
-
-/// The longest that anything may take.
-pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The program, which serves the smallest scene as `a.scn`, in a folder of its own.
 pub fn studio() -> (Folder, Studio) {

@@ -6,7 +6,10 @@ use pinhole::scene::SMALLEST as SCENE;
 use serde_json::{Value, json};
 
 use super::client::{Page, Studio, studio};
-use crate::{lsp::client::Client, program::Folder};
+use crate::{
+    lsp::client::{Client, PATIENCE},
+    program::Folder,
+};
 
 fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
@@ -206,7 +209,7 @@ fn a_browser_is_started_unless_it_is_not_wanted_and_an_interrupt_ends_it() {
         command.env("PATH", &path).stdout(Stdio::null());
         let mut studio = Studio::start(command);
         if is_opened {
-            let end = Instant::now() + super::client::PATIENCE;
+            let end = Instant::now() + PATIENCE;
             while !opened.exists() && Instant::now() < end {
                 thread::sleep(Duration::from_millis(10));
             }

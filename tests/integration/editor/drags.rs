@@ -12,7 +12,7 @@ use proptest::{
     prelude::*,
 };
 
-use super::{dragged, near, seen};
+use super::answers::dragged;
 use crate::scenes::{read, sources};
 
 /// A scene with one object in front of the camera.
@@ -139,6 +139,22 @@ fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> b
         || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
 }
 
+/// Where a point is seen, by the numbers of `pinhole inspect`.
+fn seen(scene: &Scene, point: DVec3) -> DVec2 {
+    let camera = inspect(scene, &sources("").file).camera;
+    let from_eye = point - camera.eye;
+    let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
+    let scale = camera.d * height / camera.view_height / -from_eye.dot(camera.w);
+    dvec2(
+        width / 2.0 + from_eye.dot(camera.u) * scale,
+        height / 2.0 - from_eye.dot(camera.v) * scale,
+    )
+}
+
+fn near(a: DVec2, b: DVec2, text: &str) {
+    assert!(a.distance(b) <= 0.5 + 1e-6, "{a} is not near {b}\n{text}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
@@ -153,7 +169,7 @@ proptest! {
         let handles = handles(&before);
         let handle = handles[which % handles.len()];
         let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word) };
-        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
         // The camera may be tied to what was moved.
@@ -199,7 +215,7 @@ proptest! {
         let Some(before) = reading.scene else { return Ok(()) };
         let [from, to] = [from, to].map(|point| point_of(&before, point));
         let moved = Drag { object: None, handle, from, to, along: None };
-        let Ok(changed) = dragged(&text, moved) else { return Ok(()) };
+        let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);
         prop_assert_eq!(after.image, before.image);

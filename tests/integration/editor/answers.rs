@@ -1,0 +1,231 @@
+//! Answers, as `tests/editor` has them: a question and a text in a line, and below it what is answered, `<`.
+//!
+//! `$0` is the cursor and `\n` a line end; what else a question needs stands behind an arrow. `PINHOLE_BLESS=1 cargo test` writes the answers anew.
+
+use std::{fs, path::Path};
+
+use glam::dvec2;
+use pinhole::{
+    color::Color,
+    diagnostic::{Fix, apply},
+    editor::{
+        Analysis, Completion, Piece, Symbol, completions, definition, fixes, folds, formatting,
+        hints, hover, occurrences, presentations, renamable, rename, semantic_tokens, signature,
+        swatches, symbols,
+        viewport::{Along, Drag, drag},
+    },
+    source::{SourceId, Span},
+};
+
+use crate::{
+    program::names,
+    scenes::{read, sources},
+    snapshot::assert_file,
+};
+
+/// What stands before a text in which an object is dragged.
+const LEVEL: &str =
+    "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
+
+/// What stands before a camera that is moved.
+const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
+
+/// The labels of all that is offered, by their kinds.
+fn offered(all: &[Completion]) -> String {
+    let kind = |completion: &Completion| {
+        let kind = format!("{:?}", completion.kind);
+        kind.split('(').next().unwrap_or_default().to_owned()
+    };
+    let groups = all.chunk_by(|a, b| kind(a) == kind(b)).map(|group| {
+        let labels: Vec<&str> = group.iter().map(|c| c.label.as_str()).collect();
+        format!("{}: {}", kind(&group[0]), labels.join(" "))
+    });
+    groups.collect::<Vec<_>>().join(" | ")
+}
+
+/// The text with a completion, where `‹›` are around what is typed over.
+pub fn inserted(text: &str, completion: &Completion) -> String {
+    let insert = completion.insert.iter().map(|piece| match piece {
+        Piece::Text(text) => text.clone(),
+        Piece::Hole(value) => format!("‹{value}›"),
+    });
+    let mut text = text.to_owned();
+    text.replace_range(completion.replaces.range(), &insert.collect::<String>());
+    text
+}
+
+/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or why it has no other name.
+fn uses(analysis: &Analysis<'_>, at: usize) -> String {
+    let mut text = analysis.text().to_owned();
+    let found = occurrences(analysis, at);
+    for used in found.iter().rev() {
+        let [open, close] = if used.is_definition {
+            ["«", "»"]
+        } else {
+            ["‹", "›"]
+        };
+        text.insert_str(used.span.end, close);
+        text.insert_str(used.span.start, open);
+    }
+    let mut definitions = found.iter().filter(|used| used.is_definition);
+    let defined = definitions.next().map(|used| used.span);
+    assert_eq!(definition(analysis, at), defined);
+    renamable(analysis, at).map_or_else(|why| why, |_| text)
+}
+
+/// The label of a call with the active parameter in `‹›`.
+fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
+    let found = signature(analysis, at)?;
+    let mut label = found.label;
+    if let Some(parameter) = found.parameters.get(found.active) {
+        label.insert(parameter.end, '›');
+        label.insert(parameter.start, '‹');
+    }
+    Some(label)
+}
+
+/// The definitions, blocks and fields.
+fn outline(symbols: &[Symbol]) -> String {
+    let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
+    let lines = symbols.iter().map(|symbol| {
+        let children: Vec<String> = symbol.children.iter().map(shown).collect();
+        format!("{} [{}]", shown(symbol), children.join(", "))
+    });
+    lines.collect::<Vec<_>>().join(" | ")
+}
+
+/// The text after a handle was moved; or why it cannot be.
+pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
+    let sources = sources(text);
+    let dragged = drag(&Analysis::new(&sources), &read(text), moved)?;
+    Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
+}
+
+/// The text behind a start of it, of which a handle was dragged as the words say: its name, the points, and along what.
+fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
+    let words: Vec<&str> = words.split(' ').collect();
+    let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
+    let (from, to, along) = match object {
+        Some(_) => (1, 1, words.get(3)),
+        None => (1, 3, None),
+    };
+    let moved = Drag {
+        object,
+        handle: words[0],
+        from: point(from),
+        to: point(to),
+        along: along.and_then(|along| Along::named(along)),
+    };
+    match dragged(&format!("{start}{text}"), &moved) {
+        Ok(text) => text[start.len()..].to_owned(),
+        Err(why) => why,
+    }
+}
+
+/// What is answered to a question. The text that [`Color`]s are picked for stands in brackets.
+fn answer(question: &str, text: &str, other: &str) -> String {
+    let at = text.find(['$', '[']).unwrap_or_default();
+    let end = text.find(']').map_or(at, |end| end - 1);
+    let sources = sources(&text.replace("$0", "").replace(['[', ']'], ""));
+    let analysis = &Analysis::new(&sources);
+    let (text, span) = (analysis.text(), Span::new(SourceId::File, at, end));
+    let all = completions(analysis, at);
+    let parts: Vec<String> = match question {
+        "offered" => vec![offered(&all)],
+        "inserted" => all
+            .iter()
+            .filter(|completion| completion.label == other)
+            .map(|c| {
+                format!(
+                    "{} | {:?} | {} | {}",
+                    inserted(text, c),
+                    c.kind,
+                    c.detail,
+                    c.help
+                )
+            })
+            .collect(),
+        "hover" => hover(analysis, at)
+            .map(|hover| format!("‹{}› {}", analysis.slice(hover.span), hover.markdown))
+            .into_iter()
+            .collect(),
+        "called" => called(analysis, at).into_iter().collect(),
+        "uses" => vec![uses(analysis, at)],
+        "renamed" => vec![match rename(analysis, at, other) {
+            Ok(spans) => {
+                let mut text = text.to_owned();
+                for span in spans.into_iter().rev() {
+                    text.replace_range(span.range(), other);
+                }
+                text
+            }
+            Err(why) => why,
+        }],
+        "outline" => vec![outline(&symbols(analysis))],
+        "folds" => folds(analysis)
+            .into_iter()
+            .map(|fold| format!("{:?} {}", fold.kind, analysis.slice(fold.span)))
+            .collect(),
+        "colors" => swatches(analysis)
+            .into_iter()
+            .map(|swatch| format!("{} {}", analysis.slice(swatch.span), swatch.color))
+            .collect(),
+        "picked" => {
+            let [.., red, green, blue] = u32::from_str_radix(other, 16).unwrap().to_be_bytes();
+            presentations(analysis, span, Color::from_bytes([red, green, blue]))
+        }
+        "remarked" => {
+            let mut text = text.to_owned();
+            for hint in hints(analysis, 0..text.len()).into_iter().rev() {
+                text.insert_str(hint.at, &format!("‹{}›", hint.text));
+            }
+            vec![text]
+        }
+        "layout" => match formatting(analysis) {
+            None => vec!["none".to_owned()],
+            Some(edits) => edits
+                .iter()
+                .map(|edit| format!("{:?} {}", edit.span.range(), edit.text))
+                .collect(),
+        },
+        "fixes" => fixes(analysis, span)
+            .map(|(diagnostic, fix)| {
+                let text = apply(fix, SourceId::File, text);
+                format!("{}: {text}", diagnostic.code.replace("pinhole::", ""))
+            })
+            .collect(),
+        "words" => semantic_tokens(analysis)
+            .into_iter()
+            .map(|token| {
+                let mark = if token.is_declaration { "!" } else { "" };
+                format!("{}:{:?}{mark}", analysis.slice(token.span), token.kind)
+            })
+            .collect(),
+        "dragged" if text.contains("camera") => vec![after_drag("", text, Some(0), other)],
+        "dragged" => vec![after_drag(LEVEL, text, Some(0), other)],
+        "moved" => vec![after_drag(SEEN, text, None, other)],
+        _ => panic!("{question}"),
+    };
+    parts.join(if question == "words" { " " } else { " | " })
+}
+
+#[test]
+fn answers_are_as_they_stand_there() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/editor");
+    for name in names(&folder) {
+        let path = folder.join(name);
+        let mut real = String::new();
+        let text = fs::read_to_string(&path).expect("a text");
+        for line in text.lines().filter(|line| !line.starts_with('<')) {
+            real += &format!("{line}\n");
+            if !line.starts_with("--") {
+                let (question, text) = line.split_once(' ').expect("a question and a text");
+                let (text, other) = text.split_once(" -> ").unwrap_or((text, ""));
+                let answer = answer(question, &text.replace("\\n", "\n"), other);
+                real += format!("< {}", answer.replace('\n', "\\n")).trim_end();
+                real.push('\n');
+            }
+        }
+        assert_file(&path, &real);
+    }
+}

@@ -1,0 +1,78 @@
+//! What holds of the answers about all of the language.
+
+use std::time::{Duration, Instant};
+
+use pinhole::{
+    editor::{CompletionKind, completions, formatting, hover},
+    explain,
+    schema::{BLOCKS, Preset},
+};
+
+use super::{answers::inserted, at_cursor, of_whole};
+
+#[test]
+fn no_function_is_offered_with_a_value_that_is_an_error() {
+    for block in [
+        "sphere { center (0, 1, 0) radius $0 }",
+        "checkerboard { square $0 }",
+    ] {
+        let functions = at_cursor(block, completions).into_iter();
+        let functions = functions.filter(|c| c.kind == CompletionKind::Function && c.rank <= 3);
+        for function in functions {
+            let text = inserted(&block.replace("$0", ""), &function).replace(['‹', '›'], "");
+            let text = format!("camera {{ eye (0, 1, 5) lookat (0, 1, 0) }} {text}");
+            let found = of_whole(&text, |analysis| analysis.diagnostics().len());
+            assert_eq!(found, 0, "{text}");
+        }
+    }
+}
+
+#[test]
+fn only_a_default_is_called_one() {
+    let mut defaults = 0;
+    for row in BLOCKS {
+        for field in row.fields {
+            let text = format!("{} {{ {} $0 }}", row.name, field.name);
+            let offered = at_cursor(&text, completions).into_iter();
+            for value in offered.filter(|c| c.kind == CompletionKind::Value) {
+                let is_preset = matches!(field.preset, Preset::Value(it) if it == value.label);
+                assert_eq!(value.detail == "the default", is_preset, "{}", field.name);
+                defaults += usize::from(is_preset);
+            }
+        }
+    }
+    assert!(defaults > 10, "{defaults}");
+}
+
+#[test]
+fn every_rule_between_fields_is_told_of_one_of_them() {
+    for row in BLOCKS {
+        for rule in row.together {
+            let mut fields = row.fields.iter();
+            let is_told = fields.any(|field| row.rules_of(field.name).any(|told| told == *rule));
+            assert!(is_told, "{rule}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_are_explained_by_their_pages() {
+    let markdown = |text: &str| at_cursor(text, hover).expect("a hover").markdown;
+    let page = |code| explain::page(code).expect("a page").text.trim_end();
+    let text = markdown("sphere { center (0, 1, 0) rad$0us 2 }");
+    assert_eq!(text, page("unknown_field"));
+    let text = markdown("camera { eye (0, 0, 0) lookat (1, 0, 0) roll $030 }");
+    assert!(text.starts_with("`roll` of a camera: "), "{text}");
+    let end = format!("\n\n---\n\n{}", page("bare_angle"));
+    assert!(text.ends_with(&end), "{text}");
+}
+
+/// One walk takes some hundredths of a second; one for each term took half a minute.
+#[test]
+fn a_long_line_is_laid_out_in_one_walk() {
+    let text = format!("let b = {}1\n", "1+".repeat(100_000));
+    let start = Instant::now();
+    let changes = of_whole(&text, |analysis| formatting(analysis).map(|all| all.len()));
+    assert_eq!(changes, Some(1));
+    assert!(start.elapsed() < Duration::from_secs(5));
+}
