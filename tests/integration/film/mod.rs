@@ -178,8 +178,9 @@ fn what_is_wrong_with_a_text_is_told() {
 fn a_lossy_webp_and_a_plain_pnm_are_read() {
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
     assert_eq!(read_picture(webp).unwrap().coding, Coding::Lossy);
-    let plain = read_picture(b"P2 2 1 4 0 4").unwrap().film;
-    assert_eq!(plain.pixel(1, 0), [1.0; 3]);
+    let plain = read_picture(b"P2 2 1 4 0 4").unwrap();
+    assert_eq!(plain.rounding, Rounding::Byte);
+    assert_eq!(plain.film.pixel(1, 0), [1.0; 3]);
     assert!(read_picture(b"P2let = 1").is_err());
 }
 
