@@ -13,7 +13,6 @@ use std::{
 
 use glam::DVec3;
 use pinhole::{
-    area::Area,
     render::{Control, render},
     scene::{Count, Method, Scene},
     tracer::{Part, Quartering, Scratch, World},
@@ -82,14 +81,6 @@ fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
 }
 
 #[test]
-fn boards_in_blocks_that_are_full_and_cut_off() {
-    for name in ["figure_9_9", "rolled", "straight_down", "near_and_far"] {
-        let scene = example(name, 397, 231);
-        assert!(compare(&scene, Method::Jittered, Count::PerPixel(4)) > 10);
-    }
-}
-
-#[test]
 fn boards_of_small_and_large_squares() {
     for [view, boards, counts, colors] in rows(
         "
@@ -119,12 +110,15 @@ fn boards_of_small_and_large_squares() {
 
 #[test]
 fn scenes_of_all_kinds() {
-    let scenes = generated(Numbers::Wild(0), [24, 18], 2024).take(150);
-    let colors = scenes.zip(Method::SAMPLED.iter().cycle());
-    let colors = colors.map(|((_, scene), method)| compare(&scene, *method, Count::PerPixel(24)));
-    let colors: usize = colors.sum();
-    // Most have something to see.
-    assert!(colors > 150 * 30, "{colors}");
+    for wild in [0, 5, 30] {
+        let scenes = generated(Numbers::Wild(wild), [24, 18], 2024).take(100);
+        let scenes = scenes.zip(Method::SAMPLED.into_iter().cycle());
+        let seen =
+            scenes.filter(|((_, scene), method)| compare(scene, *method, Count::PerPixel(24)) > 1);
+        // Something is to be seen in most scenes of ordinary numbers.
+        let seen = seen.count();
+        assert!(seen > 50 || wild > 0, "{seen}");
+    }
 }
 
 sampled_and_exhaustive!(scenes_full_of_ties);
@@ -175,7 +169,7 @@ fn very_many_in_one_plane() {
 }
 
 /// Spheres of a colour each, their centres in a cube about the origin.
-fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
+pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
     let sphere = |index| {
         let DVec3 { x, y, z } = random.vector(reach);
         let (radius, red, green) = (random.within(low, high), index % 256, index / 256);
@@ -184,45 +178,6 @@ fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -
         )
     };
     (0..count).map(sphere).collect()
-}
-
-#[test]
-fn crowds_of_all_kinds() {
-    let camera = "image { width 24 height 18 } camera { eye (2, 4, 10) lookat (0, 0, 0) d 4 }\n";
-    let mut random = Random::new(31);
-    let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
-    let (mut dense, mut open) = (0, 0);
-    for index in 0..3 {
-        let tiny = spheres(&mut random, 1 << 14, 3.0, [1e-3, 0.03]);
-        let mut all = read(&format!("{camera}{tiny}"));
-        let objects = Arc::make_mut(&mut all.objects);
-        let more = scenes.by_ref().take(20);
-        objects.extend(more.flat_map(|(_, scene)| scene.objects.to_vec()));
-        // Some of them twice: the first is seen.
-        objects.extend_from_within(100..300);
-        if index % 3 == 0 {
-            (all.camera.near, all.camera.far) = (8.0, Some(12.0));
-        }
-        // Few samples are traced one by one where objects are dense, many together.
-        for n in [1, 4, 8, 12, 100] {
-            compare(&all, Method::SAMPLED[index], Count::PerPixel(n));
-        }
-        let world = World::new(&all);
-        for (samples, pixels) in [(1.0, &mut dense), (1e4, &mut open)] {
-            let parts = Quartering::for_samples(&world, samples);
-            let _ = parts.parts(whole(&all), &mut Scratch::default(), &mut |part| {
-                *pixels += match part {
-                    Part::Crowded { area } if samples == 1.0 => area.pixels(),
-                    Part::Pixel { .. } if samples > 1.0 => 1,
-                    _ => 0,
-                };
-                ControlFlow::Continue(())
-            });
-        }
-    }
-    // Nearly all of their pixels.
-    let half = 3 * 24 * 18 / 2;
-    assert!(dense > half && open > half, "{dense} and {open}");
 }
 
 #[test]
@@ -251,9 +206,9 @@ fn layers_near_and_far() {
 }
 
 #[test]
-fn objects_as_small_as_pixels() {
-    // Of so many nothing is known before they are traced one by one, and few of them are in the way of all samples of a pixel.
+fn crowds_of_objects_as_small_as_pixels() {
     let mut random = Random::new(12);
+    let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     for (roll, clips) in [
         (0, ""),
         (0, "near 5.5 far 8"),
@@ -263,13 +218,10 @@ fn objects_as_small_as_pixels() {
         let mut text = format!(
             "image {{ width 47 height 35 }} camera {{ eye (0.5, 0.3, 7) lookat (0, 0, 0) roll {roll}deg {clips} }}\n"
         );
-        text += &spheres(&mut random, 1500, 2.5, [1e-4, 0.08]);
+        text += &spheres(&mut random, 1 << 12, 2.5, [1e-4, 0.08]);
         for index in 0..1000 {
-            let (at, size, normal) = (
-                random.vector(2.5),
-                random.within(0.01, 0.08),
-                random.vector(1.0),
-            );
+            let size = random.within(0.01, 0.08);
+            let [at, normal] = [2.5, 1.0].map(|size| random.vector(size));
             let [at, normal] = [at, normal].map(|DVec3 { x, y, z }| format!("({x}, {y}, {z})"));
             let color = format!("rgb({}, {}, 99)", index % 256, index / 256);
             let _ = writeln!(
@@ -285,72 +237,25 @@ fn objects_as_small_as_pixels() {
             sphere { center (0, -1e7, 0) radius 1e7 - 2 color cyan }
             sphere { center (0, 0, -1e12) radius 0.9e12 color white }";
         let mut all = read(&text);
+        let objects = Arc::make_mut(&mut all.objects);
+        let (_, others) = scenes.next().unwrap();
+        objects.extend_from_slice(&others.objects);
         // Some of them twice: the first is seen.
-        Arc::make_mut(&mut all.objects).extend_from_within(800..1600);
-        for (n, method) in [2, 3, 4, 8, 9, 16].into_iter().zip(Method::SAMPLED) {
-            assert!(compare(&all, method, Count::PerPixel(n)) > 100);
-        }
-    }
-}
-
-#[test]
-fn parts_cover_each_pixel_once() {
-    let mut scenes = generated(Numbers::Wild(0), [24, 18], 7);
-    for index in 0..40 {
-        let (_, mut all) = scenes.next().unwrap();
-        let more = scenes.by_ref().take(index);
-        let more = more.flat_map(|(_, scene)| scene.objects.to_vec());
-        Arc::make_mut(&mut all.objects).extend(more);
+        objects.extend_from_within(3500..4500);
+        // One sample a pixel is traced by itself where objects are dense, of which many samples are asked together.
         let world = World::new(&all);
-        let area = whole(&all);
-        for samples in [0.01, 1.0, 3.0, 8.0, 64.0, f64::INFINITY] {
-            let mut seen = vec![0; area.pixels() as usize];
-            let parts = Quartering::for_samples(&world, samples);
-            let flow = parts.parts(area, &mut Scratch::default(), &mut |part| {
-                let part = match part {
-                    Part::OneColor { area, .. } | Part::Crowded { area } => area,
-                    Part::Pixel { x, y, .. } => Area::pixel(x, y),
-                };
-                part.iter().for_each(|(x, y)| seen[area.index(x, y)] += 1);
-                ControlFlow::Continue(())
-            });
-            assert!(flow.is_continue());
-            assert!(seen.iter().all(|&times| times == 1), "{index}: {samples}");
-        }
-    }
-}
-
-sampled_and_exhaustive!(extreme_cameras);
-
-fn extreme_cameras(effort: Effort) {
-    let eyes = [
-        "(3, 3.5, 8)",
-        "(3, 1e-9, 8)",
-        "(3, 1e9, 8)",
-        "(1e9, 2, 1e9)",
-        "(0, 0.75, 0)",
-        // Inside the box, the sphere; on the sphere.
-        "(2, 0.5, -0.5)",
-        "(-1.6, 1, 0)",
-        "(-1.6, 2, 0)",
-        "(-1.6, 2 + 1e-13, 0)",
-        "(0, -4, 0)",
-    ];
-    for eye in effort.first(4, eyes) {
-        for lookat in ["(0.2, 0.8, 0)", "(1e3, 0, -1e6)", "(-1.6, 1.5, 0.1)"] {
-            for fov in [1e-7, 1.0, 40.0, 120.0, 179.999] {
-                for clips in ["", "near 2.5 far 9", "far 1e12"] {
-                    let scene = read(&format!(
-                        "image {{ width 20 height 13 }}
-                         camera {{ eye {eye} lookat {lookat} fov {fov}deg {clips} }}
-                         sphere {{ center (-1.6, 1, 0) color red }}
-                         box {{ min (1.5, 0, -1.5) max (2.5, 1.5, 0.5) color lime }}
-                         triangle {{ centroid (0.2, 1, 0.6) normal (0.3, 0, 1) color blue }}
-                         checkerboard {{}}"
-                    ));
-                    compare(&scene, Method::MultiJittered, Count::PerPixel(16));
-                }
-            }
+        let parts = Quartering::for_samples(&world, 1.0);
+        let flow = parts.parts(
+            whole(&all),
+            &mut Scratch::default(),
+            &mut |part| match part {
+                Part::Crowded { .. } => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
+            },
+        );
+        assert!(flow.is_break(), "no part is crowded");
+        for (n, method) in [1, 2, 3, 4, 8, 9, 16, 100].into_iter().zip(Method::SAMPLED) {
+            assert!(compare(&all, method, Count::PerPixel(n)) > 100);
         }
     }
 }

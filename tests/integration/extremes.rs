@@ -88,56 +88,45 @@ sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let mut random = Random::new(1);
-    let count = effort.part_of(1280);
-    let wild = WILD.into_iter().cycle().take(20).enumerate();
-    let scenes = wild.flat_map(|(seed, wild)| {
-        generated(Numbers::Wild(wild), [1, 1], seed as u64).take(count / 20)
-    });
-    for (index, (_, mut scene)) in scenes.enumerate() {
-        if index % 20 == 0 {
-            // So far away that of what lies about the origin nothing is left.
-            scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
-        }
-        // More than a square of the grid, but few pixels.
-        let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
-        let scene = resized(scene, width, height);
-        let mut below = |n: u32| random.bits() as u32 % n;
-        let (x, y, n) = (below(width), below(height), below(9) + 1);
-        let crop = Area {
-            x,
-            y,
-            width: 1 + below(width - x),
-            height: 1 + below(height - y),
-        };
-        for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
-            let scene = with_samples(&scene, method, Count::PerPixel(n.into()));
-            let picture = |part| rendered::<[f64; 3]>(&scene, part, &control).into_film();
-            let (all, part) = (picture(whole(&scene)), picture(crop));
-            assert_eq!(part, all.part(crop).unwrap(), "{crop} of {scene:?}");
+    for (seed, wild) in (0..).zip(WILD) {
+        let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
+        for (index, (_, mut scene)) in scenes.take(effort.part_of(320)).enumerate() {
+            if index % 5 == 0 {
+                // So far away that of what lies about the origin nothing is left.
+                scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
+            }
+            // More than a square of the grid, but few pixels.
+            let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
+            let scene = resized(scene, width, height);
+            let mut below = |n: u32| random.bits() as u32 % n;
+            let (x, y, n) = (below(width), below(height), below(9) + 1);
+            let [width, height] = [width - x, height - y].map(|most| 1 + below(most));
+            let crop = Area {
+                x,
+                y,
+                width,
+                height,
+            };
+            for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
+                let scene = with_samples(&scene, method, Count::PerPixel(n.into()));
+                let picture = |part| rendered::<[f64; 3]>(&scene, part, &control).into_film();
+                let (all, part) = (picture(whole(&scene)), picture(crop));
+                assert_eq!(part, all.part(crop).unwrap(), "{crop} of {scene:?}");
+            }
         }
     }
 }
 
+sampled_and_exhaustive!(scenes_at_the_ends_of_the_range_of_numbers);
+
 /// The scenes of `tests/extremes`.
-#[test]
-fn scenes_at_the_ends_of_the_range_of_numbers() {
-    render_file(|name| name != SLOW);
-}
-
-#[test]
-#[ignore = "exhaustive"]
-fn what_quarters_do_not_mend_is_left_in_doubt() {
-    render_file(|name| name == SLOW);
-}
-
-const SLOW: &str = "what_quarters_do_not_mend";
-
-fn render_file(is_wanted: impl Fn(&str) -> bool) {
+fn scenes_at_the_ends_of_the_range_of_numbers(effort: Effort) {
     for path in scenes("tests/extremes") {
-        if is_wanted(path.file_stem().unwrap().to_str().unwrap()) {
-            let text = std::fs::read_to_string(path).unwrap();
-            render_in_each_way(&read(&text), &text, !text.contains("// not decided"));
+        if effort == Effort::Sample && path.ends_with("what_quarters_do_not_mend.scn") {
+            continue;
         }
+        let text = std::fs::read_to_string(path).unwrap();
+        render_in_each_way(&read(&text), &text, !text.contains("// not decided"));
     }
 }
 

@@ -112,7 +112,7 @@ impl Generator {
                 camera += &format!(" {clip} {:?}", self.length(size));
             }
         }
-        let objects: String = (0..2 + self.below(10)).map(|_| self.object()).collect();
+        let objects: String = (0..self.below(12)).map(|_| self.object()).collect();
         format!(
             "image {{ width {width} height {height} background {background} }} camera {{ {camera} }}\n{objects}"
         )

@@ -54,6 +54,14 @@ fn one_signal_ends_it_within_a_pixel() {
     for (signal, line) in [
         ("INT", "render long.scn -o long.png"),
         ("TERM", "render long.scn -o long.exr"),
+        (
+            "INT",
+            "render long.scn --set sampler.method=random --set sampler.per_pixel=9007199254740992",
+        ),
+        (
+            "INT",
+            "render long.scn --set sampler.method=random --set sampler.per_pixel=8589934592 --set image.width=1024 --set image.height=1024",
+        ),
         ("INT", "diff black.png long.scn -o heat.png"),
         #[cfg(feature = "report")]
         ("INT", "report long.scn"),

@@ -14,6 +14,8 @@ use pinhole::{
     report::numerics::{self, Table},
 };
 
+use crate::effort::{Effort, sampled_and_exhaustive};
+
 /// The inputs of each case in every run.
 const INPUTS: u64 = 1_000;
 
@@ -31,23 +33,18 @@ fn table() -> &'static Table {
     TABLE.get_or_init(|| run(INPUTS, None))
 }
 
-fn none_is_wrong(table: &Table, inputs: u64) {
+sampled_and_exhaustive!(no_hard_case_is_decided_wrongly);
+
+fn no_hard_case_is_decided_wrongly(effort: Effort) {
+    let (table, inputs) = match effort {
+        Effort::Sample => (table(), INPUTS),
+        Effort::Exhaustive => (&run(10 * INPUTS, None), 10 * INPUTS),
+    };
     for row in &table.rows {
         assert_eq!(row.tally.inputs, inputs, "{}", row.case.id);
         assert_eq!(row.tally.wrong[1], 0, "{}: {}", row.case.id, row.case.title);
     }
     assert_eq!(table.wrong(), 0);
-}
-
-#[test]
-fn no_hard_case_is_decided_wrongly() {
-    none_is_wrong(table(), INPUTS);
-}
-
-#[test]
-#[ignore = "exhaustive"]
-fn no_hard_case_is_decided_wrongly_of_ten_times_as_many() {
-    none_is_wrong(&run(10 * INPUTS, None), 10 * INPUTS);
 }
 
 #[test]

@@ -1,23 +1,15 @@
 //! A picture does not depend on how it was rendered.
 
-use std::{
-    num::NonZero,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::num::NonZero;
 
 use pinhole::{
     area::Area,
     film::{Encoder, certified},
-    render::{Control, RenderError, Rendered, render},
-    scene::{Count, Method, Scene},
-    tracer::World,
+    render::{Control, Rendered},
+    scene::{Count, Method},
 };
 
-use crate::scenes::{example, example_names, rendered, sampling, whole, with_samples};
-
-fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
-    with_samples(&example("figure_9_9", width, height), method, count)
-}
+use crate::scenes::{example, example_names, rendered, whole, with_samples};
 
 #[test]
 fn threads_and_crops_change_no_pixel() {
@@ -26,7 +18,7 @@ fn threads_and_crops_change_no_pixel() {
     // Tiles of all sizes, and more than threads.
     let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
     for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
-        let scene = figure(width, height, method, count);
+        let scene = with_samples(&example("figure_9_9", width, height), method, count);
         let picture = |part, threads| {
             let control = Control {
                 threads: NonZero::new(threads),
@@ -76,25 +68,5 @@ fn bytes_are_those_of_the_light() {
             let expected = light.pixels().iter().map(|light| encoder.pixel(*light));
             assert!(expected.eq(bytes.pixels().iter().copied()), "{name}");
         }
-    }
-}
-
-#[test]
-fn a_render_without_end_can_be_ended() {
-    for (size, count) in [(1, 1 << 53), (1 << 10, 1 << 33)] {
-        let scene = figure(size, size, Method::Random, Count::PerPixel(count));
-        let cancel = AtomicBool::new(false);
-        let control = Control {
-            progress: &|_| cancel.store(true, Ordering::Relaxed),
-            cancel: &cancel,
-            ..Control::default()
-        };
-        let ended = render(
-            &World::new(&scene),
-            &sampling(&scene),
-            whole(&scene),
-            &control,
-        );
-        assert!(matches!(ended, Err(RenderError::Cancelled)));
     }
 }

@@ -29,8 +29,8 @@ pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
 
 /// The texts of the examples.
 pub fn examples() -> Vec<String> {
-    let texts = scenes("examples").into_iter().map(fs::read_to_string);
-    texts.map(|text| text.expect("a text")).collect()
+    let names = example_names().into_iter();
+    names.map(|name| example_text(&name)).collect()
 }
 
 /// The names of the examples.

@@ -38,6 +38,7 @@ fn a_scene_with_errors_is_status_1_and_trouble_with_files_or_usage_2() {
     folder.write("bad.scn", BAD);
     folder.write("latin.scn", b"// \xe9\n");
     folder.write("old.png", "old");
+    folder.write("folder.png/kept", "");
     let foreign = image::DynamicImage::new_rgb8(4, 4);
     foreign.save(folder.path("foreign.png")).unwrap();
     folder.write("cut.png", b"\x89PNG\r\n\x1a\n");
@@ -51,6 +52,7 @@ fn a_scene_with_errors_is_status_1_and_trouble_with_files_or_usage_2() {
         render none.scn -> 2 -> error: cannot read none.scn: No such file or directory (os error 2)
         render . -> 2 -> error: cannot read .: Is a directory (os error 21)
         render a.scn -o no/b.png -> 2 -> error: cannot write to no/b.png: No such file or directory (os error 2)
+        render a.scn -o folder.png -> 2 -> error: cannot write to folder.png: is a directory
         -- Trouble with the file outweighs errors of the scene; both are told.
         render bad.scn -o no/b.png -> 2 -> …error[pinhole::unknown_field]…
         render bad.scn -o no/b.png -> 2 -> …error: cannot write to no/b.png: No such file or directory (os error 2)

@@ -45,19 +45,6 @@ fn scene_and_picture_go_through_pipes() {
 }
 
 #[test]
-fn neither_threads_nor_a_second_run_change_a_byte() {
-    let folder = folder();
-    folder.done("render a.scn");
-    for threads in ["1", "2", "7", "300"] {
-        folder.done(&format!("render a.scn -o b.png --threads {threads}"));
-        assert!(folder.read("a.png") == folder.read("b.png"));
-    }
-    for threads in ["0", "-1", "1.5", "many", "''"] {
-        folder.told(&format!("render a.scn --threads {threads}"), 2);
-    }
-}
-
-#[test]
 fn a_picture_renders_its_scene_again() {
     let folder = folder();
     let same = |a: &str, b: &str| assert!(folder.read(a) == folder.read(b), "{a} and {b}");
@@ -96,9 +83,11 @@ fn a_crop_has_the_pixels_of_the_whole() {
         render a.scn --crop 64,0,1,1 -> 2 -> error: the crop 64,0,1,1 does not lie within the picture, which has 64 × 36 pixels
         render a.scn --crop 0,0,4294967295,1 -> 2 -> error: the crop 0,0,4294967295,1 does not lie within the picture, which has 64 × 36 pixels
     ");
-    let wrong = "0,0,0,1 1,2,3 1,2,3,4,5 -1,0,2,2 a 1,1,1,4294967296 ''";
-    for wrong in wrong.split(' ') {
-        folder.told(&format!("render a.scn --crop {wrong}"), 2);
+    let crops = "0,0,0,1 1,2,3 1,2,3,4,5 -1,0,2,2 a 1,1,1,4294967296 ''";
+    for (option, wrong) in [("crop", crops), ("threads", "0 -1 1.5 many ''")] {
+        for wrong in wrong.split(' ') {
+            folder.told(&format!("render a.scn --{option} {wrong}"), 2);
+        }
     }
 }
 
@@ -169,9 +158,16 @@ fn a_full_disk_is_told_of_the_file_that_was_asked_for() {
 #[test]
 fn a_picture_too_large_for_memory_is_refused() {
     let folder = folder();
-    folder.tells("render a.scn --set image.width=1048576 --set image.height=1048576 -> 2 -> error: a picture of 1048576 × 1048576 pixels needs 3.0 TiB of memory, …");
+    let sizes = "--set image.width=1048576 --set image.height=1048576";
+    let told = folder.told(&format!("render a.scn {sizes}"), 2);
+    let start = "error: a picture of 1048576 × 1048576 pixels needs 3.0 TiB of memory, ";
+    let told = told.strip_prefix(start).expect(&told);
+    let is_known = told.starts_with("and ") && told.ends_with("iB are available\n");
+    assert!(is_known || !cfg!(target_os = "linux"), "{told}");
     assert_eq!(folder.names(), ["a.scn"]);
-    folder.done("render a.scn --set image.width=1048576 --set image.height=1048576 -o part.png --crop 524288,524288,3,2");
+    folder.done(&format!(
+        "render a.scn {sizes} -o part.png --crop 524288,524288,3,2"
+    ));
     assert_eq!(size(&folder.read("part.png")), (3, 2));
 }
 

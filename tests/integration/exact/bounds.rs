@@ -1,22 +1,9 @@
 //! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
 
-use glam::DVec3;
-use pinhole::{color::linear_to_srgb, film};
+use pinhole::film;
 
 use super::*;
-use crate::scenes::example_text;
-
-/// The share of pixels that are certain in 16 bits a channel.
-fn certified_words(exact: &Exact) -> f64 {
-    let word = |light: f64| (65_535.0 * linear_to_srgb(light)).round();
-    let pixels = exact.film.pixels().iter().zip(&exact.bounds);
-    let is_certain = |(light, bound): &(&[f64; 3], &f32)| {
-        let bound = f64::from(**bound);
-        let is_one = |channel: &f64| word(channel - bound) == word(channel + bound);
-        light.iter().all(is_one)
-    };
-    pixels.filter(is_certain).count() as f64 / exact.bounds.len() as f64
-}
+use crate::culling::spheres;
 
 #[test]
 fn bounds_keep_their_promise() {
@@ -28,40 +15,16 @@ fn bounds_keep_their_promise() {
         let certified = film::certified(&exact.film, &exact.bounds);
         let share = certified as f64 / exact.bounds.len() as f64;
         assert!(share >= 0.99999, "{share}");
-        let share = certified_words(&exact);
-        assert!(share >= 0.999, "of 16 bits: {share}");
-    }
-    // Along a diagonal of the board, level and rolled.
-    for (direction, roll) in [
-        ("(1, 0, -1)", 0),
-        ("(-1, 0, -1)", 30),
-        ("(1, 0, -3)", 0),
-        ("(1, 0, 0)", 90),
-    ] {
-        let view = format!("direction {direction} roll {roll}deg d 2");
-        let figure = example_text("figure_9_9").replace("lookat (0.2, 0.8, 0)", &view);
-        let scene = read(&figure.replace("roll   0deg\n  d      2.75", ""));
-        let bound = exact(&resized(scene, 64, 64)).bound();
-        assert!(bound <= 1e-9, "{view}: {bound:e}");
     }
 }
 
 /// So many spheres that pierce each other in one pixel, most of what bounds them hidden.
 #[test]
 fn a_heap_in_one_pixel() {
-    let mut text = String::from(
-        "image { width 3 height 3 } camera { eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }\n",
-    );
-    let mut random = Random::new(7);
-    for color in ["olive", "teal", "orange", "red", "blue"].repeat(8) {
-        let DVec3 { x, y, z } = random.vector(20.0);
-        let radius = random.within(2.0, 22.0);
-        let _ = writeln!(
-            text,
-            "sphere {{ center ({x}, {y}, {z}) radius {radius} color {color} }}"
-        );
-    }
-    is_known(&text);
+    let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);
+    is_known(&format!(
+        "image {{ width 3 height 3 }} camera {{ eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }}\n{heap}"
+    ));
 }
 
 /// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan share: a pixel that they pass through
@@ -87,40 +50,12 @@ fn many_lines_that_are_one() {
 }
 
 #[test]
-fn what_is_uniform_is_its_colour() {
-    let scene = example("figure_9_9", 96, 96);
-    let (world, exact) = (World::new(&scene), exact(&scene));
-    let mut uniform = 0;
-    let mut random = Random::new(3);
-    for (x, y) in whole(&scene).iter() {
-        let (light, bound) = pixel(&exact, x, y);
-        if bound == 0.0 {
-            uniform += 1;
-            for _ in 0..8 {
-                let slot = world.slot_at(x, y, random.offset());
-                assert_eq!(world.palette()[slot].to_linear(), light, "{x}, {y}");
-            }
-        }
-    }
-    assert!(uniform > 5000, "{uniform}");
-}
-
-#[test]
 fn ten_thousand_objects() {
-    let mut random = Random::new(11);
-    let mut text = String::from(
-        "image { width 96 height 64 } camera { eye (2, 3, 6) lookat (0, 0, 0) roll 20deg }
-         checkerboard { y -1 } box { center (1, 0, 0) size (1, 2, 1.5) }\n",
-    );
-    for color in ["red", "lime", "blue", "gold"].repeat(2500) {
-        let DVec3 { x, y, z } = random.vector(3.0);
-        let radius = random.within(0.005, 0.03);
-        let _ = writeln!(
-            text,
-            "sphere {{ center ({x}, {y}, {z}) radius {radius} color {color} }}"
-        );
-    }
-    is_known(&text);
+    let spheres = spheres(&mut Random::new(11), 10_000, 3.0, [0.005, 0.03]);
+    is_known(&format!(
+        "image {{ width 96 height 64 }} camera {{ eye (2, 3, 6) lookat (0, 0, 0) roll 20deg }}
+         checkerboard {{ y -1 }} box {{ center (1, 0, 0) size (1, 2, 1.5) }}\n{spheres}"
+    ));
 }
 
 /// Outlines of spheres that all but coincide are told apart, as closely as roundings allow.

@@ -5,43 +5,18 @@ use super::*;
 /// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the widest views along x = z with the eye over that line, of
 /// which both sides are the same, up to what the eye's coordinates are off and the view's depth; and two whose millions of pieces were added up
 /// with 40 digits, for d = 0.
-const KNOWN: [(&str, [u32; 2], f64, f64); 4] = [
-    (
-        "image { width 2 height 2 } camera { eye (0.3, 1, 0.3) direction (1, 0, -1) d 1e-40 }
-         checkerboard { square 1 colors (black, white) }",
-        [0, 1],
-        0.0,
-        1e-30,
-    ),
-    (
-        "image { width 2 height 2 } camera { eye (-0.4804996875, 1, 0.3554996875) direction (-1, 0, -1) d 1e-300 }
-         checkerboard { square 0.0625 colors (white, black) }",
-        [1, 1],
-        0.0,
-        1e-14,
-    ),
-    (
-        "image { width 4 height 2 }
-         camera { eye (-0.055864375, 13.0, -0.16288562496875) direction (1, 0, 1) d 1e-40 far 4.066243e-37 }
-         checkerboard { square 0.03125 colors (white, black) }",
-        [0, 1],
-        0.996_802_944_621_548,
-        1e-15,
-    ),
-    (
-        "image { width 16 height 2 }
-         camera { eye (-0.051105874999999995, 0.5, 0.948894124875) direction (1, 0, -1) d 1e-300 far 3.081378e-297 }
-         checkerboard { square 0.125 colors (white, black) }",
-        [0, 1],
-        0.999_837_733_934_641_5,
-        1e-15,
-    ),
-];
-
 #[test]
 fn what_is_known_otherwise_is_within_the_bound() {
-    for (text, [x, y], truth, off) in KNOWN {
-        let ([light, ..], bound) = pixel(&exact(&read(text)), x, y);
+    for [image, camera, board, x, y, truth, off] in rows("
+        width 2 height 2 -> eye (0.3, 1, 0.3) direction (1, 0, -1) d 1e-40 -> square 1 colors (black, white) -> 0 -> 1 -> 0 -> 1e-30
+        width 2 height 2 -> eye (-0.4804996875, 1, 0.3554996875) direction (-1, 0, -1) d 1e-300 -> square 0.0625 colors (white, black) -> 1 -> 1 -> 0 -> 1e-14
+        width 4 height 2 -> eye (-0.055864375, 13.0, -0.16288562496875) direction (1, 0, 1) d 1e-40 far 4.066243e-37 -> square 0.03125 colors (white, black) -> 0 -> 1 -> 0.996802944621548 -> 1e-15
+        width 16 height 2 -> eye (-0.051105874999999995, 0.5, 0.948894124875) direction (1, 0, -1) d 1e-300 far 3.081378e-297 -> square 0.125 colors (white, black) -> 0 -> 1 -> 0.9998377339346415 -> 1e-15
+    ") {
+        let text = format!("image {{ {image} }} camera {{ {camera} }} checkerboard {{ {board} }}");
+        let [x, y] = [x, y].map(|at| at.parse().unwrap());
+        let [truth, off]: [f64; 2] = [truth, off].map(|number| number.parse().unwrap());
+        let ([light, ..], bound) = pixel(&exact(&read(&text)), x, y);
         let error = (light - truth).abs();
         assert!(error <= bound + off, "{error:e} > {bound:e} of {text}");
     }

@@ -20,8 +20,11 @@ pub use crate::scenes::read;
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
-    scenes::{exact, example, example_names, resized, sampled, scenes, whole, with_samples},
-    table::{list, rows},
+    scenes::{
+        exact, example, example_names, example_text, read_with, resized, sampled, scenes, whole,
+        with_samples,
+    },
+    table::{lines, list, rows},
     tracer::Random,
 };
 
@@ -35,13 +38,13 @@ fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
 }
 
 /// A pixel's light, and its bound.
-fn pixel(picture: &Exact, x: u32, y: u32) -> ([f64; 3], f64) {
+pub fn pixel(picture: &Exact, x: u32, y: u32) -> ([f64; 3], f64) {
     let bound = picture.bounds[(y * picture.film.width() + x) as usize];
     (picture.film.pixel(x, y), bound.into())
 }
 
 /// The largest difference of two pixels' channels.
-fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
+pub fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     let differences = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
     differences.into_iter().fold(0.0, f64::max)
 }
@@ -97,6 +100,13 @@ fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());
+    for ((computed, sampled), bound) in pixels.clone().zip(&computed.bounds) {
+        let is_uniform = *bound == 0.0;
+        assert!(
+            !is_uniform || computed == sampled,
+            "{computed:?} and {sampled:?} of {scene:?}"
+        );
+    }
     for channel in 0..3 {
         let (mut sum, mut variances) = (0.0_f64, 0.0);
         for (index, (computed, sampled)) in pixels.clone().enumerate() {

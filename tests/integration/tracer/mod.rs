@@ -192,74 +192,50 @@ fn fans_of_triangles_agree_with_the_oracle() {
     assert!(found > 200, "{found}");
 }
 
-/// Of a box and of a triangle in its face the first one is seen, whatever the vertices' differences round to.
-#[test]
-fn a_triangle_in_a_face_ties_with_it() {
-    let cuboid = "box { center (0, 0, 0) size (2, 2, 2) }";
-    for vertices in [
-        "v0 (-1, -1, 1) v1 (1, -1, 1) v2 (-1, 1, 1)",
-        "v0 (0.1, 0.3, 1) v1 (0.7, 0.2, 1) v2 (0.5, 0.9, 1)",
-    ] {
-        for [first, second] in [["", cuboid], [cuboid, ""]] {
-            let scene = read(&format!(
-                "camera {{ eye (0.3, 0.2, 5) lookat (0, 0, 0) }} {first} triangle {{ {vertices} }} {second}"
-            ));
-            assert_eq!(agrees(&resized(scene, 64, 64), 20), 20);
-        }
-    }
-}
-
-#[test]
-fn scenes_of_extreme_sizes_agree_with_the_oracle() {
-    for size in ["1e-300", "1e-160", "1e-5", "1e160", "1e300"] {
-        let scene = read(&format!(
-            "let s = {size} camera {{ eye s * (1, 2, 3) lookat (0, 0, 0) }}
-             sphere {{ center (0, 0, 0) radius 0.7 * s }}
-             box {{ min s * (0.1, 0.1, 0.1) max s * (0.6, 0.6, 0.6) }}
-             triangle {{ centroid s * (0.1, 0.4, 0.9) normal s * (0.2, 0.3, 1) sides s * (2, 2, 1) }}
-             checkerboard {{ y -0.5 * s square s }}"
-        ));
-        assert_eq!(agrees(&resized(scene, 64, 64), 10), 10);
-    }
-}
-
+/// What is next to nothing, or to everything, that the range of numbers has, and what ties.
 #[test]
 fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
     for [scene, values, boundaries] in rows(
         "
         -- A floor as close below the eye, and a box as close before it.
-        camera { eye (0.3, s, 5.3) direction (0, -0.3, -1) } checkerboard {} sphere { center (0, 1, 0) } -> 5e-324 1e-309 1e-300 -> 10
-        camera { eye (0, 0.1, 0) direction (0, -0.3, -1) } sphere { center (0, 0, -3) radius 0.5 } box { min (-1, -1, -1) max (1, 1, -s) } checkerboard {} -> 5e-324 1e-309 1e-300 -> 0
+        camera { eye (0.3, $, 5.3) direction (0, -0.3, -1) } checkerboard {} sphere { center (0, 1, 0) } -> 5e-324 | 1e-309 | 1e-300 -> 10
+        camera { eye (0, 0.1, 0) direction (0, -0.3, -1) } sphere { center (0, 0, -3) radius 0.5 } box { min (-1, -1, -1) max (1, 1, -$) } checkerboard {} -> 5e-324 | 1e-309 | 1e-300 -> 0
         -- Just inside of a huge sphere, with something else before its far side.
-        camera { eye (0, -1, 0) direction (0, 0, -1) } sphere { center (0, -s, 0) radius s } box { min (-1, -2, -11) max (1, 1, -10) } -> 1e20 1e60 1e100 -> 10
+        camera { eye (0, -1, 0) direction (0, 0, -1) } sphere { center (0, -$, 0) radius $ } box { min (-1, -2, -11) max (1, 1, -10) } -> 1e20 | 1e60 | 1e100 -> 10
+        -- All of one size.
+        let s = $ camera { eye s * (1, 2, 3) lookat (0, 0, 0) } sphere { center (0, 0, 0) radius 0.7 * s } box { min s * (0.1, 0.1, 0.1) max s * (0.6, 0.6, 0.6) } triangle { centroid s * (0.1, 0.4, 0.9) normal s * (0.2, 0.3, 1) sides s * (2, 2, 1) } checkerboard { y -0.5 * s square s } -> 1e-300 | 1e-160 | 1e-5 | 1e160 | 1e300 -> 10
+        -- Of a box and of a triangle in its face the first one is seen, whatever the vertices' differences round to.
+        camera { eye (0.3, 0.2, 5) lookat (0, 0, 0) } triangle { $ } box { center (0, 0, 0) size (2, 2, 2) } -> v0 (-1, -1, 1) v1 (1, -1, 1) v2 (-1, 1, 1) | v0 (0.1, 0.3, 1) v1 (0.7, 0.2, 1) v2 (0.5, 0.9, 1) -> 10
+        camera { eye (0.3, 0.2, 5) lookat (0, 0, 0) } box { center (0, 0, 0) size (2, 2, 2) } triangle { $ } -> v0 (-1, -1, 1) v1 (1, -1, 1) v2 (-1, 1, 1) | v0 (0.1, 0.3, 1) v1 (0.7, 0.2, 1) v2 (0.5, 0.9, 1) -> 10
     ",
     ) {
-        for value in values.split(' ') {
-            let scene = read(&format!("let s = {value} {scene}"));
+        for value in values.split('|') {
+            let scene = read(&scene.replace('$', value.trim()));
             let found = agrees(&resized(scene, 64, 64), 10);
             assert!(found >= boundaries.parse().unwrap(), "{value}: {found}");
         }
     }
-    // Lenses of all ranges.
-    for (lens, expected) in [
-        ("d 1e-300 view_height 1e300", [0.0, 0.0, 0.0, 0.0]),
-        ("d 1e300 view_height 1e-30", [1.0, 1.0, 2.0, 2.0]),
-        ("d 1e300 view_height 1e300", [0.0, 1.0, 2.0, 0.0]),
-        ("d 1e-300 view_height 1e-300", [0.0, 1.0, 2.0, 0.0]),
-    ] {
-        let scene = read(&format!(
-            "camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
+}
+
+#[test]
+fn lenses_have_all_ranges_of_numbers() {
+    let mut random = Random::new(4);
+    for [lens, seen] in rows(
+        "
+        d 1e-300 view_height 1e300 -> 0 0 0 0
+        d 1e300 view_height 1e-30 -> 1 1 2 2
+        d 1e300 view_height 1e300 -> 0 1 2 0
+        d 1e-300 view_height 1e-300 -> 0 1 2 0
+    ",
+    ) {
+        let both = Both::new(&read(&format!(
+            "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
-        ));
-        let both = Both::new(&resized(scene, 64, 64));
-        let mut random = Random::new(4);
+        )));
         // The boxes' common face is seen edge-on in the middle of the picture.
-        for (x, expected) in [0, 31, 32, 63].into_iter().zip(expected) {
-            assert_eq!(
-                both.color(x, 31, random.offset())[0],
-                expected,
-                "{lens}: {x}"
-            );
+        for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
+            let found = both.color(x, 31, random.offset())[0];
+            assert_eq!(found.to_string(), seen, "{lens}: {x}");
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The board at its horizon, and with squares of any size; in ordinary views, and in views of any width.
 
-mod narrow;
+mod extreme;
 mod ordinary;
-mod wide;
 
 use super::{difference, exact, is_known, part_adds_up, read};
 use crate::{
@@ -27,61 +26,51 @@ fn a_horizon_anywhere_in_a_pixel() {
     }
 }
 
-/// Of squares too small to be seen, however small, next to nothing is left but their mean.
 #[test]
-fn squares_too_small_to_be_seen() {
-    for lens in ["fov 40deg", "fov 1deg", "fov 170deg"] {
-        for square in ["1e-12", "1e-30"] {
+fn squares_too_small_to_be_seen_and_through_the_longest_lenses() {
+    for [image, camera, board, lenses] in rows(
+        "
+        -- Next to nothing is left but their mean.
+        width 6 height 4 -> eye (0.3, 1.7, 8) direction (1, -0.1, -2) roll 20deg -> square 1e-12 -> fov 40deg | fov 1deg | fov 170deg
+        width 6 height 4 -> eye (0.3, 1.7, 8) direction (1, -0.1, -2) roll 20deg -> square 1e-30 -> fov 40deg | fov 1deg | fov 170deg
+        -- A corner of squares close up, an odd number of squares from the eye: the share is as good as in any view.
+        width 1 height 1 -> eye (-1, 1, -4) direction (-1, -1, 1) d 1 -> -> view_height 1 | view_height 1e-3 | view_height 1e-6 | view_height 1e-9 | view_height 1e-14
+    ",
+    ) {
+        for lens in lenses.split('|') {
             is_known(&format!(
-                "image {{ width 6 height 4 }}
-                 camera {{ eye (0.3, 1.7, 8) direction (1, -0.1, -2) roll 20deg {lens} }}
-                 checkerboard {{ y 0 square {square} colors (white, black) }}"
+                "image {{ {image} }} camera {{ {camera} {lens} }} checkerboard {{ {board} colors (white, black) }}"
             ));
         }
     }
 }
 
-/// The largest difference between a board's picture and another board's, of which a share is seen; and the bounds of both.
-fn apart(eye: &str, one: &str, other: &str, share: f64) -> (f64, f64) {
-    let [one, other] = [one, other].map(|board| {
-        exact(&read(&format!(
-            "image {{ width 16 height 12 }}
-             camera {{ eye {eye} direction (3, -0.5, -1) fov 40deg }}
-             checkerboard {{ {board} }}"
-        )))
-    });
-    let pixels = one.film.pixels().iter().zip(other.film.pixels());
-    let differences = pixels.map(|(one, other)| difference(*one, other.map(|light| share * light)));
-    let bounds = one.bound() + other.bound();
-    (differences.fold(0.0, f64::max), bounds)
-}
-
-/// An eye so close to the floor that it sees nothing else of it than the square that it is above.
 #[test]
-fn an_eye_close_above_a_square() {
-    for height in ["1e-16", "1e-20", "1e-28", "1e-100", "1e-300"] {
-        let eye = format!("(0.3, {height}, 0.1)");
-        let (apart, bounds) = apart(&eye, "colors (white, black)", "colors (white, white)", 1.0);
-        assert!(apart <= bounds, "{height}: {apart:e} of {bounds:e}");
-    }
-}
-
-/// Squares so small that only their mean is seen.
-#[test]
-fn squares_without_number() {
-    for square in ["1e-20", "1e-100", "1e-298", "1e-300", "1e-303"] {
-        let board = |odd: &str| format!("square {square} colors (white, {odd})");
-        let (apart, _) = apart("(0.3, 2, 0.1)", &board("black"), &board("white"), 0.5);
-        assert!(apart <= 1e-9, "{square}: {apart:e}");
-    }
-}
-
-/// Squares as large as numbers: four of them are seen, however large they are.
-#[test]
-fn squares_of_the_greatest_numbers() {
-    for square in ["1e160", "1e300", "1e301", "1e305", "1.7e308"] {
-        let square = format!("square {square}");
-        let (apart, bounds) = apart("(-0.3, 2, 0.1)", "square 1e100", &square, 1.0);
-        assert!(apart <= bounds, "{square}: {apart:e} of {bounds:e}");
+fn boards_that_look_like_others_of_which_a_share_is_seen() {
+    for [eye, one, other, share, most, values] in rows(
+        "
+        -- An eye so close to the floor that it sees nothing else of it than the square that it is above.
+        (0.3, s, 0.1) -> colors (white, black) -> colors (white, white) -> 1 -> bounds -> 1e-16 1e-20 1e-28 1e-100 1e-300
+        -- Squares so small that only their mean is seen.
+        (0.3, 2, 0.1) -> square s colors (white, black) -> square s colors (white, white) -> 0.5 -> 1e-9 -> 1e-20 1e-100 1e-298 1e-300 1e-303
+        -- Squares as large as numbers: four of them are seen, however large they are.
+        (-0.3, 2, 0.1) -> square 1e100 -> square s -> 1 -> bounds -> 1e160 1e300 1e301 1e305 1.7e308
+    ",
+    ) {
+        for value in values.split(' ') {
+            let [one, other] = [one, other].map(|board| {
+                exact(&read(&format!(
+                    "let s = {value} image {{ width 16 height 12 }}
+                     camera {{ eye {eye} direction (3, -0.5, -1) fov 40deg }}
+                     checkerboard {{ {board} }}"
+                )))
+            });
+            let share: f64 = share.parse().unwrap();
+            let most = most.parse().unwrap_or(one.bound() + other.bound());
+            for (one, other) in one.film.pixels().iter().zip(other.film.pixels()) {
+                let apart = difference(*one, other.map(|light| share * light));
+                assert!(apart <= most, "{eye}, {value}: {apart:e} of {most:e}");
+            }
+        }
     }
 }
