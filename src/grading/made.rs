@@ -31,7 +31,7 @@ const MISSED: f64 = 1e-3;
 pub struct Made {
     pub candidate: Candidate,
     pub part: Area,
-    /// What it would make if it behaved as a right program.
+    /// What it would make if it behaved as a right program; in samples, what it makes as it behaves.
     right: Arc<Moments>,
     /// How far the means are off of what is told from it by samples, where it was made for that.
     error: Option<Arc<[[f64; 3]]>>,
@@ -204,7 +204,7 @@ impl Candidate {
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
-            work.sampled(self.scene.objects.len(), samples, area)?;
+            work.pay_for_samples(self.scene.objects.len(), samples, area)?;
             let textbook = Textbook::new(scene(), behaviour, self.average);
             Some(textbook.moments(area, samples))
         };
@@ -341,6 +341,9 @@ fn behave(
     behaviour: Behaviour,
     [area, part]: [Area; 2],
 ) -> Option<()> {
+    if area.pixels() == 0 {
+        return Some(());
+    }
     let own = sampled(Behaviour::RIGHT, area, SAMPLES)?;
     let other = sampled(behaviour, area, SAMPLES)?;
     for (from, (x, y)) in area.iter().enumerate() {

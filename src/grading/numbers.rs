@@ -8,7 +8,7 @@ use super::{
     made::Made,
     number_text,
     parameters::{self, Owner, Parameter},
-    score::{Model, least},
+    score::Model,
     search::{Found, Search, steps},
 };
 use crate::color::{Color, linear_to_srgb};
@@ -55,7 +55,7 @@ pub fn numbers(
     });
     // Those first that start best: work may end before all are fitted.
     let started = tried.filter_map(|one| Some((one.1.first()?.0, one)));
-    let on_tiny = least(started, usize::MAX).filter_map(|(parameter, tried)| {
+    let on_tiny = least_first(started).filter_map(|(parameter, tried)| {
         let rounds = if is_read(&parameter) { 0 } else { 4 };
         let fitted = tried.into_iter().filter_map(|(_, start)| {
             search.fit_one(tiny, &parameter, &search.tiny, start, [rounds, 0])
@@ -70,13 +70,20 @@ pub fn numbers(
         fitted.truncate(FITTED);
         fitted
     });
-    let on_coarse = least(on_coarse, usize::MAX).filter_map(|(parameter, start)| {
+    let on_coarse = least_first(on_coarse).filter_map(|(parameter, start)| {
         let rounds = if is_read(&parameter) { [0, 0] } else { [2, 1] };
         let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
         let named = number_text::numbers(search.scene, &parameter, fitted.numbers);
         Some((fitted.left, candidate.with(named)?))
     });
     on_coarse.collect()
+}
+
+/// Those first of which least is left.
+fn least_first<T>(all: impl Iterator<Item = (f64, T)>) -> impl Iterator<Item = T> {
+    let mut all: Vec<(f64, T)> = all.collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.into_iter().map(|(_, one)| one)
 }
 
 /// The colours that a picture has where these colours alone should be seen: the medians of their channels.

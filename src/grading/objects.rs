@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     axes::Axes,
     candidate::Candidate,
+    grid::Grid,
     parameters::Owner,
     search::Search,
     textbook::{corners, vertices},
@@ -69,13 +70,7 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
     };
     let strays = search.strays(&plain).unwrap_or_default();
     let grid = &search.fine.grid;
-    let world = World::new_unless(&plain.drawn(grid), search.cancel).ok();
-    let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
-    let labels = grid
-        .cells
-        .iter()
-        .map(|(x, y)| Some(drawn[world.as_ref()?.object_at(x, y)?]));
-    let labels: Vec<Option<usize>> = labels.collect();
+    let labels = labels(search, &plain, grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let cells = grid.cells;
     let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
@@ -98,6 +93,23 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
     let backgrounds = [scene, &candidate.scene].map(|scene| scene.image.background);
     let is_background_right = backgrounds[0] == backgrounds[1] && are_right[scene.objects.len()];
     (objects, is_background_right)
+}
+
+/// The object that a right program shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
+pub fn labels(search: &Search, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
+    let is_drawn = &candidate.is_drawn;
+    let plain = Candidate {
+        scene: candidate.scene.clone(),
+        is_drawn: is_drawn.clone(),
+        ..Candidate::right(search.scene)
+    };
+    let Ok(world) = World::new_unless(&plain.drawn(grid), search.cancel) else {
+        return vec![None; grid.count()];
+    };
+    search.work.labelled(is_drawn.len(), grid.count());
+    let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
+    let label = |(x, y)| world.object_at(x, y).map(|object| drawn[object]);
+    grid.cells.iter().map(label).collect()
 }
 
 /// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.

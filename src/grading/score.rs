@@ -401,10 +401,3 @@ impl Strays {
             .collect()
     }
 }
-
-/// Those of which least is left, in this order.
-pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> impl Iterator<Item = T> {
-    let mut all: Vec<(f64, T)> = all.collect();
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
-    all.into_iter().take(most).map(|(_, one)| one)
-}

@@ -1,7 +1,7 @@
 //! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times.
 //!
-//! A tiny grid and a coarse one tell which mistakes are worth a look, a finer one fits their numbers and judges them. What shows only where
-//! colours meet is judged on the pixels.
+//! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are; a middle one fits numbers and judges all of them. What shows
+//! only where colours meet is judged on the pixels.
 
 use super::{
     candidate::{Candidate, Cause, Named},
@@ -11,15 +11,12 @@ use super::{
     mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
     number_text,
     numbers::numbers,
+    objects::labels,
     parameters::Owner,
     patch::patch,
     search::{Found, Search, joined, split},
 };
-use crate::{
-    cancel::{self, Cancelled},
-    scene::Scene,
-    tracer::World,
-};
+use crate::cancel::{self, Cancelled};
 
 /// So many mistakes are named at most.
 const MOST_MISTAKES: usize = 4;
@@ -131,8 +128,9 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
     }
     // Half of the work that is left is left for judging those that were tried.
     let most = search.work.keep(0.5);
-    let tiny = search.made_to_compare(&from.candidate)?;
-    tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
+    if let Some(tiny) = search.made_to_compare(&from.candidate) {
+        tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
+    }
     let are_all_numbers_tried = search.work.may_go_on();
     search.work.restore(most);
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -223,20 +221,7 @@ fn rows(search: &Search, from: &Found, coarse: &Made, suspects: &[usize]) -> Vec
 fn suspects(search: &Search, from: &Found) -> Vec<usize> {
     let grid = &search.middle.grid;
     let candidate = &from.candidate;
-    let (camera, image) = grid.view(&candidate.scene, false);
-    let scene = Scene {
-        camera,
-        image,
-        ..candidate.scene.clone()
-    };
-    let Ok(world) = World::new_unless(&scene, search.cancel) else {
-        return Vec::new();
-    };
-    let labels: Vec<_> = grid
-        .cells
-        .iter()
-        .map(|(x, y)| world.object_at(x, y))
-        .collect();
+    let labels = labels(search, candidate, grid);
     let mut wrong = vec![0.0; search.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
         // An object that grew is wrong beside where it is seen.
@@ -253,7 +238,7 @@ fn suspects(search: &Search, from: &Found) -> Vec<usize> {
             .for_each(|object| wrong[object] += libm::log1p(*off));
     }
     let mut suspects: Vec<_> = (0..wrong.len())
-        .filter(|&object| wrong[object] > 0.0 && candidate.is_drawn[object])
+        .filter(|&object| wrong[object] > 0.0)
         .collect();
     suspects.sort_by(|&one, &other| wrong[other].total_cmp(&wrong[one]));
     suspects.truncate(SUSPECTS);

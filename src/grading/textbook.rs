@@ -1,7 +1,7 @@
 //! A ray tracer as in a textbook, in plain `f64`, with the mistakes of a program as switches.
 //!
-//! In: a scene, the switches, and a grid over the picture. Out: for each cell of the grid the mean and the variance of what one sample in it sees, from a
-//! few samples at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
+//! In: a scene, the switches, a part of its picture, and how many samples. Out: for each pixel of the part the mean and the variance of what one sample in it
+//! sees, from so many at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
 use glam::{BVec3, DVec2, DVec3};

@@ -104,7 +104,7 @@ impl<'a> Work<'a> {
     }
 
     /// A part of a picture of so many objects is to be sampled; none if that takes more than is left, which is spent then.
-    pub fn sampled(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
+    pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;
         let all = objects * OBJECT + rays * (RAY + TEST * objects) + CELL * cells;
@@ -113,6 +113,11 @@ impl<'a> Work<'a> {
         let fits = all <= left;
         self.is_cut.set(self.is_cut.get() || !fits);
         fits.then_some(())
+    }
+
+    /// So many cells of a scene of so many objects are asked what they show.
+    pub fn labelled(&self, objects: usize, cells: usize) {
+        self.spend(of_exact(0, objects, cells as u64));
     }
 
     /// So many cells are compared.

@@ -6,7 +6,6 @@
 use std::{
     collections::{HashMap, VecDeque},
     mem,
-    num::NonZero,
 };
 
 use base64::{Engine, prelude::BASE64_STANDARD};
@@ -67,12 +66,17 @@ struct Begun {
 impl Wanted {
     /// Reads the parameters of a request.
     pub fn new(params: &Value) -> Result<Self, Refusal> {
-        let scale: Option<NonZero<u32>> = optional(params, "scale")?;
-        let samples: Option<NonZero<u64>> = optional(params, "samples")?;
-        Ok(Self {
-            scale: scale.map_or(1, NonZero::get),
-            samples: samples.map(NonZero::get),
-        })
+        let invalid = |name| {
+            let message = format!("`{name}` is a whole number of at least 1");
+            Err(Refusal::invalid(message))
+        };
+        let scale = optional(params, "scale")?.unwrap_or(1);
+        let samples = optional(params, "samples")?;
+        match (scale, samples) {
+            (0, _) => invalid("scale"),
+            (_, Some(0)) => invalid("samples"),
+            _ => Ok(Self { scale, samples }),
+        }
     }
 
     fn sampler(&self, scene: &Scene) -> Sampler {

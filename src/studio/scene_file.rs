@@ -25,7 +25,7 @@ pub struct SceneFile {
     /// Where a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// What was there when it was looked at last.
+    /// What was there when it was looked at last; of a new scene, its text.
     held: Held,
 }
 

@@ -43,13 +43,15 @@ fn by_vertices<T: Real>(
 /// The normal a × b of the plane through the eye and an edge from a corner to another. Its form matters by its sign alone, so it may have a scale of
 /// its own.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
-    // a × b = a × (b − a)
-    let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
-    let along = camera.turned(&scaled_to_one(&along));
-    let normal = cross(&scaled_to_one(corner), &along);
-    let is_certain = |x: &Ball<T>| x.is_precise() && x.sign().is_ok();
-    if !T::LAST && normal.iter().all(is_certain) {
-        return normal;
+    if !T::LAST {
+        // a × b = a × (b − a)
+        let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
+        let along = camera.turned(&scaled_to_one(&along));
+        let normal = cross(&scaled_to_one(corner), &along);
+        let is_certain = |x: &Ball<T>| x.is_precise() && x.sign().is_ok();
+        if normal.iter().all(is_certain) {
+            return normal;
+        }
     }
     // Corners may be so far away that they are in one direction but for hundreds of bits.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));

@@ -113,11 +113,11 @@ fn scenes_of_all_kinds() {
     for wild in [0, 5, 30] {
         let scenes = generated(Numbers::Wild(wild), [24, 18], 2024).take(100);
         let scenes = scenes.zip(Method::SAMPLED.into_iter().cycle());
-        let seen =
-            scenes.filter(|((_, scene), method)| compare(scene, *method, Count::PerPixel(24)) > 1);
-        // Something is to be seen in most scenes of ordinary numbers.
-        let seen = seen.count();
-        assert!(seen > 50 || wild > 0, "{seen}");
+        let colors =
+            scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
+        let colors: usize = colors.sum();
+        // A picture of ordinary numbers has ten colours on an average at least: edges mix them.
+        assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
 

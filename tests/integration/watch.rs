@@ -1,7 +1,7 @@
 //! `watch` from outside: an editor's ways to save, broken texts, bursts, and the end.
 //!
-//! Nothing sleeps for a fixed time: every step waits for what it is to bring about, with a patience that a busy machine does not
-//! exhaust.
+//! Every step waits for what it is to bring about, with a patience that a busy machine does not exhaust; fixed times pass only where
+//! nothing is to happen.
 
 use std::{
     cell::RefCell,

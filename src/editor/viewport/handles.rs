@@ -171,7 +171,10 @@ fn moved_point(
     let (moved, goal) = match along {
         None => (projection.on_plane(to, point, projection.ahead), to),
         Some(Along::Floor) => (projection.on_plane(to, point, DVec3::Y), to),
-        Some(Along::Axis(axis)) => along_axis(point, to, DVec3::AXES[axis], projection),
+        Some(Along::Axis(axis)) => {
+            let (moved, nearest) = along_axis(point, to, DVec3::AXES[axis], projection);
+            (Some(moved), nearest)
+        }
     };
     let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
     match seen {
@@ -183,12 +186,7 @@ fn moved_point(
 }
 
 /// A point moved along an axis, to where it is seen nearest to a point of the picture; and where that is.
-fn along_axis(
-    point: DVec3,
-    to: DVec2,
-    axis: DVec3,
-    projection: &Projection,
-) -> (Option<DVec3>, DVec2) {
+fn along_axis(point: DVec3, to: DVec2, axis: DVec3, projection: &Projection) -> (DVec3, DVec2) {
     // The plane of the eye and the axis through the point cuts the picture in a line; its normal, in the camera's axes, has that line's coefficients.
     let plane = unit((point - projection.eye).cross(axis)).0;
     let normal = DVec2::new(plane.dot(projection.right), -plane.dot(projection.top));
@@ -198,7 +196,7 @@ fn along_axis(
     // p + s a lies on the ray t where (p + s a) × t = 0.
     let across = axis.cross(ray);
     let step = -(point - projection.eye).cross(ray).dot(across) / across.length_squared();
-    (Some(point + axis * step), nearest)
+    (point + axis * step, nearest)
 }
 
 /// The radius with which a sphere's outline passes through a point of the picture.

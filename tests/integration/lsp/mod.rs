@@ -1,4 +1,4 @@
-//! The language server from outside: the binary, and what goes through its standard input and output.
+//! The language server: the binary over pipes (`session`, `neovim`), and in this process, where it is known what it has done by when.
 
 pub mod client;
 mod frames;

@@ -1,7 +1,8 @@
 //! Conversations, as `tests/lsp` has them: what is said to the server, and below it what the server says.
 //!
 //! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other message; the document is added to their parameters. What
-//! stands without an empty line between has come before the server begins to work. `PINHOLE_BLESS=1 cargo test` writes the answers, `<`, anew.
+//! stands without an empty line between has come before the server begins to work. `#` begins a remark.
+//! `PINHOLE_BLESS=1 cargo test` writes anew what the server answers, `<`, and what its log says, `?`.
 
 use std::path::Path;
 
