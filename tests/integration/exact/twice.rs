@@ -60,7 +60,7 @@ sampled_and_exhaustive!(four_quarters_are_the_pixel_of_extreme_cameras);
 
 /// The figure with other numbers in it.
 fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
-    let figure = example_text("figure_9_9");
+    let figure = example_text("figure_9_9").replace("checkerboard ", "checkerboard Floor ");
     let size = ["image.width=24", "image.height=16"];
     for sets in effort.first(
         3,
@@ -71,11 +71,11 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
             camera.d=1e-3
             camera.d=1e-5
             camera.d=1e5
-            checkerboard.square=1e-3
-            checkerboard.square=1e-6
-            checkerboard.square=1e-100
-            checkerboard.square=1e6
-            checkerboard.square=1e300
+            Floor.square=1e-3
+            Floor.square=1e-6
+            Floor.square=1e-100
+            Floor.square=1e6
+            Floor.square=1e300
             camera.eye=(3, 1e-6, 8)
             camera.eye=(3, 1e8, 8)
             image.width=1 -> image.height=1
