@@ -85,6 +85,14 @@ impl Candidate {
         }
     }
 
+    /// What a right program makes of what it draws of its scene.
+    pub fn shown_rightly(&self) -> Self {
+        Self {
+            is_drawn: self.is_drawn.clone(),
+            ..Self::right(&self.scene)
+        }
+    }
+
     /// The same with one more mistake.
     pub fn with(&self, named: Named) -> Option<Self> {
         let mut candidate = self.clone();

@@ -242,7 +242,7 @@ impl Candidate {
                     None => (Arc::new((Moments::clone(&right), doubt())), part),
                 };
                 let all = Arc::make_mut(&mut behaved);
-                behave(all, &right, &sampled, self.behaviour, [area, part])?;
+                put_samples(all, &right, &sampled, self.behaviour, [area, part])?;
                 Some(behaved)
             }
             false => None,
@@ -334,7 +334,7 @@ impl Candidate {
 
 /// Puts what samples show of a program that behaves otherwise, which no scene can say, and the variance of these means, into an area of a part; where samples of
 /// a right one show the same, it is what that shows exactly.
-fn behave(
+fn put_samples(
     (behaved, doubt): &mut (Moments, Vec<[f64; 3]>),
     right: &Moments,
     sampled: &dyn Fn(Behaviour, Area, usize) -> Option<Moments>,

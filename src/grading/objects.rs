@@ -63,14 +63,11 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
         };
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
-    let plain = Candidate {
-        scene: candidate.scene.clone(),
-        is_drawn: is_drawn.clone(),
-        ..Candidate::right(scene)
-    };
-    let strays = search.strays(&plain).unwrap_or_default();
+    let strays = search
+        .strays(&candidate.shown_rightly())
+        .unwrap_or_default();
     let grid = &search.fine.grid;
-    let labels = labels(search, &plain, grid);
+    let labels = labels(search, candidate, grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let cells = grid.cells;
     let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
@@ -98,12 +95,8 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
 /// The object that a right program shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
 pub fn labels(search: &Search, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
     let is_drawn = &candidate.is_drawn;
-    let plain = Candidate {
-        scene: candidate.scene.clone(),
-        is_drawn: is_drawn.clone(),
-        ..Candidate::right(search.scene)
-    };
-    let Ok(world) = World::new_unless(&plain.drawn(grid), search.cancel) else {
+    let scene = candidate.shown_rightly().drawn(grid);
+    let Ok(world) = World::new_unless(&scene, search.cancel) else {
         return vec![None; grid.count()];
     };
     search.work.labelled(is_drawn.len(), grid.count());
