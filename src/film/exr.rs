@@ -5,6 +5,7 @@
 use std::io::{self, Cursor};
 
 use exr::{
+    block,
     error::Error,
     image::{
         Encoding, Image, SpecificChannels,
@@ -13,7 +14,6 @@ use exr::{
     },
     math::Vec2,
     meta::{
-        MetaData,
         attribute::{
             ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
         },
@@ -79,8 +79,8 @@ pub fn write_exr(film: &Film, part: Area, whole: Area, out: &mut dyn Sink) -> io
 
 /// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
 pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(unreadable)?;
-    for header in &meta.headers {
+    let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
+    for header in file.headers() {
         // Before anything is unpacked.
         let Vec2(width, height) = header.layer_size;
         check_pixels(width as u64, height as u64)?;
@@ -100,7 +100,7 @@ pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
         .first_valid_layer()
         .all_attributes()
         .non_parallel()
-        .from_buffered(Cursor::new(bytes))
+        .from_chunks(file)
         .map_err(unreadable)?;
     let window = image.attributes.display_window;
     let corner = image.layer_data.attributes.layer_position - window.position;

@@ -2,9 +2,9 @@
 //!
 //! The page stands alone: its charts are inline SVG, its pictures `data:` URIs, and it runs nothing. It is well-formed XML as well.
 
-use std::io;
+use std::{fmt::Write, io};
 
-use minijinja::{AutoEscape, Environment, Value, context};
+use upon::{Engine, Value, fmt, value};
 
 use super::{
     chart::{against_samples, against_time, shown_errors},
@@ -12,7 +12,10 @@ use super::{
     results::{Measurement, Run, Shown},
     summary::{heading, notes, printable, table, verdicts},
 };
-use crate::film::{self, Film};
+use crate::{
+    diagnostic::escaped,
+    film::{self, Film},
+};
 
 /// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays small.
 const WHOLE: [u32; 2] = [640, 480];
@@ -21,51 +24,73 @@ const WHOLE: [u32; 2] = [640, 480];
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     let sections = measurements.iter().map(section);
     let sections = sections.collect::<io::Result<Vec<_>>>()?;
-    let mut environment = Environment::new();
-    environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    let context = context! {
-        sections,
-        style => include_str!("page.css"),
-        version => env!("CARGO_PKG_VERSION"),
+    let mut engine = Engine::new();
+    // What a text says is never HTML, unless the template says that it is.
+    engine.set_default_formatter(&write_escaped);
+    engine.add_formatter("html", fmt::default);
+    let template = engine.compile(include_str!("page.html"));
+    let template = template.map_err(io::Error::other)?;
+    let values = value! {
+        sections: sections,
+        style: include_str!("page.css"),
+        version: env!("CARGO_PKG_VERSION"),
     };
-    let page = environment.render_str(include_str!("page.html"), context);
+    let page = template.render_from(&engine, &values).to_string();
     page.map_err(io::Error::other)
+}
+
+fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
+    match value {
+        Value::String(text) => Ok(out.write_str(&escaped(text))?),
+        value => fmt::default(out, value),
+    }
 }
 
 /// What the template fills in for a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.overrides.iter();
+    let overrides = overrides.map(|set| printable(set));
     let fits = || measured.series.iter().filter_map(|series| series.fit());
     let charts = match measured.series.is_empty() {
         true => Vec::new(),
         false => vec![against_time(measured), against_samples(measured)],
     };
     let (part, pictures) = pictures(measured)?;
-    Ok(context! {
-        name => printable(&measured.subject.name),
-        heading => heading(measured),
-        overrides => overrides.map(|set| printable(set)).collect::<Vec<_>>(),
-        verdicts => verdicts(measured),
-        charts,
-        has_dashed_lines => !shown_errors(measured).is_empty(),
-        has_exact => measured.exact.is_some(),
-        has_slopes => fits().next().is_some(),
-        has_slope_errors => fits().any(|fit| fit.slope_error.is_some()),
-        heads => summary.heads,
-        rows => summary.rows,
-        notes => notes(measured),
-        part,
-        pictures,
-        whole => whole(measured)?,
+    let only_method = match shown_methods(measured)[..] {
+        [(name, _)] => name,
+        _ => "",
+    };
+    Ok(value! {
+        name: printable(&measured.subject.name),
+        heading: heading(measured),
+        overrides: overrides.collect::<Vec<_>>().join("; "),
+        verdicts: verdicts(measured),
+        charts: charts,
+        has_dashed_lines: !shown_errors(measured).is_empty(),
+        has_exact: measured.exact.is_some(),
+        has_slopes: fits().next().is_some(),
+        has_slope_errors: fits().any(|fit| fit.slope_error.is_some()),
+        heads: summary.heads,
+        rows: summary.rows,
+        notes: notes(measured),
+        part: part,
+        only_method: only_method,
+        pictures: pictures,
+        whole: whole(measured)?,
     })
+}
+
+/// The methods of which a picture is shown, by their names.
+fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &Shown)> {
+    let series = measured.series.iter();
+    let shown = series.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
+    shown.collect()
 }
 
 /// Which part of the picture is shown of every method, and that part as the exact method and the others make it; nothing without the others.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
-    let shown = measured.series.iter();
-    let shown = shown.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
-    let shown: Vec<_> = shown.collect();
+    let shown = shown_methods(measured);
     let Some(&(first, &Shown { part, .. })) = shown.first() else {
         return Ok(Default::default());
     };
@@ -75,7 +100,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let time = time.map_or(String::new(), |times| {
         format!(", {}", seconds(Run::typical(times).cpu, 2))
     });
-    let mut pictures = vec![value(&exact, "exact", format!("no error{time}"))?];
+    let mut pictures = vec![picture(&exact, "exact", format!("no error{time}"))?];
     for (name, shown) in shown {
         let about = format!(
             "error {}, {}, {} per pixel",
@@ -83,7 +108,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
             seconds(shown.cpu, 2),
             plural(shown.per_pixel as usize, "sample")
         );
-        pictures.push(value(&shown.film, name, about)?);
+        pictures.push(picture(&shown.film, name, about)?);
     }
     let part = format!(
         "{} × {} pixels, {} from the left and {} from the top, where {first} errs most",
@@ -99,9 +124,9 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
         true => "the whole picture".to_owned(),
         false => format!("the whole picture, reduced to {width} × {height} pixels"),
     };
-    value(&film, "the exact picture as a whole", about)
+    picture(&film, "the exact picture as a whole", about)
 }
 
-fn value(film: &Film, name: &str, about: String) -> io::Result<Value> {
-    Ok(context! { uri => film::data_uri(film)?, name, about })
+fn picture(film: &Film, name: &str, about: String) -> io::Result<Value> {
+    Ok(value! { uri: film::data_uri(film)?, name: name, about: about })
 }
