@@ -189,14 +189,15 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);
-    let (mut out, mut inside) = if b.y[0] < a.y[0] {
-        (left, middle)
-    } else if b.y[2] < a.y[2] {
-        (right, middle)
+    let [gap_left, gap_middle, gap_right] = [0, 1, 2].map(|i| b.y[i] - a.y[i]);
+    let (mut out, mut gap_out) = if gap_left < 0.0 {
+        (left, gap_left)
+    } else if gap_right < 0.0 {
+        (right, gap_right)
     } else {
         return middle;
     };
-    let (mut gap_out, mut gap_in) = (gap(out), gap(inside));
+    let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
     // The Illinois variant of the false position: an end that stays twice has its value halved.
     for _ in 0..STEPS {
