@@ -16,7 +16,6 @@ mod explain;
 mod extremes;
 mod film;
 mod fixes;
-mod fmt;
 mod format;
 mod generated;
 mod grade;
@@ -28,7 +27,6 @@ mod laws;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod numerics;
-mod overrides;
 mod parts;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod processors;

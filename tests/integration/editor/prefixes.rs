@@ -1,8 +1,11 @@
-//! No text that somebody types makes an answer fail: every beginning of every example, asked at its end.
+//! No text that somebody types makes a reading or an answer fail: every beginning of every example, asked at its end.
+
+use std::iter;
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
-    scenes::{examples, sources},
+    parts, robustness,
+    scenes::{example_text, examples, sources},
 };
 use pinhole::{
     color::Color,
@@ -74,19 +77,29 @@ fn ask_of_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
 
-/// Every beginning of it, asked at its end; the whole, asked at every place; and it with a piece cut out, as when a line is being rewritten.
+/// Every beginning of it, asked at its end; the whole, asked at every place; and it without a byte, or with a piece cut out, as when a line is being
+/// rewritten.
 fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
-    for text in effort.first(2, examples()) {
+    let of_everything = example_text("language_tour");
+    for text in effort.first(3, iter::once(of_everything).chain(examples())) {
         let whole = sources(&text);
         let whole = Analysis::new(&whole);
         ask_of_all(&whole);
         let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
         for at in starts.iter().copied().chain([text.len()]) {
             ask(&whole, at);
-            let beginning = sources(&text[..at]);
+            let beginning = &text[..at];
+            robustness::read(beginning);
+            parts::check(beginning, 1, &[]);
+            let beginning = sources(beginning);
             let analysis = Analysis::new(&beginning);
             ask(&analysis, at);
             ask_of_all(&analysis);
+        }
+        for at in 0..text.len() {
+            let mut bytes = text.clone().into_bytes();
+            bytes.remove(at);
+            robustness::read(bytes);
         }
         for window in starts.windows(9).step_by(5) {
             let cut = sources(&format!("{}{}", &text[..window[0]], &text[window[8]..]));
