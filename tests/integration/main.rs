@@ -1,6 +1,5 @@
 //! One test binary, a module per subject.
 
-mod answers;
 #[cfg(feature = "report")]
 mod browser;
 mod camera;
@@ -20,6 +19,7 @@ mod format;
 mod generated;
 mod grade;
 mod images;
+mod inspect;
 #[cfg(unix)]
 mod interrupt;
 mod language;

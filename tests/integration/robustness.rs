@@ -9,15 +9,14 @@ use crate::{
     format::{all_scenes, formatted},
     parts,
     scenes::{examples, sources},
+    tracer::Random,
 };
 use pinhole::{
     diagnostic::{self, Diagnostic, Drawing, Edit, Report, Style},
     format::format,
-    sampling::CounterRng,
     scene,
     source::{Source, Sources, Span},
 };
-use rand::{Rng, SeedableRng};
 
 const MEGABYTE: usize = 1 << 20;
 
@@ -81,35 +80,18 @@ fn assert_places(found: &[Diagnostic], sources: &Sources) {
     }
 }
 
-/// Garbage that is the same everywhere.
-struct Garbage(CounterRng);
-
-impl Garbage {
-    fn new(seed: u64) -> Self {
-        Self(CounterRng::seed_from_u64(seed))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
-    fn of(&mut self, length: usize, letters: &[u8]) -> Vec<u8> {
-        let letter = |_| letters[(self.next() % letters.len() as u64) as usize];
-        (0..length).map(letter).collect()
-    }
-}
-
 sampled_and_exhaustive!(garbage);
 
 fn garbage(effort: Effort) {
     let length = effort.part_of(MEGABYTE);
-    let mut garbage = Garbage::new(1);
+    let mut random = Random::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
     let signs = b" \n{}()+-*/,abcdef0123456789.#=\"let sphere";
     for letters in [&bytes[..], signs, b"(){}[] -,a1", b" "] {
-        assert!(!read(garbage.of(length, letters)));
+        let letter = |_| letters[(random.bits() % letters.len() as u64) as usize];
+        assert!(!read((0..length).map(letter).collect::<Vec<u8>>()));
     }
-    let letters = (0..length / 4).map(|_| garbage.next() % 0x11_0000);
+    let letters = (0..length / 4).map(|_| random.bits() % 0x11_0000);
     let many = letters.filter_map(|letter| char::from_u32(letter as u32));
     assert!(!read(many.collect::<String>()));
 }
@@ -236,9 +218,9 @@ fn random_slips_in_a_scene(effort: Effort) {
     scenes.retain(|text| (1..1000).contains(&text.len()));
     let slips = b"|(|)|{|}|}}|[|]|,|.|;|:|=|+|*|-|#ff|2.5.5| 2| x| radus | radius| let |let x = 1 |let x = |sphere {|sphere A { |'|\"|/*|*/|//|\xc2\xa0|\xc3\xa9|\xff|\r|\n|\0";
     let slips: Vec<&[u8]> = slips.split(|&byte| byte == b'|').collect();
-    let mut garbage = Garbage::new(2);
+    let mut random = Random::new(2);
     for _ in 0..effort.part_of(20_000) {
-        let mut up_to = |end: usize| (garbage.next() % end as u64) as usize;
+        let mut up_to = |end: usize| (random.bits() % end as u64) as usize;
         let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
         if up_to(2) == 0 {
             bytes.extend(format!("\n{}", scenes[up_to(scenes.len())]).bytes());

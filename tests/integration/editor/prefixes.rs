@@ -1,11 +1,9 @@
 //! No text that somebody types makes a reading or an answer fail: every beginning of every example, asked at its end.
 
-use std::iter;
-
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     parts, robustness,
-    scenes::{example_text, examples, sources},
+    scenes::{examples, sources},
 };
 use pinhole::{
     color::Color,
@@ -80,8 +78,7 @@ sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
 /// Every beginning of it, asked at its end; the whole, asked at every place; and it without a byte, or with a piece cut out, as when a line is being
 /// rewritten.
 fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
-    let of_everything = example_text("language_tour");
-    for text in effort.first(3, iter::once(of_everything).chain(examples())) {
+    for text in effort.first(3, examples()) {
         let whole = sources(&text);
         let whole = Analysis::new(&whole);
         ask_of_all(&whole);

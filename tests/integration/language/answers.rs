@@ -2,6 +2,7 @@
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
+    inspect::inspect,
     scene::{self, Shape},
     source::{SourceId, Sources, Span},
     suggest::nearest,
@@ -82,6 +83,10 @@ fn answer(question: &str, text: &str, other: &str) -> String {
         "means" => {
             let [settings, shapes] = overrides::meaning(&sources);
             if shapes == "[]" { settings } else { shapes }
+        }
+        "inspected" => {
+            let scene = scene::read(&sources).scene.expect(text);
+            inspect(&scene, &sources.file).to_json().to_string()
         }
         "x" | "color" => match scene::read(&sources).scene.map(|s| s.objects[0].shape) {
             Some(Shape::Sphere(sphere)) if question == "x" => format!("{:?}", sphere.center.x),
