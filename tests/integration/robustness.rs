@@ -222,7 +222,7 @@ fn random_slips_in_a_scene(effort: Effort) {
     for _ in 0..effort.part_of(20_000) {
         let mut up_to = |end: usize| (random.bits() % end as u64) as usize;
         let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
-        if up_to(2) == 0 {
+        if up_to(4) == 0 {
             bytes.extend(format!("\n{}", scenes[up_to(scenes.len())]).bytes());
         }
         for _ in 0..up_to(4) {
@@ -250,7 +250,7 @@ sampled_and_exhaustive!(time_grows_with_the_text);
 fn time_grows_with_the_text(effort: Effort) {
     let few = match effort {
         Effort::Sample => 1_000,
-        Effort::Exhaustive => 4_000,
+        Effort::Exhaustive => 2_000,
     };
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [
