@@ -5,8 +5,6 @@ mod terminal;
 #[cfg(unix)]
 mod transcripts;
 
-use pinhole::film;
-
 #[cfg(unix)]
 use crate::interrupt::interrupted;
 use crate::program::Folder;
@@ -24,11 +22,6 @@ checkerboard {}
 /// A folder with the scene in `a.scn`.
 fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
-}
-
-pub fn size(picture: &[u8]) -> (u32, u32) {
-    let film = film::read_picture(picture).unwrap().film;
-    (film.width(), film.height())
 }
 
 #[cfg(unix)]

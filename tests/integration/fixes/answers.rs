@@ -1,12 +1,26 @@
 //! Which fixes mistakes get and what they make of a text, as `tests/fixes` has it.
 
-use pinhole::{
-    diagnostic::{Fix, apply},
-    source::SourceId,
-};
+use pinhole::{diagnostic::apply, source::SourceId};
 
 use super::{Trial, diagnostics};
 use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
+
+/// A text with all fixes that it gets, one after the other, as one moves those behind it.
+fn mended(text: &str) -> Option<String> {
+    let mut trial = Trial::default();
+    trial.type_in(&sources(text), |_, _| true);
+    assert_eq!(trial.complaints, [""; 0]);
+    let mut mended = text.to_owned();
+    loop {
+        let found = diagnostics(&sources(&mended));
+        let Some(fix) = found.iter().find_map(|d| d.fixes.first()) else {
+            let has_error = found.iter().any(|d| d.is_error());
+            assert!(!has_error || mended == text, "{mended}");
+            return (mended != text).then_some(mended);
+        };
+        mended = apply(fix, SourceId::File, &mended);
+    }
+}
 
 fn answer(question: &str, text: &str, _: &str) -> String {
     let camera = match text.contains("camera {") {
@@ -26,32 +40,14 @@ fn answer(question: &str, text: &str, _: &str) -> String {
         text.expect("the rest stays").to_owned()
     };
     let whole = format!("{before}{text}{behind}");
-    let fixed = |fix: &Fix, text: &str| apply(fix, SourceId::File, text);
-    let found = diagnostics(&sources(&whole));
     if question == "mended" {
-        let mut trial = Trial::default();
-        trial.type_in(&sources(&whole), |_, _| true);
-        assert_eq!(trial.complaints, [""; 0]);
-        let mut mended = whole.clone();
-        // One fix at a time: it moves the others.
-        while let Some(fix) = diagnostics(&sources(&mended))
-            .iter()
-            .find_map(|d| d.fixes.first())
-        {
-            mended = fixed(fix, &mended);
-        }
-        let is_right = !diagnostics(&sources(&mended)).iter().any(|d| d.is_error());
-        assert!(is_right || mended == whole, "{mended}");
-        let mended = if mended == whole {
-            String::new()
-        } else {
-            of_text(&mended)
-        };
+        let mended = mended(&whole);
+        let mended = mended.map_or_else(String::new, |mended| of_text(&mended));
         return format!("{} | {mended}", codes(&whole, &[]).join(" "));
     }
-    let first = &found[0];
+    let first = diagnostics(&sources(&whole)).swap_remove(0);
     let offered = first.fixes.iter().map(|fix| {
-        let fixed = fixed(fix, &whole);
+        let fixed = apply(fix, SourceId::File, &whole);
         if question == "of_all" {
             assert_eq!(codes(&fixed, &[]), [""; 0]);
         }
@@ -59,7 +55,7 @@ fn answer(question: &str, text: &str, _: &str) -> String {
     });
     let offered: Vec<String> = offered.collect();
     match offered.is_empty() {
-        true => first.help.clone().unwrap_or_default(),
+        true => first.help.unwrap_or_default(),
         false => offered.join(" | "),
     }
 }
