@@ -216,7 +216,7 @@ fn crowds_of_objects_as_small_as_pixels() {
         (45, "near 5.5 far 8"),
     ] {
         let mut text = format!(
-            "image {{ width 47 height 35 }} camera {{ eye (0.5, 0.3, 7) lookat (0, 0, 0) roll {roll}deg {clips} }}\n"
+            "image {{ width 31 height 23 }} camera {{ eye (0.5, 0.3, 7) lookat (0, 0, 0) roll {roll}deg {clips} }}\n"
         );
         text += &spheres(&mut random, 1 << 12, 2.5, [1e-4, 0.08]);
         for index in 0..1000 {

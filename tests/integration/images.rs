@@ -5,6 +5,7 @@
 use std::{fs, path::Path};
 
 use pinhole::film::Encoder;
+use png::{BitDepth, ColorType};
 
 use crate::scenes::{example_names, example_text, read_with, sampled};
 
@@ -19,6 +20,18 @@ fn rendered(text: &str) -> image::RgbImage {
     );
     let (film, encoder) = (sampled(&scene), Encoder::default());
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
+}
+
+/// A PNG file of other programs. What `image` writes into memory would be compiled anew here, with all formats that it knows.
+pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(data).unwrap();
+    writer.finish().unwrap();
+    file
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! One test binary, a module per subject.
 
-mod answers;
 #[cfg(feature = "report")]
 mod browser;
 mod camera;
@@ -16,11 +15,11 @@ mod explain;
 mod extremes;
 mod film;
 mod fixes;
-mod fmt;
 mod format;
 mod generated;
 mod grade;
 mod images;
+mod inspect;
 #[cfg(unix)]
 mod interrupt;
 mod language;
@@ -28,7 +27,6 @@ mod laws;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod numerics;
-mod overrides;
 mod parts;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod processors;

@@ -2,30 +2,19 @@
 //!
 //! Parts of a single byte are taken apart at every brace, so that small texts have many.
 
-use std::{
-    fs,
-    sync::{LazyLock, atomic::AtomicBool},
-};
+use std::sync::atomic::AtomicBool;
 
 use pinhole::{scene, source::SourceId, syntax};
-use proptest::{prelude::*, sample::select};
 
 use crate::{
-    effort::{Effort, sampled_and_exhaustive},
-    scenes::{example_text, scenes, sources},
+    format::all_scenes,
+    scenes::{example_text, sources},
     table::{lines, list},
 };
 
-/// Every scene that there is beside the source.
-static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let folders = "examples tests/diagnostics tests/syntax/bad tests/syntax/ok".split(' ');
-    let text = |path| String::from_utf8_lossy(&fs::read(path).expect("a scene")).into_owned();
-    folders.flat_map(scenes).map(text).collect()
-});
-
 /// Compares the two ways; answers whether the text was parsed in parts.
 #[track_caller]
-fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
+pub fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let sources = sources(text).with_sets(sets);
     let whole = syntax::parse(&sources.file, SourceId::File);
     let mut items = Vec::new();
@@ -48,17 +37,16 @@ fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
 
 #[test]
 fn every_scene() {
-    let in_parts = SCENES.iter().filter(|text| check(text, 1, &[])).count();
+    let scenes = all_scenes().into_iter();
+    let in_parts = scenes.filter(|text| check(text, 1, &[])).count();
     // Those of the examples alone; the others are there for their mistakes.
     assert!(in_parts >= 20, "{in_parts}");
 }
 
-sampled_and_exhaustive!(every_prefix_of_a_scene_of_everything);
-
-fn every_prefix_of_a_scene_of_everything(effort: Effort) {
+#[test]
+fn beginnings_of_a_scene_of_everything() {
     let text = example_text("language_tour");
-    let step = if effort == Effort::Sample { 7 } else { 1 };
-    for (end, _) in text.char_indices().step_by(step) {
+    for (end, _) in text.char_indices().step_by(7) {
         check(&text[..end], 1, &[]);
     }
 }
@@ -129,38 +117,5 @@ fn arguments() {
     ",
     ) {
         assert!(check(text, 1, &sets));
-    }
-}
-
-/// A place in a text, how much is taken out there, and what is put in.
-type Change = (prop::sample::Index, usize, &'static str);
-
-fn change() -> impl Strategy<Value = Change> {
-    let signs = "|/*|*/|//|\"|'|{|}|}}|(|)|[|]|,|;|=|let |let x = 1 |let x = |\n| x| 2| radius|sphere {|sphere A { |\u{a0}";
-    let signs: Vec<&str> = signs.split('|').collect();
-    let taken = prop_oneof![6 => Just(0), 3 => 1..4_usize, 1 => Just(usize::MAX)];
-    (any::<prop::sample::Index>(), taken, select(signs))
-}
-
-fn changed(mut text: String, changes: &[Change]) -> String {
-    for (place, taken, sign) in changes {
-        let boundary = |at: usize| (0..=at).rev().find(|&at| text.is_char_boundary(at));
-        let at = boundary(place.index(text.len() + 1)).unwrap_or(0);
-        let end = boundary(text.len().min(at.saturating_add(*taken))).unwrap_or(at);
-        text.replace_range(at..end, sign);
-    }
-    text
-}
-
-proptest! {
-    #[test]
-    fn changed_scenes(
-        one in select(&SCENES[..]),
-        other in select(&SCENES[..]),
-        changes in prop::collection::vec(change(), 0..4),
-        bytes in 1_usize..100,
-    ) {
-        check(&changed(format!("{one}\n{other}"), &changes), bytes, &[]);
-        check(&changed(one, &changes), bytes, &[]);
     }
 }

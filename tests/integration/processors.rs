@@ -31,7 +31,7 @@ fn all_processors_make_the_same_pictures() {
     for scene in SCENES {
         for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
             let line = format!(
-                "render '{}/examples/{scene}.scn' -o a.exr --set image.width=48 --set image.height=36 --set sampler.method={}",
+                "render '{}/examples/{scene}.scn' -o a.exr --set image.width=32 --set image.height=24 --set sampler.method={}",
                 env!("CARGO_MANIFEST_DIR"),
                 method.name()
             );

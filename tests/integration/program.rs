@@ -11,11 +11,13 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::table::rows;
-
 /// The program in a folder, whatever the environment says of languages and terminals.
 pub fn command(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
+    any_command(env!("CARGO_BIN_EXE_pinhole"), folder, arguments)
+}
+
+fn any_command(program: &str, folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
+    let mut command = Command::new(program);
     command
         .args(arguments)
         .current_dir(folder)
@@ -123,6 +125,14 @@ impl Folder {
         command(self.0.path(), &words(line))
     }
 
+    /// What a shell does with a line in which the program is called `pinhole`.
+    pub fn shell(&self, line: &str) -> Said {
+        let program = Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
+        let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
+        let mut shell = any_command("sh", self.0.path(), &["-c", line]);
+        shell.env("PATH", path).output().unwrap().into()
+    }
+
     pub fn run(&self, line: &str) -> Said {
         self.command(line).output().unwrap().into()
     }
@@ -143,21 +153,6 @@ impl Folder {
         let said = self.run(line);
         assert_eq!((said.status, said.errors.as_str()), (0, ""), "{line}");
         said
-    }
-
-    /// Calls, each with its status and what is told: all of it, or a part of it before, between or after dots.
-    #[track_caller]
-    pub fn tells(&self, table: &'static str) {
-        for [line, status, words] in rows(table) {
-            let told = self.told(line, status.parse().unwrap());
-            let is_told = match (words.strip_prefix('…'), words.strip_suffix('…')) {
-                (Some(part), Some(_)) => told.contains(part.trim_end_matches('…')),
-                (Some(end), None) => told.trim_end().ends_with(end),
-                (None, Some(start)) => told.starts_with(start),
-                (None, None) => told.trim_end() == words,
-            };
-            assert!(is_told, "{line}: {told}");
-        }
     }
 
     /// What is told to people, and to nobody else, by what ends with this status.

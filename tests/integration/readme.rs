@@ -3,7 +3,7 @@
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
 
-use std::{fs, path::Path, process::Command};
+use std::{fs, path::Path};
 
 use crate::{
     diagnostics::found,
@@ -29,23 +29,12 @@ fn read(document: &str) -> String {
     fs::read_to_string(root().join(document)).unwrap()
 }
 
-/// What a shell prints when it runs `command` in a folder.
+/// What a shell prints when it runs a command in a folder.
 fn run(command: &str, folder: &Folder) -> String {
-    let program = Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
-    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
-    let output = Command::new("sh")
-        .args(["-c", &format!("{{ {command}; }} 2>&1")])
-        .current_dir(folder.path("."))
-        .env("PATH", path)
-        .env("NO_COLOR", "1")
-        .env("LC_ALL", "C.UTF-8")
-        .env_remove("NO_GRAPHICS")
-        .output()
-        .unwrap();
-    let output = String::from_utf8(output.stdout).unwrap();
-    match output.is_empty() || output.ends_with('\n') {
-        true => output,
-        false => output + "\n",
+    let said = folder.shell(&format!("{{ {command}; }} 2>&1"));
+    match said.text() {
+        output if output.is_empty() || output.ends_with('\n') => output.to_owned(),
+        output => format!("{output}\n"),
     }
 }
 

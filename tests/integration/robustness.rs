@@ -7,27 +7,28 @@ use std::time::{Duration, Instant};
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     format::{all_scenes, formatted},
+    parts,
     scenes::{examples, sources},
+    tracer::Random,
 };
 use pinhole::{
     diagnostic::{self, Diagnostic, Drawing, Edit, Report, Style},
     format::format,
-    sampling::CounterRng,
     scene,
     source::{Source, Sources, Span},
 };
-use rand::{Rng, SeedableRng};
 
 const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
+/// Reads and reports a text; answers whether there is a scene.
 #[track_caller]
-fn read(bytes: impl Into<Vec<u8>>) -> bool {
+pub fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// Reads and reports a text with `--set` arguments; answers whether there is a scene.
+/// The same with `--set` arguments.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -79,35 +80,18 @@ fn assert_places(found: &[Diagnostic], sources: &Sources) {
     }
 }
 
-/// Garbage that is the same everywhere.
-struct Garbage(CounterRng);
-
-impl Garbage {
-    fn new(seed: u64) -> Self {
-        Self(CounterRng::seed_from_u64(seed))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
-    fn of(&mut self, length: usize, letters: &[u8]) -> Vec<u8> {
-        let letter = |_| letters[(self.next() % letters.len() as u64) as usize];
-        (0..length).map(letter).collect()
-    }
-}
-
 sampled_and_exhaustive!(garbage);
 
 fn garbage(effort: Effort) {
     let length = effort.part_of(MEGABYTE);
-    let mut garbage = Garbage::new(1);
+    let mut random = Random::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
     let signs = b" \n{}()+-*/,abcdef0123456789.#=\"let sphere";
     for letters in [&bytes[..], signs, b"(){}[] -,a1", b" "] {
-        assert!(!read(garbage.of(length, letters)));
+        let letter = |_| letters[(random.bits() % letters.len() as u64) as usize];
+        assert!(!read((0..length).map(letter).collect::<Vec<u8>>()));
     }
-    let letters = (0..length / 4).map(|_| garbage.next() % 0x11_0000);
+    let letters = (0..length / 4).map(|_| random.bits() % 0x11_0000);
     let many = letters.filter_map(|letter| char::from_u32(letter as u32));
     assert!(!read(many.collect::<String>()));
 }
@@ -209,19 +193,6 @@ fn many_overrides(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(every_example_cut_off_or_without_a_byte);
-
-fn every_example_cut_off_or_without_a_byte(effort: Effort) {
-    for example in effort.first(3, examples()) {
-        for at in 0..example.len() {
-            read(&example.as_bytes()[..at]);
-            let mut bytes = example.clone().into_bytes();
-            bytes.remove(at);
-            read(bytes);
-        }
-    }
-}
-
 #[test]
 fn what_is_said_of_parts_of_scenes_has_its_places() {
     for text in all_scenes() {
@@ -241,25 +212,33 @@ fn windows_line_ends_and_a_byte_order_mark_make_no_mistake() {
 
 sampled_and_exhaustive!(random_slips_in_a_scene);
 
-/// What is not laid out has a mistake, too.
+/// What is not laid out has a mistake, too; and what is read in parts means the same.
 fn random_slips_in_a_scene(effort: Effort) {
     let mut scenes = all_scenes();
     scenes.retain(|text| (1..1000).contains(&text.len()));
-    let slips =
-        b"|(|)|{|}|[|,|.|;|:|=|+|*|-|#ff|2.5.5| radus | let |'|\"|/*|*/|//|\xc3\xa9|\xff|\r|\n|\0";
+    let slips = b"|(|)|{|}|}}|[|]|,|.|;|:|=|+|*|-|#ff|2.5.5| 2| x| radus | radius| let |let x = 1 |let x = |sphere {|sphere A { |'|\"|/*|*/|//|\xc2\xa0|\xc3\xa9|\xff|\r|\n|\0";
     let slips: Vec<&[u8]> = slips.split(|&byte| byte == b'|').collect();
-    let mut garbage = Garbage::new(2);
+    let mut random = Random::new(2);
     for _ in 0..effort.part_of(20_000) {
-        let mut up_to = |end: usize| (garbage.next() % end as u64) as usize;
+        let mut up_to = |end: usize| (random.bits() % end as u64) as usize;
         let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
-        for _ in 0..=up_to(3) {
+        if up_to(4) == 0 {
+            bytes.extend(format!("\n{}", scenes[up_to(scenes.len())]).bytes());
+        }
+        for _ in 0..up_to(4) {
             let at = up_to(bytes.len() + 1);
-            let end = bytes.len().min(at + up_to(4));
+            let taken = if up_to(10) == 0 {
+                bytes.len()
+            } else {
+                up_to(4)
+            };
+            let end = bytes.len().min(at + taken);
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
             // It has an error, or there would be no answer.
             let _ = formatted(text);
+            parts::check(text, 1 + up_to(99), &[]);
         }
         read(bytes);
     }
@@ -271,7 +250,7 @@ sampled_and_exhaustive!(time_grows_with_the_text);
 fn time_grows_with_the_text(effort: Effort) {
     let few = match effort {
         Effort::Sample => 1_000,
-        Effort::Exhaustive => 4_000,
+        Effort::Exhaustive => 2_000,
     };
     let sphere = |end: &str| format!("sphere {{ center (1, 2, 3)  radius 0.5  color {end}\n");
     let lines = [

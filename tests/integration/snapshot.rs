@@ -2,6 +2,11 @@
 
 use std::{fs, path::Path};
 
+use crate::{
+    program::names,
+    table::{escaped, unescaped},
+};
+
 /// Checks that a file holds this, or writes it.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
@@ -13,4 +18,28 @@ pub fn assert_file(path: &Path, content: &str) {
         assert_eq!(is, should, "line {} of {}", index + 1, path.display());
     }
     assert_eq!(content, expected, "{}", path.display());
+}
+
+/// Checks the texts of a folder, which have a question in each line, and below it what is answered, `<`.
+///
+/// The first word says what is asked of the text behind it; what else a question needs stands behind an arrow. `--` begins a remark.
+#[track_caller]
+pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    for name in names(&folder) {
+        let path = folder.join(name);
+        let mut real = String::new();
+        let text = fs::read_to_string(&path).expect("a text");
+        for line in text.lines().filter(|line| !line.starts_with('<')) {
+            real += &format!("{line}\n");
+            if !line.starts_with("--") {
+                let (question, text) = line.split_once(' ').unwrap_or((line, ""));
+                let (text, other) = text.split_once(" -> ").unwrap_or((text, ""));
+                let answer = answer(question, &unescaped(text), &unescaped(other));
+                real += format!("< {}", escaped(&answer)).trim_end();
+                real.push('\n');
+            }
+        }
+        assert_file(&path, &real);
+    }
 }

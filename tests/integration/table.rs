@@ -1,11 +1,16 @@
 //! Tables of cases in one text: a line each, its cells apart by arrows.
 
-/// The cells of each line. White space around a cell is no part of it; `\n`, `\r` and `\t` in one are what they are in a string of Rust.
+/// The cells of each line. White space around a cell is no part of it; `\n`, `\r`, `\t` and `\u{feff}` in one are what they are in a string of Rust.
 /// Empty lines and those that begin with `--` are not rows.
 pub fn lines(table: &'static str) -> Vec<Vec<&'static str>> {
     let lines = table.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("--"));
-    let cells = |line: &'static str| line.split("->").map(|cell| unescaped(cell.trim()));
+    // What is left over is kept until the tests end.
+    let cell = |cell: &'static str| match cell.contains('\\') {
+        true => unescaped(cell).leak(),
+        false => cell,
+    };
+    let cells = |line: &'static str| line.split("->").map(move |text| cell(text.trim()));
     lines.map(|line| cells(line).collect()).collect()
 }
 
@@ -25,14 +30,22 @@ pub fn list(table: &'static str) -> Vec<&'static str> {
     rows(table).into_iter().map(|[cell]| cell).collect()
 }
 
-/// What is left over is kept until the tests end.
-fn unescaped(cell: &'static str) -> &'static str {
-    match cell.contains('\\') {
-        true => cell
-            .replace("\\n", "\n")
-            .replace("\\r", "\r")
-            .replace("\\t", "\t")
-            .leak(),
-        false => cell,
-    }
+/// How a text of several lines stands in one.
+const ESCAPES: [(&str, &str); 4] = [
+    ("\\n", "\n"),
+    ("\\r", "\r"),
+    ("\\t", "\t"),
+    ("\\u{feff}", "\u{feff}"),
+];
+
+pub fn unescaped(cell: &str) -> String {
+    ESCAPES
+        .iter()
+        .fold(cell.to_owned(), |cell, (from, to)| cell.replace(from, to))
+}
+
+pub fn escaped(text: &str) -> String {
+    ESCAPES
+        .iter()
+        .fold(text.to_owned(), |text, (to, from)| text.replace(from, to))
 }

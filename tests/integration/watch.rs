@@ -334,21 +334,3 @@ fn a_picture_that_cannot_be_written_is_no_end() {
     watch.save(&scene("lime"));
     watch.wait("it is written again", || watch.has("out/a.png", "lime"));
 }
-
-#[test]
-fn what_cannot_be_watched_is_refused() {
-    let folder = red();
-    folder.done("render a.scn");
-    folder.tells(
-        "
-        watch - -> 2 -> error: standard input cannot be watched: it is read once; give a file
-        watch a.scn -o - -> 2 -> error: standard output holds one picture, and watch writes one after every save: give a file
-        watch a.png -o b.png -> 2 -> error: a.png is a picture, and what is watched is a text that somebody edits: `render` takes pictures
-        watch none.scn -> 2 -> error: cannot read none.scn: No such file or directory (os error 2)
-        watch . -> 2 -> error: . is not a file
-        watch a.scn -o a.jpg -> 2 -> error: the ending of a.jpg stands for no format: a picture's file ends in .png or .exr
-        watch a.scn -o none/a.png -> 2 -> error: cannot write to none/a.png: No such file or directory (os error 2)
-        watch a.scn --show -> 2 -> error: `--show` draws in a terminal, and standard error is none
-    ",
-    );
-}

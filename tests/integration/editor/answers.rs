@@ -1,8 +1,4 @@
-//! Answers, as `tests/editor` has them: a question and a text in a line, and below it what is answered, `<`.
-//!
-//! `$0` is the cursor and `\n` a line end; what else a question needs stands behind an arrow. `PINHOLE_BLESS=1 cargo test` writes the answers anew.
-
-use std::{fs, path::Path};
+//! The answers that `tests/editor` has; `$0` is the cursor.
 
 use glam::dvec2;
 use pinhole::{
@@ -18,9 +14,8 @@ use pinhole::{
 };
 
 use crate::{
-    program::names,
     scenes::{read, sources},
-    snapshot::assert_file,
+    snapshot::assert_answers,
 };
 
 /// What stands before a text in which an object is dragged.
@@ -211,21 +206,5 @@ fn answer(question: &str, text: &str, other: &str) -> String {
 
 #[test]
 fn answers_are_as_they_stand_there() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/editor");
-    for name in names(&folder) {
-        let path = folder.join(name);
-        let mut real = String::new();
-        let text = fs::read_to_string(&path).expect("a text");
-        for line in text.lines().filter(|line| !line.starts_with('<')) {
-            real += &format!("{line}\n");
-            if !line.starts_with("--") {
-                let (question, text) = line.split_once(' ').expect("a question and a text");
-                let (text, other) = text.split_once(" -> ").unwrap_or((text, ""));
-                let answer = answer(question, &text.replace("\\n", "\n"), other);
-                real += format!("< {}", answer.replace('\n', "\\n")).trim_end();
-                real.push('\n');
-            }
-        }
-        assert_file(&path, &real);
-    }
+    assert_answers("tests/editor", answer);
 }

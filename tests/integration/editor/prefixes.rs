@@ -1,7 +1,8 @@
-//! No text that somebody types makes an answer fail: every beginning of every example, asked at its end.
+//! No text that somebody types makes a reading or an answer fail: beginnings of every example, asked at their ends.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
+    parts, robustness,
     scenes::{examples, sources},
 };
 use pinhole::{
@@ -74,19 +75,29 @@ fn ask_of_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
 
-/// Every beginning of it, asked at its end; the whole, asked at every place; and it with a piece cut out, as when a line is being rewritten.
+/// Its beginnings, asked at their ends; the whole, asked at every place; and it without a byte, or with a piece cut out, as when a line is being
+/// rewritten. Examples have much in common: of each it is every other place, of one example the odd ones and of the next the even ones.
 fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
-    for text in effort.first(2, examples()) {
+    for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);
         let whole = Analysis::new(&whole);
         ask_of_all(&whole);
         let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
-        for at in starts.iter().copied().chain([text.len()]) {
+        let places = starts.iter().copied().chain([text.len()]);
+        for at in places.skip(index % 2).step_by(2) {
             ask(&whole, at);
-            let beginning = sources(&text[..at]);
+            let beginning = &text[..at];
+            robustness::read(beginning);
+            parts::check(beginning, 1, &[]);
+            let beginning = sources(beginning);
             let analysis = Analysis::new(&beginning);
             ask(&analysis, at);
             ask_of_all(&analysis);
+        }
+        for at in (index % 2..text.len()).step_by(2) {
+            let mut bytes = text.clone().into_bytes();
+            bytes.remove(at);
+            robustness::read(bytes);
         }
         for window in starts.windows(9).step_by(5) {
             let cut = sources(&format!("{}{}", &text[..window[0]], &text[window[8]..]));

@@ -1,4 +1,4 @@
-//! Pixels against closed forms, and pictures against samples.
+//! Pixels against closed forms.
 
 use std::f64::consts::PI;
 
@@ -77,13 +77,6 @@ fn squares_from_above() {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");
         let board = format!("checkerboard {{ square {square} colors (white, black) }}");
         is_share(&camera, &board, expected);
-    }
-}
-
-#[test]
-fn samples_agree_within_their_statistical_error() {
-    for scene in ordinary([24, 18], 20).take(24) {
-        agrees_with_samples(&scene, &exact(&scene), 1024);
     }
 }
 

@@ -6,7 +6,6 @@ mod light;
 use std::{fs, io, io::Cursor, iter, path::Path, sync::atomic::AtomicBool};
 
 use exr::meta::attribute::SampleType;
-use image::{DynamicImage, ImageFormat};
 use pinhole::{
     area::Area,
     color::srgb_to_linear,
@@ -16,7 +15,9 @@ use pinhole::{
     },
 };
 
-use crate::program::Folder;
+use png::{BitDepth, ColorType};
+
+use crate::{images::png, program::Folder};
 
 /// A film of colours from dark to light, some out of the ordinary.
 fn film(width: u32, height: u32) -> Film {
@@ -186,43 +187,38 @@ fn a_lossy_webp_and_a_plain_pnm_are_read() {
 
 #[test]
 fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
-    let bytes = image::GrayImage::from_fn(256, 1, |x, _| image::Luma([x as u8]));
-    let words = image::ImageBuffer::from_fn(256, 256, |x, y| image::Luma([(y << 8 | x) as u16]));
-    for (picture, last) in [(bytes.into(), 255.0), (words.into(), 65535.0)] {
-        let (mut png, picture): (_, DynamicImage) = (Cursor::new(Vec::new()), picture);
-        picture.write_to(&mut png, ImageFormat::Png).unwrap();
-        let film = read_picture(png.get_ref()).unwrap().film;
-        for (k, pixel) in (0..).zip(film.pixels()) {
+    let bytes: Vec<u8> = (0..=255).collect();
+    let words: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_be_bytes).collect();
+    for (size, depth, data, last) in [
+        ([256, 1], BitDepth::Eight, bytes, 255.0),
+        ([256, 256], BitDepth::Sixteen, words, 65535.0),
+    ] {
+        let film = read_picture(&png(size, ColorType::Grayscale, depth, &data));
+        for (k, pixel) in (0..).zip(film.unwrap().film.pixels()) {
             assert_eq!(*pixel, [srgb_to_linear(f64::from(k) / last); 3]);
         }
     }
 }
 
-/// What is not read, an opacity or another layer, says nothing of how the colours are rounded.
+/// What is not read, an opacity or another layer, says nothing of how the colours are rounded: the one file has an opacity of 16 bits, the other a
+/// green channel.
 #[test]
 fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
-    use exr::prelude::{Image, SpecificChannels, WritableImage, f16};
-
-    let half = f16::from_f32(0.5);
-    let [mut float, mut mixed] = [(); 2].map(|()| Cursor::new(Vec::new()));
-    let channels = SpecificChannels::rgba(|_| (0.1_f32, 0.2_f32, 0.3_f32, half));
-    let image = Image::from_channels((2, 1), channels);
-    image.write().to_buffered(&mut float).unwrap();
-    let channels = SpecificChannels::rgb(|_| (0.1_f32, half, 0.3_f32));
-    let image = Image::from_channels((2, 1), channels);
-    image.write().to_buffered(&mut mixed).unwrap();
-    let roundings = [float, mixed].map(|file| read_picture(file.get_ref()).unwrap().rounding);
-    assert_eq!(roundings, [Rounding::Float, Rounding::Half]);
+    for (file, rounding) in [
+        (
+            &include_bytes!("../../film/half_opacity.exr")[..],
+            Rounding::Float,
+        ),
+        (include_bytes!("../../film/half_green.exr"), Rounding::Half),
+    ] {
+        assert_eq!(read_picture(file).unwrap().rounding, rounding);
+    }
 }
 
 #[test]
 fn a_small_file_of_a_huge_picture_is_refused() {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, 20_000, 20_000);
-    encoder.set_depth(png::BitDepth::One);
-    let mut writer = encoder.write_header().unwrap();
-    writer.write_image_data(&vec![0; 2500 * 20_000]).unwrap();
-    writer.finish().unwrap();
+    let black = vec![0; 2500 * 20_000];
+    let bytes = png([20_000; 2], ColorType::Grayscale, BitDepth::One, &black);
     assert!(bytes.len() < 1 << 20);
     assert_eq!(
         read_picture(&bytes).unwrap_err().to_string(),
@@ -234,7 +230,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
 fn a_text_that_unpacks_without_end_is_refused() {
     let mut bomb = Vec::new();
     let mut encoder = png::Encoder::new(&mut bomb, 1, 1);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(ColorType::Rgb);
     let mut writer = encoder.write_header().unwrap();
     for _ in 0..3 {
         let text = " ".repeat(TEXT_LIMIT / 2);

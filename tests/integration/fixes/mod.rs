@@ -1,8 +1,7 @@
 //! What diagnostics offer to do: each fix does away with its problem and makes no new error.
 
+mod answers;
 mod mistyped;
-mod offers;
-mod slips;
 
 use std::collections::BTreeMap;
 
@@ -12,7 +11,7 @@ use pinhole::{
     source::{Source, SourceId, Sources},
 };
 
-use crate::{diagnostics::fixtures, scenes::sources};
+use crate::diagnostics::fixtures;
 
 fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
     scene::read(sources).diagnostics
@@ -93,21 +92,4 @@ fn every_fix_helps() {
         trial.type_in(&sources, |_, _| true);
     }
     trial.ends_with_more_than(100);
-}
-
-/// The titles of the fixes for the first problem of a text, each with what it makes of the text.
-fn offered(text: &str) -> Vec<(String, String)> {
-    let first = diagnostics(&sources(text)).swap_remove(0);
-    let text = |fix: &Fix| apply(fix, SourceId::File, text);
-    let fixes = first.fixes.into_iter();
-    fixes.map(|fix| (fix.title.clone(), text(&fix))).collect()
-}
-
-/// Behind some text stands what makes a scene of it.
-fn of_scene(text: &str) -> String {
-    let camera = match text.contains("camera {") {
-        true => "",
-        false => "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n",
-    };
-    format!("{text}\ncheckerboard {{}}\n{camera}")
 }

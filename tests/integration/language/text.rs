@@ -1,41 +1,9 @@
-//! What of a text has a meaning, and what has none.
+//! White space and nesting.
 
 use proptest::{prelude::*, sample::subsequence};
 
-use super::{CAMERA, assert_codes, codes};
+use super::{CAMERA, codes};
 use crate::format::any::{gaps, spaced};
-
-#[test]
-fn text() {
-    let scenes = [
-        "\u{feff}camera{eye(0,2,8)lookat(0,1,0)}sphere{center(0,1,0)}",
-        "// a\r\ncamera/* { */{\r\n\teye (0, 2, 8) // (\r\n lookat (0, 1, 0) }/**/sphere\nBall\n{center(0,1,0)}//",
-        // Names are known by their place.
-        "let radius = 2 let camera = (0, 2, 8) let sphere = (0, 1, 0) let jittered = 3
-         camera { eye camera lookat sphere } sampler { method jittered per_pixel jittered }
-         sphere sphere { center sphere radius radius }
-         box min { min (0, 0, 0) max (min(1, 2), max(1, 2), 1) }",
-    ];
-    assert_eq!(scenes.map(codes), [""; 3]);
-    assert_eq!(codes("/* camera */ // */"), "missing_camera no_objects");
-    assert_codes(
-        r"
-        -- A kind may stand in the line of a value.
-        let a = 2 sphere\nB { center (0, 1, 0) } ->
-        let a = 2 sphere B { center (0, 1, 0) } ->
-        let a = 2\nsphere\nB { center (0, 1, 0) } ->
-        let b = 2 let a = b\nsphere { center (0, 1, 0) } ->
-        let b = 2 let a = b sphere { center (0, 1, 0) } ->
-        let b = 2 let a = b sphere\nbox { center (0, 1, 0) } ->
-        let sphere = 2 let a = sphere\nsphere { center (0, 1, 0) } ->
-        let sphere = 2 let a = sphere sphere\nsphere { center (0, 1, 0) } ->
-        let/**/sphere = 2 let k = sphere let\tbox = (1, 2, 3) let camera = box ->
-        -- Here the text is wrong, and the word is the rest of the value.
-        let a = 2 pi\nsphere { center (0, 1, 0) } -> missing_operator
-        let b = 2 let a = 2 b\nsphere { center (0, 1, 0) } -> missing_operator
-    ",
-    );
-}
 
 proptest! {
     /// White space separates, and otherwise means nothing.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use base64::{Engine, prelude::BASE64_STANDARD};
-use pinhole::scene::Method;
+use pinhole::{film::read_picture, scene::Method};
 use roxmltree::{Document, Node};
 use serde_json::Value;
 
@@ -16,7 +16,9 @@ const XHTML: &str = "http://www.w3.org/1999/xhtml";
 fn size(element: Node) -> (u32, u32) {
     let data = element.attribute("src").unwrap();
     let png = data.strip_prefix("data:image/png;base64,").unwrap();
-    crate::cli::size(&BASE64_STANDARD.decode(png).unwrap())
+    let png = BASE64_STANDARD.decode(png).unwrap();
+    let film = read_picture(&png).unwrap().film;
+    (film.width(), film.height())
 }
 
 /// The elements of a document that are called so.

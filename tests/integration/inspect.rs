@@ -8,11 +8,9 @@ use pinhole::{
     scene::View,
     tracer::World,
 };
-use serde_json::Value;
 
 use crate::{
     scenes::{example_text as example, read, sources},
-    table::rows,
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
 
@@ -22,37 +20,6 @@ fn inspected(text: &str) -> Inspection {
 
 fn probed(text: &str, x: f64, y: f64) -> Probe {
     probe(&read(text), dvec2(x, y))
-}
-
-#[test]
-fn the_figure_is_what_it_is() {
-    let text = example("figure_9_9");
-    let json = inspected(&text).to_json();
-    let lines = text.lines();
-    let above = lines.take_while(|line| !line.starts_with("triangle"));
-    assert_eq!(json["objects"][1]["line"], above.count() + 1);
-    for [pointer, value] in rows(
-        r#"
-        /image -> { "width": 1280, "height": 720 }
-        /camera/eye -> [3.0, 3.5, 8.0]
-        /camera/looks -> "down"
-        /camera/far -> null
-        /sampler -> { "method": "multi_jittered", "per_pixel": 16, "total": 14745600, "seed": 1 }
-        /objects/0/kind -> "sphere"
-        /objects/1/kind -> "triangle"
-        /objects/1/name -> "Sail"
-        /objects/2/kind -> "box"
-        /objects/2/min -> [1.75, 0.0, -1.5]
-        /objects/3/kind -> "checkerboard"
-        /objects/3/name -> null
-    "#,
-    ) {
-        let value: Value = serde_json::from_str(value).unwrap();
-        assert_eq!(json.pointer(pointer), Some(&value), "{pointer}");
-    }
-    assert_eq!(json["objects"].as_array().map(Vec::len), Some(4));
-    let fov = json["camera"]["fov_deg"].as_f64().unwrap();
-    assert!((fov - 2.0 * libm::atan(1.0 / 2.75).to_degrees()).abs() < 1e-12);
 }
 
 #[test]

@@ -1,0 +1,54 @@
+//! The command line as one types it: `tests/cli` has what a shell is told, `$`, and below it what comes of it: what is printed, `<`, what is told
+//! to people, `!`, and the status if it is not 0, `=`. A transcript has a folder of its own, with the scene in `a.scn`. `#` begins a remark.
+//!
+//! `PINHOLE_BLESS=1 cargo test` writes what comes of it anew.
+
+use std::{fs, path::Path, thread};
+
+use super::folder;
+use crate::{program::names, snapshot::assert_file};
+
+fn held(transcript: &str) -> String {
+    let folder = folder();
+    let mut real = String::new();
+    for line in transcript
+        .lines()
+        .filter(|line| !line.starts_with(['<', '!', '=']))
+    {
+        real += &format!("{line}\n");
+        let Some(command) = line.strip_prefix("$ ") else {
+            continue;
+        };
+        let said = folder.shell(command);
+        for (sign, text) in [('<', said.text()), ('!', &said.errors)] {
+            let lines = text
+                .lines()
+                .map(|line| format!("{sign} {line}").trim_end().to_owned() + "\n");
+            real.extend(lines);
+        }
+        if said.status != 0 {
+            real += &format!("= {}\n", said.status);
+        }
+    }
+    real
+}
+
+#[test]
+fn commands_do_what_stands_there() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli");
+    let is_there = |name: &String| match name.as_str() {
+        "report.txt" => cfg!(feature = "report"),
+        "watch.txt" => cfg!(feature = "preview"),
+        "full_disk.txt" => cfg!(target_os = "linux"),
+        _ => true,
+    };
+    thread::scope(|scope| {
+        for name in names(&folder).into_iter().filter(is_there) {
+            let path = folder.join(name);
+            scope.spawn(move || {
+                let transcript = fs::read_to_string(&path).expect("a transcript");
+                assert_file(&path, &held(&transcript));
+            });
+        }
+    });
+}

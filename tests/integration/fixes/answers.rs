@@ -1,0 +1,66 @@
+//! Which fixes mistakes get and what they make of a text, as `tests/fixes` has it.
+
+use pinhole::{diagnostic::apply, source::SourceId};
+
+use super::{Trial, diagnostics};
+use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
+
+/// A text with all fixes that it gets, one after the other, as one moves those behind it.
+fn mended(text: &str) -> Option<String> {
+    let mut trial = Trial::default();
+    trial.type_in(&sources(text), |_, _| true);
+    assert_eq!(trial.complaints, [""; 0]);
+    let mut mended = text.to_owned();
+    loop {
+        let found = diagnostics(&sources(&mended));
+        let Some(fix) = found.iter().find_map(|d| d.fixes.first()) else {
+            let has_error = found.iter().any(|d| d.is_error());
+            assert!(!has_error || mended == text, "{mended}");
+            return (mended != text).then_some(mended);
+        };
+        mended = apply(fix, SourceId::File, &mended);
+    }
+}
+
+fn answer(question: &str, text: &str, _: &str) -> String {
+    let camera = match text.contains("camera {") {
+        true => "",
+        false => "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n",
+    };
+    let others = format!("\ncheckerboard {{}}\n{camera}");
+    let [before, behind] = match question {
+        "of_all" => ["", ""],
+        "at_the_end" => [&*others, ""],
+        _ => ["", &*others],
+    };
+    let of_text = |whole: &str| {
+        let text = whole
+            .strip_prefix(before)
+            .and_then(|text| text.strip_suffix(behind));
+        text.expect("the rest stays").to_owned()
+    };
+    let whole = format!("{before}{text}{behind}");
+    if question == "mended" {
+        let mended = mended(&whole);
+        let mended = mended.map_or_else(String::new, |mended| of_text(&mended));
+        return format!("{} | {mended}", codes(&whole, &[]).join(" "));
+    }
+    let first = diagnostics(&sources(&whole)).swap_remove(0);
+    let offered = first.fixes.iter().map(|fix| {
+        let fixed = apply(fix, SourceId::File, &whole);
+        if question == "of_all" {
+            assert_eq!(codes(&fixed, &[]), [""; 0]);
+        }
+        format!("{}: {}", fix.title, of_text(&fixed))
+    });
+    let offered: Vec<String> = offered.collect();
+    match offered.is_empty() {
+        true => first.help.unwrap_or_default(),
+        false => offered.join(" | "),
+    }
+}
+
+#[test]
+fn fixes_are_as_they_stand_there() {
+    assert_answers("tests/fixes", answer);
+}
