@@ -1,9 +1,9 @@
 //! The host that serves the page: who connects is let in by [`Access`] and gets a file or a conversation.
 
 use std::{
-    io,
+    io, mem,
     net::{Ipv4Addr, TcpListener, TcpStream},
-    sync::Arc,
+    sync::{Arc, Mutex},
     thread,
     time::Duration,
 };
@@ -12,8 +12,7 @@ use super::{
     access::{Access, Answer},
     conversation::converse,
     http::{self, Request, Response},
-    pages::Pages,
-    scene_file::SceneFile,
+    scene_file::{SceneFile, lock},
 };
 
 /// So many connections are served at once: a page has one, and while it loads one for each of its three files. Each has a thread, and nobody has so many pages.
@@ -30,7 +29,7 @@ const RETRY: Duration = Duration::from_millis(20);
 pub struct Host {
     listener: TcpListener,
     access: Access,
-    pages: Arc<Pages>,
+    file: Arc<Mutex<SceneFile>>,
 }
 
 impl Host {
@@ -42,22 +41,16 @@ impl Host {
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let access = Access::new(listener.local_addr()?.port())?;
-        let pages = Pages::new(file);
         Ok(Self {
             listener,
             access,
-            pages,
+            file: Arc::new(Mutex::new(file)),
         })
     }
 
-    /// The address that lets a browser in, for the user alone.
-    pub fn address(&self) -> String {
-        self.access.address()
-    }
-
-    /// An address that lets a browser in once, for a command line: other users of the machine can read those.
-    pub fn address_once(&self) -> String {
-        self.access.address_once()
+    /// The address that lets a browser in, for the user alone; and one that does so once, for a command line: other users of the machine can read those.
+    pub fn addresses(&self) -> [String; 2] {
+        self.access.addresses()
     }
 
     /// Serves until `wait` returns; what is being saved then is saved, and nothing more.
@@ -66,12 +59,13 @@ impl Host {
     ///
     /// There is no thread to do it.
     pub fn serve(self, wait: impl FnOnce()) -> io::Result<()> {
-        let pages = Arc::clone(&self.pages);
+        let file = Arc::clone(&self.file);
         thread::Builder::new()
             .name("studio".to_owned())
             .spawn(move || self.accept())?;
         wait();
-        pages.stop();
+        // Whoever would save something waits from now on, until the process ends.
+        mem::forget(lock(&file));
         Ok(())
     }
 
@@ -86,10 +80,10 @@ impl Host {
             };
             let place = Arc::clone(&served);
             let is_full = Arc::strong_count(&served) > MOST + 1;
-            let (access, pages) = (Arc::clone(&access), Arc::clone(&self.pages));
+            let (access, file) = (Arc::clone(&access), Arc::clone(&self.file));
             let serve = move || {
                 // Of one that breaks there is nothing to say, and nobody to say it to.
-                let _ = answer(stream, is_full, &access, &pages);
+                let _ = answer(stream, is_full, &access, file);
                 drop(place);
             };
             // Where no thread can be started, the connection is closed.
@@ -105,7 +99,7 @@ fn answer(
     mut stream: TcpStream,
     is_full: bool,
     access: &Access,
-    pages: &Arc<Pages>,
+    file: Arc<Mutex<SceneFile>>,
 ) -> io::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_write_timeout(Some(PATIENCE))?;
@@ -120,7 +114,7 @@ fn answer(
         Answer::Response(response) => response.end(stream),
         Answer::Socket(key) => {
             http::accept_socket(&mut stream, &key)?;
-            converse(stream, request.rest, pages)
+            converse(stream, request.rest, file)
         }
     }
 }
