@@ -41,7 +41,7 @@ const LONGEST: usize = 64 << 20;
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Holds the conversation until the page leaves. Some of it may have been read already.
-pub fn converse(stream: TcpStream, rest: Vec<u8>, file: Arc<Mutex<SceneFile>>) -> io::Result<()> {
+pub fn converse(stream: TcpStream, rest: Vec<u8>, file: &Mutex<SceneFile>) -> io::Result<()> {
     let config = WebSocketConfig::default()
         .read_buffer_size(1 << 14)
         .max_message_size(Some(LONGEST))
@@ -63,11 +63,11 @@ pub fn converse(stream: TcpStream, rest: Vec<u8>, file: Arc<Mutex<SceneFile>>) -
     })
 }
 
-struct Conversation {
+struct Conversation<'a> {
     socket: WebSocket<TcpStream>,
     server: Server,
     /// The file that all pages share.
-    file: Arc<Mutex<SceneFile>>,
+    file: &'a Mutex<SceneFile>,
     /// The version of it that the page knows.
     known: u64,
     download: Option<Download>,
@@ -80,7 +80,7 @@ struct Download {
     thread: JoinHandle<Message>,
 }
 
-impl Conversation {
+impl Conversation<'_> {
     fn run(&mut self) -> Result<(), Error> {
         while self.server.ended().is_none() {
             self.tell_file()?;
@@ -138,7 +138,7 @@ impl Conversation {
 
     /// Tells the page about the file, if it is another than the page knows.
     fn tell_file(&mut self) -> Result<(), Error> {
-        let mut file = lock(&self.file);
+        let mut file = lock(self.file);
         let version = file.look();
         if version == self.known {
             return Ok(());
@@ -187,7 +187,7 @@ impl Conversation {
         let field = |name| params.get(name).and_then(Value::as_str);
         let answer = match (method.as_str(), field("text")) {
             ("studio/save", Some(text)) => {
-                let mut file = lock(&self.file);
+                let mut file = lock(self.file);
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {

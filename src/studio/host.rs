@@ -29,7 +29,7 @@ const RETRY: Duration = Duration::from_millis(20);
 pub struct Host {
     listener: TcpListener,
     access: Access,
-    file: Arc<Mutex<SceneFile>>,
+    file: Mutex<SceneFile>,
 }
 
 impl Host {
@@ -44,7 +44,7 @@ impl Host {
         Ok(Self {
             listener,
             access,
-            file: Arc::new(Mutex::new(file)),
+            file: Mutex::new(file),
         })
     }
 
@@ -59,62 +59,54 @@ impl Host {
     ///
     /// There is no thread to do it.
     pub fn serve(self, wait: impl FnOnce()) -> io::Result<()> {
-        let file = Arc::clone(&self.file);
+        let host = Arc::new(self);
+        let accepting = Arc::clone(&host);
         thread::Builder::new()
             .name("studio".to_owned())
-            .spawn(move || self.accept())?;
+            .spawn(move || accepting.accept())?;
         wait();
         // Whoever would save something waits from now on, until the process ends.
-        mem::forget(lock(&file));
+        mem::forget(lock(&host.file));
         Ok(())
     }
 
-    fn accept(self) {
-        let access = Arc::new(self.access);
-        let served = Arc::new(());
+    fn accept(self: Arc<Self>) {
+        // Who has the host: whoever waits for the end, this loop, and each connection.
+        let most = MOST + 2;
         loop {
             let Ok((stream, _)) = self.listener.accept() else {
                 // As when no more files can be open: somebody will close one, and until then this loop must not keep a processor busy.
                 thread::sleep(RETRY);
                 continue;
             };
-            let place = Arc::clone(&served);
-            let is_full = Arc::strong_count(&served) > MOST + 1;
-            let (access, file) = (Arc::clone(&access), Arc::clone(&self.file));
-            let serve = move || {
-                // Of one that breaks there is nothing to say, and nobody to say it to.
-                let _ = answer(stream, is_full, &access, file);
-                drop(place);
-            };
+            let host = Arc::clone(&self);
+            let is_full = Arc::strong_count(&host) > most;
+            // Of one that breaks there is nothing to say, and nobody to say it to.
+            let serve = move || drop(host.answer(stream, is_full));
             // Where no thread can be started, the connection is closed.
             let _ = thread::Builder::new()
                 .name("connection".to_owned())
                 .spawn(serve);
         }
     }
-}
 
-/// Serves one connection.
-fn answer(
-    mut stream: TcpStream,
-    is_full: bool,
-    access: &Access,
-    file: Arc<Mutex<SceneFile>>,
-) -> io::Result<()> {
-    stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(PATIENCE))?;
-    if is_full {
-        let refused = Response::text("503 Service Unavailable", "There are too many pages.");
-        return refused.end(stream);
-    }
-    let Some(request) = Request::read(&mut stream) else {
-        return Response::text("400 Bad Request", "This is no request.").end(stream);
-    };
-    match access.answer(&request) {
-        Answer::Response(response) => response.end(stream),
-        Answer::Socket(key) => {
-            http::accept_socket(&mut stream, &key)?;
-            converse(stream, request.rest, file)
+    /// Serves one connection.
+    fn answer(&self, mut stream: TcpStream, is_full: bool) -> io::Result<()> {
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        if is_full {
+            let refused = Response::text("503 Service Unavailable", "There are too many pages.");
+            return refused.end(stream);
+        }
+        let Some(request) = Request::read(&mut stream) else {
+            return Response::text("400 Bad Request", "This is no request.").end(stream);
+        };
+        match self.access.answer(&request) {
+            Answer::Response(response) => response.end(stream),
+            Answer::Socket(key) => {
+                http::accept_socket(&mut stream, &key)?;
+                converse(stream, request.rest, &self.file)
+            }
         }
     }
 }
