@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::{
-    handles::{handles, unit, within_half_turn},
+    handles::{TOO_FAR, handles, unit, within_half_turn},
     projection::Projection,
 };
 use crate::{
     math::{Angle, trig},
     probe::probe,
-    scene::{Camera, Lens, Scene, View},
+    scene::{Camera, Lens, Part, Scene, View},
 };
 
 /// So near, in radians, the view direction may come to the up vector: one degree.
@@ -102,7 +102,10 @@ pub fn moved(
         }
         _ => return Err(format!("a camera has no handle `{handle}`")),
     }
-    Ok(moved)
+    match Part::Camera(moved).is_possible() {
+        true => Ok(moved),
+        false => Err(TOO_FAR.to_owned()),
+    }
 }
 
 fn zoom(heights: f64) -> f64 {

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::{
     camera,
     edits::{Change, changes, edits},
-    handles::{self, Along, TOLERANCE, handles},
+    handles::{self, Along, TOLERANCE, TOO_FAR, handles},
     projection::Projection,
 };
 use crate::{
@@ -62,29 +62,24 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     })?;
     let image = &scene.image;
     let projection = Projection::new(&scene.camera, image);
-    // An object moves without it.
-    let distance = drag.object.map_or_else(|| camera::distance(scene), |_| 1.0);
-    let ideal = match current {
-        Part::Shape(shape) => handles::moved(shape, drag.handle, drag.to, drag.along, &projection)?,
+    let (ideal, points) = match current {
+        Part::Shape(shape) => {
+            let held = handles(&shape, &projection, DVec3::ZERO)[0].1;
+            let ideal = handles::moved(shape, drag.handle, drag.to, drag.along, &projection)?;
+            (ideal, Some(Vec::from_iter(held)))
+        }
         _ => {
+            let distance = camera::distance(scene);
             let (handle, by) = (drag.handle, [drag.from, drag.to]);
             let moved = camera::moved(&scene.camera, &projection, handle, by, distance)?;
-            Part::Camera(moved)
+            let seen = landmarks(&Projection::new(&moved, image), distance);
+            (Part::Camera(moved), seen)
         }
     };
     let changes = changes(block, current, ideal);
-    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
-    let is_finite = changes.iter().all(|change| change.by.is_finite());
-    if !is_finite || (drag.object.is_none() && !ideal.is_possible()) {
-        return Err("that is too far away".to_owned());
+    if !changes.iter().all(|change| change.by.is_finite()) {
+        return Err(TOO_FAR.to_owned());
     }
-    let points = match (current, ideal) {
-        (_, Part::Camera(ideal)) => landmarks(&Projection::new(&ideal, image), distance),
-        (Part::Shape(shape), _) => Some(Vec::from_iter(
-            handles(&shape, &projection, DVec3::ZERO)[0].1,
-        )),
-        _ => None,
-    };
     let not_seen = "it would not be seen there";
     let view = View {
         image,
@@ -104,6 +99,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
     let mut refusal = tied();
+    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
     for decimals in first..=first + DIGITS {
         let edits = edits(analysis, block, &changes, decimals);

@@ -14,6 +14,9 @@ use crate::{
 /// So far, in pixels, something may be seen from where it should be.
 pub const TOLERANCE: f64 = 0.5;
 
+/// Why nothing is moved where numbers have too few digits, or are too large.
+pub const TOO_FAR: &str = "that is too far away";
+
 /// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye is. The name is that of the field that moves with it, with an
 /// axis behind it where it moves along that alone.
 pub type Handle = (&'static str, Option<DVec3>);
@@ -186,8 +189,7 @@ fn moved_point(
     let left = (seen - to) - across * (seen - to).dot(across);
     match left.length() <= TOLERANCE {
         true => Ok(moved),
-        // Very far away, numbers have too few digits.
-        false => Err("that is too far away".to_owned()),
+        false => Err(TOO_FAR.to_owned()),
     }
 }
 
