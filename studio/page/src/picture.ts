@@ -35,13 +35,14 @@ export class Picture {
     );
   }
 
-  show({ image, size, fineness, version }: Shown): void {
+  show({ bitmap, size, fineness, version }: Shown): void {
     const { canvas } = this;
-    if (canvas.width !== image.width || canvas.height !== image.height) {
-      canvas.width = image.width;
-      canvas.height = image.height;
+    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
     }
-    this.context.drawImage(image, 0, 0);
+    this.context.drawImage(bitmap, 0, 0);
+    bitmap.close();
     canvas.dataset["fineness"] = fineness;
     canvas.dataset["version"] = String(version);
     if (size[0] !== this.size[0] || size[1] !== this.size[1]) {
