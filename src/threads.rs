@@ -2,7 +2,10 @@
 
 use std::{
     num::NonZero,
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        LazyLock,
+        atomic::{AtomicUsize, Ordering},
+    },
     thread,
 };
 
@@ -11,9 +14,13 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const MOST: usize = 1024;
 
-/// What the process was limited to; 0 where it was not. This is the one thing that is kept for a whole process, as processors are; it changes how long
+/// What the process was limited to; 0 where it was not. This and the number of processors are all that is kept for a whole process; they change how long
 /// things take and nothing else.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
+
+/// As many as the process has: to ask the system takes longer than a small picture.
+static PROCESSORS: LazyLock<usize> =
+    LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
 /// From now on this process starts no more threads at once than this, unless it is told otherwise for something.
 pub fn limit(threads: NonZero<usize>) {
@@ -23,7 +30,7 @@ pub fn limit(threads: NonZero<usize>) {
 /// One thread for each processor, or as many as the process is limited to, whatever variables of the environment say.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
-        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        0 => *PROCESSORS,
         limit => limit,
     }
 }

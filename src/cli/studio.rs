@@ -29,7 +29,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             .map_or(String::new(), |port| format!(" at port {port}"));
         Trouble(format!("cannot serve a page{port}: {error}"))
     })?;
-    let (address, address_once) = (host.address(), host.address_once());
+    let [address, address_once] = host.addresses();
     let (sender, ended) = mpsc::channel();
     interrupt.then(move || {
         let _ = sender.send(());

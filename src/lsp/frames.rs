@@ -3,10 +3,7 @@
 //! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not depend on the rectangle that is asked for, and
 //! no clock is needed, which a web worker's Rust does not have. A frame that is not wanted any more is dropped between two slices.
 
-use std::{
-    collections::{HashMap, VecDeque},
-    mem,
-};
+use std::{collections::HashMap, vec};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use lsp_server::RequestId;
@@ -20,10 +17,9 @@ use super::{
 use crate::{
     area::Area,
     film::{self, Film},
-    render::{Control, RenderError, render_as_asked},
+    render::{Control, render_as_asked},
     sampling::Sampling,
-    scene::{Count, Method, Sampler, Scene},
-    tracer::World,
+    scene::{Count, Method, Sampler},
 };
 
 /// The samples of a slice: some 10 ms of two processors for a few objects. No pixel may have more, since a pixel is not divided.
@@ -35,73 +31,39 @@ const EXACT: u64 = 64;
 /// The most pixels of a frame. More than a page can show is a file's business.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// The frames that are asked for and not done, the oldest first. Only that one has pixels.
+/// The frames that are asked for and not done, the oldest first.
 #[derive(Debug, Default)]
-pub struct Frames(VecDeque<Frame>);
+pub struct Frames(Vec<Frame>);
 
 #[derive(Debug)]
 struct Frame {
     id: RequestId,
     uri: Uri,
-    wanted: Wanted,
-    begun: Option<Begun>,
-}
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+    /// What width and height are divided by.
     scale: u32,
     /// What the scene asks for if it is none.
     samples: Option<u64>,
-}
-
-/// A frame of which some slices are done.
-#[derive(Debug)]
-struct Begun {
-    film: Film<[u8; 3]>,
     sampling: Sampling,
-    slices: VecDeque<Area>,
-}
-
-impl Wanted {
-    /// Reads the parameters of a request.
-    pub fn new(params: &Value) -> Result<Self, Refusal> {
-        let invalid = |name| {
-            let message = format!("`{name}` is a whole number of at least 1");
-            Err(Refusal::invalid(message))
-        };
-        let scale = optional(params, "scale")?.unwrap_or(1);
-        let samples = optional(params, "samples")?;
-        match (scale, samples) {
-            (0, _) => invalid("scale"),
-            (_, Some(0)) => invalid("samples"),
-            _ => Ok(Self { scale, samples }),
-        }
-    }
-
-    fn sampler(&self, scene: &Scene) -> Sampler {
-        match self.samples {
-            None => scene.sampler,
-            Some(samples) => Sampler {
-                method: Method::Regular,
-                count: Count::PerPixel(samples),
-                ..scene.sampler
-            },
-        }
-    }
+    /// Takes no memory until there are pixels in it.
+    film: Film<[u8; 3]>,
+    /// What is left to be made.
+    slices: vec::IntoIter<Area>,
 }
 
 impl Frames {
     /// Takes a frame in. Returns the requests that it supersedes.
-    pub fn push(&mut self, id: RequestId, uri: Uri, wanted: Wanted) -> Vec<RequestId> {
-        let superseded = self.remove(|frame| frame.uri == uri && frame.wanted == wanted);
-        self.0.push_back(Frame {
-            id,
-            uri,
-            wanted,
-            begun: None,
-        });
-        superseded
+    pub fn push(
+        &mut self,
+        id: RequestId,
+        uri: Uri,
+        params: &Value,
+        version: &SceneVersion,
+    ) -> Result<Vec<RequestId>, Refusal> {
+        let new = Frame::new(id, uri, params, version)?;
+        let what = |frame: &Frame| (frame.uri.clone(), frame.scale, frame.samples);
+        let superseded = self.remove(|frame| what(frame) == what(&new));
+        self.0.push(new);
+        Ok(superseded)
     }
 
     /// Whether any is to be made.
@@ -120,15 +82,13 @@ impl Frames {
     }
 
     fn remove(&mut self, is_meant: impl Fn(&Frame) -> bool) -> Vec<RequestId> {
-        let frames = mem::take(&mut self.0).into_iter();
-        let (removed, kept): (VecDeque<_>, _) = frames.partition(is_meant);
-        self.0 = kept;
-        removed.into_iter().map(|frame| frame.id).collect()
+        let removed = self.0.extract_if(.., |frame| is_meant(frame));
+        removed.map(|frame| frame.id).collect()
     }
 
     /// Who asked for the oldest one.
     pub fn oldest(&self) -> Option<RequestId> {
-        self.0.front().map(|frame| frame.id.clone())
+        self.0.first().map(|frame| frame.id.clone())
     }
 
     /// Makes a slice of the oldest one. Returns its answer once it is done.
@@ -136,7 +96,7 @@ impl Frames {
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
     ) -> Result<Option<Value>, Refusal> {
-        let Some(frame) = self.0.front_mut() else {
+        let Some(frame) = self.0.first_mut() else {
             return Ok(None);
         };
         match scenes.get_mut(&frame.uri) {
@@ -147,32 +107,20 @@ impl Frames {
 }
 
 impl Frame {
-    fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
-        let begun = match &mut self.begun {
-            Some(begun) => begun,
-            none => none.insert(Begun::new(self.wanted, version)?),
-        };
-        let (_, world) = version.world(self.wanted.scale);
-        begun.advance(world).map_err(Refusal::failed)?;
-        if !begun.slices.is_empty() {
-            return Ok(None);
+    fn new(
+        id: RequestId,
+        uri: Uri,
+        params: &Value,
+        version: &SceneVersion,
+    ) -> Result<Self, Refusal> {
+        let scale = optional(params, "scale")?.unwrap_or(1);
+        let samples = optional(params, "samples")?;
+        let zero = [("scale", scale == 0), ("samples", samples == Some(0))];
+        if let Some((name, _)) = zero.iter().find(|(_, is_zero)| *is_zero) {
+            let message = format!("`{name}` is a whole number of at least 1");
+            return Err(Refusal::invalid(message));
         }
-        let mut png = Vec::new();
-        film::write_png(&begun.film, None, &mut png).map_err(Refusal::failed)?;
-        let image = &version.scene.image;
-        Ok(Some(json!({
-            "version": version.number,
-            "width": begun.film.width(),
-            "height": begun.film.height(),
-            "size": [image.width, image.height],
-            "png": BASE64_STANDARD.encode(png),
-        })))
-    }
-}
-
-impl Begun {
-    fn new(wanted: Wanted, version: &SceneVersion) -> Result<Self, Refusal> {
-        let (width, height) = version.size(wanted.scale);
+        let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);
         if whole.pixels() > MOST_PIXELS {
             let message = format!(
@@ -180,8 +128,13 @@ impl Begun {
             );
             return Err(Refusal::failed(message));
         }
-        let sampler = wanted.sampler(&version.scene);
-        let sampling = Sampling::new(&sampler, width, height);
+        let own = version.scene.sampler;
+        let regular = |samples| Sampler {
+            method: Method::Regular,
+            count: Count::PerPixel(samples),
+            ..own
+        };
+        let sampling = Sampling::new(&samples.map_or(own, regular), width, height);
         let work = match sampling.is_exact() {
             true => EXACT,
             false => sampling.samples_per_pixel().max(1),
@@ -192,21 +145,39 @@ impl Begun {
             );
             return Err(Refusal::failed(message));
         }
+        // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
+        let slices: Vec<Area> = whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect();
         Ok(Self {
-            film: Film::new(width, height).map_err(Refusal::failed)?,
+            id,
+            uri,
+            scale,
+            samples,
             sampling,
-            // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
-            slices: whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect(),
+            film: Film::new(width, height).map_err(Refusal::failed)?,
+            slices: slices.into_iter(),
         })
     }
 
-    /// Makes the next slice.
-    fn advance(&mut self, world: &World) -> Result<(), RenderError> {
-        let Some(part) = self.slices.pop_front() else {
-            return Ok(());
-        };
-        let made = render_as_asked(world, &self.sampling, part, &Control::default())?;
-        self.film.put(part, made.film().pixels());
-        Ok(())
+    /// Makes the next slice. Returns the answer if none is left.
+    fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
+        if let Some(part) = self.slices.next() {
+            let (_, world) = version.world(self.scale);
+            let made = render_as_asked(world, &self.sampling, part, &Control::default());
+            let made = made.map_err(Refusal::failed)?;
+            self.film.put(part, made.film().pixels());
+        }
+        if self.slices.len() > 0 {
+            return Ok(None);
+        }
+        let mut png = Vec::new();
+        film::write_png(&self.film, None, &mut png).map_err(Refusal::failed)?;
+        let image = &version.scene.image;
+        Ok(Some(json!({
+            "version": version.number,
+            "width": self.film.width(),
+            "height": self.film.height(),
+            "size": [image.width, image.height],
+            "png": BASE64_STANDARD.encode(png),
+        })))
     }
 }

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::{
     convert::{self, Client, Converter},
     documents::Document,
-    frames::{Frames, Wanted},
+    frames::Frames,
     params::{Refusal, at, response},
     picture_requests,
     protocol::Uri,
@@ -157,13 +157,12 @@ impl Server {
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             let params = &request.params;
             match (version, about) {
-                (Some(_), "frame") => match Wanted::new(params) {
-                    Ok(wanted) => {
-                        let superseded = self.frames.push(id, uri, wanted);
-                        said.extend(superseded.into_iter().map(cancelled));
+                (Some(version), "frame") => {
+                    match self.frames.push(id.clone(), uri, params, version) {
+                        Ok(superseded) => said.extend(superseded.into_iter().map(cancelled)),
+                        Err(refusal) => said.push(response(id, Err(refusal))),
                     }
-                    Err(refusal) => said.push(response(id, Err(refusal))),
-                },
+                }
                 (version, _) => {
                     let answer =
                         || picture_requests::answer(about, params, converter, analysis, version);

@@ -51,18 +51,11 @@ impl Access {
         })
     }
 
-    /// The address that lets a browser in.
-    pub fn address(&self) -> String {
-        self.address_with(&self.token)
-    }
-
-    /// An address that lets a browser in once.
-    pub fn address_once(&self) -> String {
-        self.address_with(self.once().as_deref().unwrap_or_default())
-    }
-
-    fn address_with(&self, token: &str) -> String {
-        format!("http://127.0.0.1:{}/?token={token}", self.port)
+    /// The address that lets a browser in, and one that does so once.
+    pub fn addresses(&self) -> [String; 2] {
+        let once = self.once().clone().unwrap_or_default();
+        let port = self.port;
+        [&self.token, &once].map(|token| format!("http://127.0.0.1:{port}/?token={token}"))
     }
 
     fn once(&self) -> MutexGuard<'_, Option<String>> {
@@ -85,7 +78,7 @@ impl Access {
                 "/" => index(),
                 "/studio.js" => Response::new("200 OK", "text/javascript", SCRIPT.to_vec()),
                 "/studio.css" => Response::new("200 OK", "text/css", STYLE.to_vec()),
-                "/socket" if !request.has("origin") => {
+                "/socket" if request.header("origin").is_none() => {
                     forbidden("A web socket says which page asks for it.")
                 }
                 "/socket" => match socket_key(request) {
@@ -106,10 +99,10 @@ impl Access {
             // Browsers leave the usual port out.
             host == format!("{name}:{}", self.port) || (self.port == 80 && host == *name)
         });
-        let is_from_here = request.header("origin") == Some(&format!("http://{host}"));
+        let origin = request.header("origin");
         if !is_own {
             Some(forbidden("This is not the address of this page."))
-        } else if request.has("origin") && !is_from_here {
+        } else if origin.is_some_and(|origin| origin != format!("http://{host}")) {
             Some(forbidden("Another page asks for this."))
         } else if request.method != "GET" {
             let refusal = Response::text("405 Method Not Allowed", "Use GET.");
@@ -191,5 +184,6 @@ fn socket_key(request: &Request) -> Option<&str> {
     let is_socket = is("upgrade", "websocket")
         && is("connection", "upgrade")
         && is("sec-websocket-version", "13");
-    request.header("sec-websocket-key").filter(|_| is_socket)
+    let key = request.header("sec-websocket-key");
+    key.filter(|key| is_socket && !key.is_empty())
 }

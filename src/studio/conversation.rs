@@ -1,17 +1,16 @@
 //! The conversation with one page, over a web socket.
 //!
 //! What a page asks supersedes what it asked before, so all that has come is taken in before the next slice of work. While there is no work, the socket is waited
-//! for, and what other threads have for the page a little later.
+//! for; the scene's file and the picture that another thread makes are looked at a little later.
 
 use std::{
     io,
     net::TcpStream,
     sync::{
-        Arc, Weak,
+        Arc, Mutex,
         atomic::{AtomicBool, Ordering},
-        mpsc::{self, Receiver, Sender},
     },
-    thread,
+    thread::{self, JoinHandle},
     time::Duration,
 };
 
@@ -22,64 +21,73 @@ use tungstenite::{
     protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
 };
 
-use super::{download, pages::Pages, scene_file::NotSaved};
-use crate::lsp::{
-    Refusal, Server,
-    messages::{self, Malformed},
-    response,
+use super::{
+    download,
+    scene_file::{NotSaved, SceneFile, lock},
+};
+use crate::{
+    lsp::{
+        Refusal, Server,
+        messages::{self, Malformed},
+        response,
+    },
+    threads,
 };
 
 /// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
 const LONGEST: usize = 64 << 20;
 
-/// How long the socket is waited for before one looks at what other threads have for the page: less than anybody notices.
+/// How long the socket is waited for before one looks at the file and the picture: less than anybody notices.
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Holds the conversation until the page leaves. Some of it may have been read already.
-pub fn converse(stream: TcpStream, rest: Vec<u8>, pages: &Arc<Pages>) -> io::Result<()> {
+pub fn converse(stream: TcpStream, rest: Vec<u8>, file: &Mutex<SceneFile>) -> io::Result<()> {
     let config = WebSocketConfig::default()
         .read_buffer_size(1 << 14)
         .max_message_size(Some(LONGEST))
         .max_frame_size(Some(LONGEST));
     stream.set_read_timeout(Some(WAIT))?;
-    let (sender, messages) = mpsc::channel();
-    let number = pages.join(sender.clone());
     let mut conversation = Conversation {
-        number,
         socket: WebSocket::from_partially_read(stream, rest, Role::Server, Some(config)),
-        pages: Arc::clone(pages),
         server: Server::new(|_| {}),
-        sender,
-        messages,
-        rendering: (Value::Null, Weak::new()),
+        file,
+        known: 0,
+        download: None,
     };
-    let ended = conversation.run();
+    // On threads that are there for each of its pictures.
+    let ended = threads::install(None, || conversation.run()).map_err(io::Error::other)?;
     conversation.cancel(None);
-    pages.leave(number);
     ended.map_err(|error| match error {
         Error::Io(error) => error,
         other => io::Error::other(other.to_string()),
     })
 }
 
-struct Conversation {
-    number: u64,
+struct Conversation<'a> {
     socket: WebSocket<TcpStream>,
-    pages: Arc<Pages>,
     server: Server,
-    /// For threads that work for it.
-    sender: Sender<String>,
-    /// Messages for the page.
-    messages: Receiver<String>,
-    /// The number of the last request for a picture's file, and while that is being made what gives it up.
-    rendering: (Value, Weak<AtomicBool>),
+    /// The file that all pages share.
+    file: &'a Mutex<SceneFile>,
+    /// The version of it that the page knows.
+    known: u64,
+    download: Option<Download>,
 }
 
-impl Conversation {
+/// A picture's file that is being made.
+struct Download {
+    request: Value,
+    cancel: Arc<AtomicBool>,
+    thread: JoinHandle<Message>,
+}
+
+impl Conversation<'_> {
     fn run(&mut self) -> Result<(), Error> {
         while self.server.ended().is_none() {
-            while let Ok(text) = self.messages.try_recv() {
-                self.send(text)?;
+            self.tell_file()?;
+            if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
+                && let Ok(answer) = done.thread.join()
+            {
+                self.say(vec![answer])?;
             }
             match self.read() {
                 Ok(Some(Frame::Text(text))) => self.hear(&text)?,
@@ -125,11 +133,28 @@ impl Conversation {
 
     fn say(&mut self, messages: Vec<Message>) -> Result<(), Error> {
         let mut texts = messages.iter().map(messages::written);
-        texts.try_for_each(|text| self.send(text))
+        texts.try_for_each(|text| self.socket.send(Frame::text(text)))
     }
 
-    fn send(&mut self, text: String) -> Result<(), Error> {
-        self.socket.send(Frame::text(text))
+    /// Tells the page about the file, if it is another than the page knows.
+    fn tell_file(&mut self) -> Result<(), Error> {
+        let mut file = lock(self.file);
+        let version = file.look();
+        if version == self.known {
+            return Ok(());
+        }
+        self.known = version;
+        let held = file.held().as_ref();
+        let params = json!({
+            "name": file.name(),
+            "text": held.ok(),
+            "reason": held.err(),
+            "saved": file.path().is_some(),
+        });
+        drop(file);
+        self.say(vec![
+            Notification::new("studio/file".to_owned(), params).into(),
+        ])
     }
 
     fn hear(&mut self, text: &str) -> Result<(), Error> {
@@ -146,7 +171,9 @@ impl Conversation {
                 let messages = self.server.handle(message);
                 self.say(messages)
             }
-            Err(Malformed::Answered(response)) => self.send(response.to_string()),
+            Err(Malformed::Answered(response)) => {
+                self.socket.send(Frame::text(response.to_string()))
+            }
             Err(Malformed::Unanswered(_)) => Ok(()),
         }
     }
@@ -160,9 +187,16 @@ impl Conversation {
         let field = |name| params.get(name).and_then(Value::as_str);
         let answer = match (method.as_str(), field("text")) {
             ("studio/save", Some(text)) => {
-                let (base, name) = (field("base"), field("name"));
-                match self.pages.save(self.number, text, base, name) {
-                    Ok(()) => Ok(json!({ "ok": true })),
+                let mut file = lock(self.file);
+                let is_new = file.path().is_none();
+                match file.save(text, field("base"), field("name")) {
+                    Ok(version) => {
+                        // What is in it the page knows, but not where a new scene is.
+                        if !is_new {
+                            self.known = version;
+                        }
+                        Ok(json!({ "ok": true }))
+                    }
                     Err(NotSaved::Changed(found)) => Ok(json!({ "ok": false, "text": found })),
                     Err(NotSaved::Refused(message)) => Err(Refusal::failed(message)),
                 }
@@ -177,32 +211,31 @@ impl Conversation {
     fn render(&mut self, request: Request) -> Result<(), Error> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
-        if self.rendering.1.strong_count() > 0 {
+        if self.download.is_some() {
             return self.say(failed("another picture is being made"));
         }
         let cancel = Arc::new(AtomicBool::new(false));
-        self.rendering = (json!(id), Arc::downgrade(&cancel));
-        let sender = self.sender.clone();
-        let work = move || {
-            let answer = download::answer(request, &cancel);
-            // It is over before the page knows of it, and asks for the next one.
-            drop(cancel);
-            let _ = sender.send(messages::written(&answer));
-        };
+        let cancelled = Arc::clone(&cancel);
         let thread = thread::Builder::new().name("picture".to_owned());
-        match thread.spawn(work) {
-            Ok(_) => Ok(()),
+        match thread.spawn(move || download::answer(request, &cancelled)) {
+            Ok(thread) => {
+                self.download = Some(Download {
+                    request: json!(id),
+                    cancel,
+                    thread,
+                });
+                Ok(())
+            }
             Err(error) => self.say(failed(&format!("no thread can be had: {error}"))),
         }
     }
 
     /// Gives the picture's file up that a request asked for, or any.
     fn cancel(&self, wanted: Option<&Value>) {
-        let (id, cancel) = &self.rendering;
-        if let Some(cancel) = cancel.upgrade()
-            && wanted.is_none_or(|wanted| wanted == id)
+        if let Some(download) = &self.download
+            && wanted.is_none_or(|wanted| *wanted == download.request)
         {
-            cancel.store(true, Ordering::SeqCst);
+            download.cancel.store(true, Ordering::SeqCst);
         }
     }
 }

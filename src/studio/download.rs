@@ -2,7 +2,6 @@
 
 use std::{
     error::Error,
-    io::Cursor,
     sync::atomic::{AtomicBool, Ordering},
 };
 
@@ -42,46 +41,44 @@ fn file(method: &str, params: &Value, cancel: &AtomicBool) -> Answer {
     let reading = scene::read(&Sources::new(Source::from_text("scene.scn", text)));
     let scene = reading.scene;
     let scene = scene.ok_or_else(|| Refusal::failed("the scene has errors"))?;
-    let mut file = Cursor::new(Vec::new());
-    let written = match method {
-        EXR => write_exr(&scene, cancel, &mut file),
-        _ => write_png(&scene, text, cancel, &mut file),
+    let made = match method {
+        EXR => exr(&scene, cancel),
+        _ => png(&scene, text, cancel),
     };
-    written.map_err(|error| match cancel.load(Ordering::SeqCst) {
+    let file = made.map_err(|error| match cancel.load(Ordering::SeqCst) {
         true => Refusal::cancelled(),
         false => Refusal::failed(error),
     })?;
     let name = method.trim_start_matches("studio/");
-    Ok(json!({ name: BASE64_STANDARD.encode(file.into_inner()) }))
+    Ok(json!({ name: BASE64_STANDARD.encode(file) }))
 }
 
-type Written = Result<(), Box<dyn Error>>;
+type Made = Result<Vec<u8>, Box<dyn Error>>;
 
-fn write_png(
-    scene: &Scene,
-    text: &str,
-    cancel: &AtomicBool,
-    file: &mut Cursor<Vec<u8>>,
-) -> Written {
+fn png(scene: &Scene, text: &str, cancel: &AtomicBool) -> Made {
     let film: Film<[u8; 3]> = rendered(scene, cancel)?;
     let recipe = Recipe {
         scene: text.to_owned(),
         overrides: Vec::new(),
         crop: None,
     };
-    Ok(film::write_png(&film, Some(&recipe), file)?)
+    let mut file = Vec::new();
+    film::write_png(&film, Some(&recipe), &mut file)?;
+    Ok(file)
 }
 
 /// For the host on this machine alone: the tables of the format's compressions are a quarter of what a browser would have to load.
 #[cfg(feature = "studio")]
-fn write_exr(scene: &Scene, cancel: &AtomicBool, file: &mut Cursor<Vec<u8>>) -> Written {
+fn exr(scene: &Scene, cancel: &AtomicBool) -> Made {
     let film = rendered(scene, cancel)?;
     let whole = Area::whole(film.width(), film.height());
-    Ok(film::write_exr(&film, whole, whole, file)?)
+    let mut file = std::io::Cursor::new(Vec::new());
+    film::write_exr(&film, whole, whole, &mut file)?;
+    Ok(file.into_inner())
 }
 
 #[cfg(not(feature = "studio"))]
-fn write_exr(_: &Scene, _: &AtomicBool, _: &mut Cursor<Vec<u8>>) -> Written {
+fn exr(_: &Scene, _: &AtomicBool) -> Made {
     Err("no EXR is written here".into())
 }
 

@@ -1,9 +1,9 @@
 //! The host that serves the page: who connects is let in by [`Access`] and gets a file or a conversation.
 
 use std::{
-    io,
+    io, mem,
     net::{Ipv4Addr, TcpListener, TcpStream},
-    sync::Arc,
+    sync::{Arc, Mutex},
     thread,
     time::Duration,
 };
@@ -12,8 +12,7 @@ use super::{
     access::{Access, Answer},
     conversation::converse,
     http::{self, Request, Response},
-    pages::Pages,
-    scene_file::SceneFile,
+    scene_file::{SceneFile, lock},
 };
 
 /// So many connections are served at once: a page has one, and while it loads one for each of its three files. Each has a thread, and nobody has so many pages.
@@ -30,7 +29,7 @@ const RETRY: Duration = Duration::from_millis(20);
 pub struct Host {
     listener: TcpListener,
     access: Access,
-    pages: Arc<Pages>,
+    file: Mutex<SceneFile>,
 }
 
 impl Host {
@@ -42,22 +41,16 @@ impl Host {
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let access = Access::new(listener.local_addr()?.port())?;
-        let pages = Pages::new(file);
         Ok(Self {
             listener,
             access,
-            pages,
+            file: Mutex::new(file),
         })
     }
 
-    /// The address that lets a browser in, for the user alone.
-    pub fn address(&self) -> String {
-        self.access.address()
-    }
-
-    /// An address that lets a browser in once, for a command line: other users of the machine can read those.
-    pub fn address_once(&self) -> String {
-        self.access.address_once()
+    /// The address that lets a browser in, for the user alone; and one that does so once, for a command line: other users of the machine can read those.
+    pub fn addresses(&self) -> [String; 2] {
+        self.access.addresses()
     }
 
     /// Serves until `wait` returns; what is being saved then is saved, and nothing more.
@@ -66,61 +59,54 @@ impl Host {
     ///
     /// There is no thread to do it.
     pub fn serve(self, wait: impl FnOnce()) -> io::Result<()> {
-        let pages = Arc::clone(&self.pages);
+        let host = Arc::new(self);
+        let accepting = Arc::clone(&host);
         thread::Builder::new()
             .name("studio".to_owned())
-            .spawn(move || self.accept())?;
+            .spawn(move || accepting.accept())?;
         wait();
-        pages.stop();
+        // Whoever would save something waits from now on, until the process ends.
+        mem::forget(lock(&host.file));
         Ok(())
     }
 
-    fn accept(self) {
-        let access = Arc::new(self.access);
-        let served = Arc::new(());
+    fn accept(self: Arc<Self>) {
+        // Who has the host: whoever waits for the end, this loop, and each connection.
+        let most = MOST + 2;
         loop {
             let Ok((stream, _)) = self.listener.accept() else {
                 // As when no more files can be open: somebody will close one, and until then this loop must not keep a processor busy.
                 thread::sleep(RETRY);
                 continue;
             };
-            let place = Arc::clone(&served);
-            let is_full = Arc::strong_count(&served) > MOST + 1;
-            let (access, pages) = (Arc::clone(&access), Arc::clone(&self.pages));
-            let serve = move || {
-                // Of one that breaks there is nothing to say, and nobody to say it to.
-                let _ = answer(stream, is_full, &access, &pages);
-                drop(place);
-            };
+            let host = Arc::clone(&self);
+            let is_full = Arc::strong_count(&host) > most;
+            // Of one that breaks there is nothing to say, and nobody to say it to.
+            let serve = move || drop(host.answer(stream, is_full));
             // Where no thread can be started, the connection is closed.
             let _ = thread::Builder::new()
                 .name("connection".to_owned())
                 .spawn(serve);
         }
     }
-}
 
-/// Serves one connection.
-fn answer(
-    mut stream: TcpStream,
-    is_full: bool,
-    access: &Access,
-    pages: &Arc<Pages>,
-) -> io::Result<()> {
-    stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(PATIENCE))?;
-    if is_full {
-        let refused = Response::text("503 Service Unavailable", "There are too many pages.");
-        return refused.end(stream);
-    }
-    let Some(request) = Request::read(&mut stream) else {
-        return Response::text("400 Bad Request", "This is no request.").end(stream);
-    };
-    match access.answer(&request) {
-        Answer::Response(response) => response.end(stream),
-        Answer::Socket(key) => {
-            http::accept_socket(&mut stream, &key)?;
-            converse(stream, request.rest, pages)
+    /// Serves one connection.
+    fn answer(&self, mut stream: TcpStream, is_full: bool) -> io::Result<()> {
+        stream.set_nodelay(true)?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        if is_full {
+            let refused = Response::text("503 Service Unavailable", "There are too many pages.");
+            return refused.end(stream);
+        }
+        let Some(request) = Request::read(&mut stream) else {
+            return Response::text("400 Bad Request", "This is no request.").end(stream);
+        };
+        match self.access.answer(&request) {
+            Answer::Response(response) => response.end(stream),
+            Answer::Socket(key) => {
+                http::accept_socket(&mut stream, &key)?;
+                converse(stream, request.rest, &self.file)
+            }
         }
     }
 }

@@ -3,7 +3,10 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
-    sync::{Arc, atomic::AtomicBool},
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use crate::{
@@ -27,6 +30,15 @@ pub struct SceneFile {
     path: Option<PathBuf>,
     /// What was there when it was looked at last; of a new scene, its text.
     held: Held,
+    /// Counts what was there.
+    version: u64,
+    /// Tells when the file has changed. Without it, that is found when it is saved.
+    watch: Option<Arc<Latest<Content>>>,
+}
+
+/// The file that pages share. A page that broke while it had it has left no half of a change.
+pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
+    file.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Why a text was not saved.
@@ -57,6 +69,8 @@ impl SceneFile {
             folder: PathBuf::new(),
             path: Some(path.to_owned()),
             held: Ok(Some(text)),
+            version: 1,
+            watch: preview::watch(path, read).ok(),
         })
     }
 
@@ -67,17 +81,14 @@ impl SceneFile {
             folder,
             path: None,
             held: Ok(Some(SMALLEST.to_owned())),
+            version: 1,
+            watch: None,
         }
     }
 
     /// Where it is, if it is anywhere.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
-    }
-
-    /// Watches the file, if there is one and the system can.
-    pub fn watch(&self) -> Option<Arc<Latest<Content>>> {
-        preview::watch(self.path()?, self.read).ok()
     }
 
     /// What it is called; for a new scene what it might be called.
@@ -92,15 +103,20 @@ impl SceneFile {
         &self.held
     }
 
-    /// Looks at what is there now: what a watch has seen may be older than what a page has saved since. Says whether it is new.
-    pub fn look(&mut self) -> bool {
-        let Some(path) = self.path() else {
-            return false;
-        };
-        let held = self.found(path);
-        let is_new = self.held != held;
+    /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
+    pub fn look(&mut self) -> u64 {
+        if let (Some(path), Some(watch)) = (&self.path, &self.watch)
+            && watch.stale().swap(false, Ordering::SeqCst)
+        {
+            let found = self.found(path);
+            self.hold(found);
+        }
+        self.version
+    }
+
+    fn hold(&mut self, held: Held) {
+        self.version += u64::from(self.held != held);
         self.held = held;
-        is_new
     }
 
     fn found(&self, path: &Path) -> Held {
@@ -111,7 +127,7 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has.
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has. Returns the version that it is.
     ///
     /// # Errors
     ///
@@ -121,7 +137,7 @@ impl SceneFile {
         text: &str,
         base: Option<&str>,
         name: Option<&str>,
-    ) -> Result<(), NotSaved> {
+    ) -> Result<u64, NotSaved> {
         match &self.path {
             Some(path) => {
                 let own = self.name();
@@ -142,11 +158,13 @@ impl SceneFile {
                 check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
                 create(&path, text)?;
+                self.watch = preview::watch(&path, self.read).ok();
                 self.path = Some(path);
+                self.version += 1;
             }
         }
-        self.held = Ok(Some(text.to_owned()));
-        Ok(())
+        self.hold(Ok(Some(text.to_owned())));
+        Ok(self.version)
     }
 }
 

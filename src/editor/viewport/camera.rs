@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 
 use super::{
-    handles::{handles, unit, within_half_turn},
+    handles::{TOO_FAR, handles, unit, within_half_turn},
     projection::Projection,
 };
 use crate::{
     math::{Angle, trig},
     probe::probe,
-    scene::{Camera, Lens, Scene, View},
+    scene::{Camera, Lens, Part, Scene, View},
 };
 
 /// So near, in radians, the view direction may come to the up vector: one degree.
@@ -60,17 +60,15 @@ pub fn moved(
     let middle = camera.eye + ahead * distance;
     let mut moved = *camera;
     match handle {
-        "orbit" => {
-            let back = turned(camera, projection, -ahead, by, -1.0);
-            moved.eye = middle + back * distance;
-            if let View::Direction(direction) = &mut moved.view {
-                *direction = -back * unit(*direction).1;
+        "orbit" | "look" => {
+            // What is seen follows the hand in both: the camera goes the other way where it stays in its place.
+            let is_orbit = handle == "orbit";
+            let ahead = turned(camera, projection, if is_orbit { -by } else { by });
+            if is_orbit {
+                moved.eye = middle - ahead * distance;
             }
-        }
-        "look" => {
-            let ahead = turned(camera, projection, ahead, by, 1.0);
             moved.view = match camera.view {
-                View::Lookat(_) => View::Lookat(camera.eye + ahead * distance),
+                View::Lookat(_) => View::Lookat(moved.eye + ahead * distance),
                 View::Direction(direction) => View::Direction(ahead * unit(direction).1),
             };
         }
@@ -104,24 +102,27 @@ pub fn moved(
         }
         _ => return Err(format!("a camera has no handle `{handle}`")),
     }
-    Ok(moved)
+    match Part::Camera(moved).is_possible() {
+        true => Ok(moved),
+        false => Err(TOO_FAR.to_owned()),
+    }
 }
 
 fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// A direction along the view axis turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector, as often
-/// as `turns` says for each that it goes to the right, and away from the up vector where it goes up.
-fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2, turns: f64) -> DVec3 {
-    let up = unit(camera.up).0;
+/// The view direction turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector where it goes to the right,
+/// and away from the up vector where it goes down.
+fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
+    let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // What right and up in the world are in the rolled picture.
     let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
     let level_top = projection.top * cos - projection.right * sin;
     let pointer = DVec2::new(by.x * cos - by.y * sin, -by.x * sin - by.y * cos) * PI;
 
-    let axial = along.dot(up);
-    let radial = along - up * axial;
+    let axial = ahead.dot(up);
+    let radial = ahead - up * axial;
     let polar = trig::atan2(radial.length(), axial).radians;
     // Straight up or down, the picture's top says where level is.
     let level = match radial == DVec3::ZERO {
@@ -132,8 +133,7 @@ fn turned(camera: &Camera, projection: &Projection, along: DVec3, by: DVec2, tur
         turned if pointer.y != 0.0 => turned.clamp(polar.min(POLE), polar.max(PI - POLE)),
         _ => polar,
     };
-    let about = Angle::from_radians(turns * pointer.x);
+    let (polar, about) = (Angle::from_radians(polar), Angle::from_radians(pointer.x));
     let level = level * trig::cos(about) + up.cross(level) * trig::sin(about);
-    let polar = Angle::from_radians(polar);
     level * trig::sin(polar) + up * trig::cos(polar)
 }

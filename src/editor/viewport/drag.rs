@@ -8,13 +8,13 @@ use glam::{DVec2, DVec3};
 use super::{
     camera,
     edits::{Change, changes, edits},
-    handles::{self, Along, TOLERANCE, handles},
+    handles::{self, Along, TOLERANCE, TOO_FAR, handles},
     projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
-    scene::{self, Camera, Part, Scene, Shape},
+    scene::{self, Image, Part, Scene, Shape},
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
@@ -60,21 +60,35 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         Some(index) => format!("there is no object {index}"),
         None => "the text has no camera".to_owned(),
     })?;
-    let view = Viewpoint {
-        scene,
-        projection: Projection::new(&scene.camera, &scene.image),
-        drag,
-        // An object moves without it.
-        distance: drag.object.map_or_else(|| camera::distance(scene), |_| 1.0),
+    let image = &scene.image;
+    let projection = Projection::new(&scene.camera, image);
+    let (ideal, points) = match current {
+        Part::Shape(shape) => {
+            let held = handles(&shape, &projection, DVec3::ZERO)[0].1;
+            let ideal = handles::moved(shape, drag.handle, drag.to, drag.along, &projection)?;
+            (ideal, Some(Vec::from_iter(held)))
+        }
+        _ => {
+            let distance = camera::distance(scene);
+            let (handle, by) = (drag.handle, [drag.from, drag.to]);
+            let moved = camera::moved(&scene.camera, &projection, handle, by, distance)?;
+            let seen = landmarks(&Projection::new(&moved, image), distance);
+            (Part::Camera(moved), seen)
+        }
     };
-    let ideal = view.moved(current)?;
     let changes = changes(block, current, ideal);
-    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
-    if !greatest.is_finite() || (drag.object.is_none() && !ideal.is_possible()) {
-        return Err("that is too far away".to_owned());
+    if !changes.iter().all(|change| change.by.is_finite()) {
+        return Err(TOO_FAR.to_owned());
     }
+    let not_seen = "it would not be seen there";
+    let view = View {
+        image,
+        projection,
+        drag,
+        points: points.ok_or(not_seen)?,
+    };
     if !view.agree(ideal, ideal) {
-        return Err("it would not be seen there".to_owned());
+        return Err(not_seen.to_owned());
     }
     if view.agree(ideal, current) {
         return Ok(Dragged::default());
@@ -85,6 +99,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
     let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
     let mut refusal = tied();
+    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
     for decimals in first..=first + DIGITS {
         let edits = edits(analysis, block, &changes, decimals);
@@ -150,111 +165,72 @@ fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// From where a drag is seen.
-struct Viewpoint<'a> {
-    scene: &'a Scene,
+/// Points that a camera sees in the middle and in the corners of its picture, before and behind what it is moved about; none where numbers have too few digits
+/// for them.
+fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
+    let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
+    let depths = [0.5, 1.0, 2.0].into_iter();
+    let places = depths.flat_map(|depth| corners.map(|corner| (depth, corner)));
+    let point = |(depth, corner): (f64, (f64, f64))| {
+        let corner = projection.size * DVec2::from(corner);
+        let at = projection.at_depth(corner, depth * distance);
+        let seen = projection.point(at)?;
+        (seen.distance(corner) <= TOLERANCE).then_some(at)
+    };
+    places.map(point).collect()
+}
+
+/// How the scene before a drag is seen.
+struct View<'a> {
+    image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// How far away that is which the camera is moved about.
-    distance: f64,
+    /// The points of the world by which cameras, and boards, are compared.
+    points: Vec<DVec3>,
 }
 
-impl Viewpoint<'_> {
-    /// The object or the camera as it is moved, in real numbers.
-    fn moved(&self, current: Part) -> Result<Part, String> {
-        let Drag {
-            handle,
-            from,
-            to,
-            along,
-            ..
-        } = *self.drag;
-        let projection = &self.projection;
-        Ok(match current {
-            Part::Shape(shape) => {
-                Part::Shape(handles::moved(&shape, handle, to, along, projection)?)
-            }
-            Part::Camera(camera) => {
-                let points = [from, to];
-                let moved = camera::moved(&camera, projection, handle, points, self.distance)?;
-                Part::Camera(moved)
-            }
-            Part::Image(_) => current,
-        })
-    }
-
-    /// Whether everything is seen within half a pixel of where it should be.
+impl View<'_> {
+    /// Whether everything in the picture or near to it, and what is held, is seen within half a pixel of where it should be.
     fn agree(&self, ideal: Part, found: Part) -> bool {
-        match (ideal, found) {
-            (Part::Camera(ideal), Part::Camera(found)) => self.cameras_agree(&ideal, &found),
-            (Part::Shape(ideal), Part::Shape(found)) => {
-                let marks = self.marks(&ideal).into_iter().zip(self.marks(&found));
-                marks.into_iter().all(|((name, ideal), (_, found))| {
-                    let is_held = name == self.drag.handle;
-                    match ideal {
-                        Some(ideal) if is_held || self.is_near(ideal) => are_near(ideal, found),
-                        _ => !is_held,
-                    }
-                })
-            }
-            _ => false,
-        }
-    }
-
-    /// Where the handles of an object are seen; that of a radius on the side where it is moved to.
-    fn marks(&self, shape: &Shape) -> Vec<(&'static str, Option<DVec2>)> {
-        let towards = match self.drag.handle {
-            "radius" => self.projection.ray(self.drag.to),
-            _ => self.projection.right,
-        };
-        let mut handles = handles(shape, &self.projection, towards);
-        // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
-        if let (Shape::Checkerboard(board), [(_, at)]) = (shape, &mut handles[..]) {
-            *at = self.held().map(|at| at.with_y(board.y));
-        }
-        let seen = |at: DVec3| self.projection.point(at);
-        handles
-            .into_iter()
-            .map(|(name, at)| (name, at.and_then(seen)))
-            .collect()
-    }
-
-    /// Where the first handle of the dragged object is before the drag.
-    fn held(&self) -> Option<DVec3> {
-        let object = self.scene.objects.get(self.drag.object?)?;
-        handles(&object.shape, &self.projection, DVec3::ZERO)
-            .first()?
-            .1
-    }
-
-    /// Whether a point lies in the picture, or so near to it that it may come to be seen.
-    fn is_near(&self, at: DVec2) -> bool {
         let size = self.projection.size;
-        (at.cmpge(-size) & at.cmple(2.0 * size)).all()
-    }
-
-    /// Whether what one camera sees in the middle and in the corners, before and behind what it is moved about, is seen by the other at the same points.
-    fn cameras_agree(&self, ideal: &Camera, found: &Camera) -> bool {
-        let [ideal, found] =
-            [ideal, found].map(|camera| Projection::new(camera, &self.scene.image));
-        let size = ideal.size;
-        let points = [
-            size / 2.0,
-            DVec2::ZERO,
-            size,
-            DVec2::new(size.x, 0.0),
-            DVec2::new(0.0, size.y),
-        ];
-        let mut depths = [0.5, 1.0, 2.0].map(|part| part * self.distance).into_iter();
-        depths.all(|depth| {
-            points
-                .into_iter()
-                .all(|point| are_near(point, found.point(ideal.at_depth(point, depth))))
+        let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
+        marks.all(|((is_held, ideal), (_, found))| {
+            let Some(ideal) = ideal else {
+                return !is_held;
+            };
+            let is_near = (ideal.cmpge(-size) & ideal.cmple(2.0 * size)).all();
+            let agrees = found.is_some_and(|found| found.distance(ideal) <= TOLERANCE);
+            agrees || !(is_held || is_near)
         })
     }
-}
 
-/// Whether something is seen within half a pixel of where it should be.
-fn are_near(ideal: DVec2, found: Option<DVec2>) -> bool {
-    found.is_some_and(|found| found.distance(ideal) <= TOLERANCE)
+    /// Where that is seen which tells a camera or an object from others, and whether it is what is held.
+    fn marks(&self, part: Part) -> Vec<(bool, Option<DVec2>)> {
+        let points = self.points.iter();
+        match part {
+            Part::Camera(camera) => {
+                let projection = Projection::new(&camera, self.image);
+                points.map(|at| (true, projection.point(*at))).collect()
+            }
+            // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
+            Part::Shape(Shape::Checkerboard(board)) => {
+                let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
+                points.map(|at| (true, seen(at))).collect()
+            }
+            Part::Shape(shape) => {
+                let Drag { handle, to, .. } = *self.drag;
+                // That of a radius is on the side where it is moved to.
+                let towards = match handle {
+                    "radius" => self.projection.ray(to),
+                    _ => self.projection.right,
+                };
+                let seen = |at: Option<DVec3>| self.projection.point(at?);
+                let handles = handles(&shape, &self.projection, towards).into_iter();
+                handles
+                    .map(|(name, at)| (name == handle, seen(at)))
+                    .collect()
+            }
+            Part::Image(_) => Vec::new(),
+        }
+    }
 }

@@ -67,7 +67,7 @@ pub fn edits<'s>(
     for &Change { name, from, by } in changes {
         match block.fields.iter().find(|field| field.name.text == name) {
             Some(field) => writer.change(&field.value, by)?,
-            None => added.push(format!("{name} {}", writer.sum(from, by))),
+            None => added.push(format!("{name} {}", writer.sum(from, by, None))),
         }
     }
     let mut edits = writer.edits;
@@ -94,33 +94,36 @@ impl<'s> Writer<'_, 's> {
     /// Changes a value by an amount; none if it has no amounts.
     fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
+        if let Some(unit) = literal_unit(tree) {
+            let old = model.value(tree, None)?;
+            let text = self.sum(old, by, unit);
+            if text != spelled(amount(old, unit), unit) {
+                self.edits.push(Edit::new(tree.span, text));
+            }
+            return Some(());
+        }
         match (&tree.kind, by) {
-            (ValueKind::Parentheses(inner), _) => self.change(inner, by),
-            (ValueKind::Name(name), _) => match model.definition_at(name, tree.span.start) {
-                Some(definition) => self.change(&definition.value, by),
-                None => self.offset(tree.span, by),
-            },
+            (ValueKind::Parentheses(inner), _) => return self.change(inner, by),
+            (ValueKind::Name(name), _) => {
+                if let Some(definition) = model.definition_at(name, tree.span.start) {
+                    return self.change(&definition.value, by);
+                }
+            }
             (ValueKind::Tuple(elements), Value::Vector(by)) => {
                 let mut numbers = elements.iter().zip(by.to_array());
-                numbers.try_for_each(|(it, by)| self.change(&it.value, Value::Number(by)))
+                return numbers.try_for_each(|(it, by)| self.change(&it.value, Value::Number(by)));
             }
-            _ if is_number(tree) => {
-                let unit = unit(tree);
-                let old = amount(model.value(tree, None)?, unit);
-                let text = self.number(old, amount(by, unit), unit);
-                if text != spelled(old, unit) {
-                    self.edits.push(Edit::new(tree.span, text));
+            (ValueKind::Chain { rest, .. }, _) => {
+                if let Some(step) = rest.last()
+                    && !step.operator.is_of_product()
+                    && is_literal(&step.operand)
+                {
+                    return self.change_last(step, by);
                 }
-                Some(())
             }
-            (ValueKind::Chain { rest, .. }, _) => match rest.last() {
-                Some(step) if !step.operator.is_of_product() && is_literal(&step.operand) => {
-                    self.change_last(step, by)
-                }
-                _ => self.offset(tree.span, by),
-            },
-            _ => self.offset(tree.span, by),
+            _ => {}
         }
+        self.offset(tree.span, by)
     }
 
     /// Changes the literal that a sum ends in: of a number the sign is the operator.
@@ -143,8 +146,8 @@ impl<'s> Writer<'_, 's> {
     /// Adds an offset behind an expression.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
-        let text = self.sum(zero, by);
-        if text != self.sum(zero, zero) {
+        let text = self.sum(zero, by, None);
+        if text != self.sum(zero, zero, None) {
             let text = match text.strip_prefix('-') {
                 Some(digits) => format!(" - {digits}"),
                 None => format!(" + {text}"),
@@ -155,22 +158,19 @@ impl<'s> Writer<'_, 's> {
         Some(())
     }
 
-    /// A value that has changed by an amount; an angle in degrees.
-    fn sum(&self, from: Value, by: Value) -> String {
-        match (from, by) {
-            (Value::Vector(from), Value::Vector(by)) => {
-                let [x, y, z] = [0, 1, 2].map(|axis| self.number(from[axis], by[axis], None));
-                format!("({x}, {y}, {z})")
-            }
-            _ => {
-                let unit = matches!(from, Value::Angle(_)).then_some(Unit::Degrees);
-                self.number(amount(from, unit), amount(by, unit), unit)
-            }
+    /// A value that has changed by an amount, with as many decimals as there are to be; the old number where the amount has none of them. An angle that has
+    /// no unit yet is in degrees.
+    fn sum(&self, from: Value, by: Value, unit: Option<Unit>) -> String {
+        if let (Value::Vector(from), Value::Vector(by)) = (from, by) {
+            let number = |axis| {
+                let [from, by] = [from, by].map(|vector| Value::Number(vector[axis]));
+                self.sum(from, by, None)
+            };
+            let [x, y, z] = [0, 1, 2].map(number);
+            return format!("({x}, {y}, {z})");
         }
-    }
-
-    /// A number that has changed by an amount, with as many decimals as there are to be; the old one where the amount has none of them.
-    fn number(&self, old: f64, by: f64, unit: Option<Unit>) -> String {
+        let unit = unit.or(matches!(from, Value::Angle(_)).then_some(Unit::Degrees));
+        let (old, by) = (amount(from, unit), amount(by, unit));
         let new = match round(by, self.decimals) == 0.0 {
             true => old,
             false => round(old + by, self.decimals),
@@ -179,27 +179,19 @@ impl<'s> Writer<'_, 's> {
     }
 }
 
-/// Whether a value is a number or an angle, with a sign or without.
-fn is_number(tree: &tree::Value<'_>) -> bool {
+/// The unit of a number or an angle, with a sign or without, if it has one; none at all of other values.
+fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     match &tree.kind {
-        ValueKind::Number(_) | ValueKind::Angle { .. } => true,
-        ValueKind::Negation { operand, .. } => is_number(operand),
-        _ => false,
+        ValueKind::Number(_) => Some(None),
+        ValueKind::Angle { unit, .. } => Some(Some(*unit)),
+        ValueKind::Negation { operand, .. } => literal_unit(operand),
+        _ => None,
     }
 }
 
 /// Whether a value is written in numbers, at least in part, so that it can take up any change.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
-    is_number(tree) || matches!(tree.kind, ValueKind::Tuple(_))
-}
-
-/// The unit of a number.
-fn unit(tree: &tree::Value<'_>) -> Option<Unit> {
-    match &tree.kind {
-        ValueKind::Angle { unit, .. } => Some(*unit),
-        ValueKind::Negation { operand, .. } => unit(operand),
-        _ => None,
-    }
+    literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
 /// A number, or how many of its unit an angle is.

@@ -5,14 +5,20 @@ use glam::{DVec2, DVec3};
 use super::projection::Projection;
 use crate::{
     math::{Angle, trig},
-    scene::{CenteredTriangle, Cuboid, Outline, Shape, Sphere},
+    scene::{CenteredTriangle, Cuboid, Outline, Part, Shape, Sphere, Triangle, operate},
+    schema::Value,
+    syntax::tree::Operator,
     tracer::vertices,
 };
 
 /// So far, in pixels, something may be seen from where it should be.
 pub const TOLERANCE: f64 = 0.5;
 
-/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye is.
+/// Why nothing is moved where numbers have too few digits, or are too large.
+pub const TOO_FAR: &str = "that is too far away";
+
+/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye is. The name is that of the field that moves with it, with an
+/// axis behind it where it moves along that alone.
 pub type Handle = (&'static str, Option<DVec3>);
 
 /// What a point moves along, other than the plane through it that is parallel to the view plane.
@@ -103,62 +109,58 @@ pub fn unit(v: DVec3) -> (DVec3, f64) {
 
 /// An object with a handle moved to where it is to be seen at a point of the picture, or as near to that as it can be.
 pub fn moved(
-    shape: &Shape,
+    shape: Shape,
     handle: &str,
     to: DVec2,
     along: Option<Along>,
     projection: &Projection,
-) -> Result<Shape, String> {
-    let mut handles = handles(shape, projection, projection.right).into_iter();
-    let Some((_, at)) = handles.find(|(known, _)| *known == handle) else {
+) -> Result<Part, String> {
+    let part = Part::Shape(shape);
+    let no_handle = || {
         let kind = shape.kind();
-        return Err(format!("a {kind} of this form has no handle `{handle}`"));
+        format!("a {kind} of this form has no handle `{handle}`")
     };
-    let mut moved = *shape;
-    match (&mut moved, handle, at) {
-        (Shape::Sphere(sphere), "radius", _) => sphere.radius = radius(sphere, to, projection)?,
-        (Shape::Triangle(triangle), "normal" | "spin", Some(at)) => {
-            if let Outline::Centered(own) = &mut triangle.outline {
-                match handle {
-                    "normal" => own.normal = turned_normal(own, to, projection)?,
-                    _ => own.spin = spun(own, at, to, projection)?,
-                }
-            }
+    let mut handles = handles(&shape, projection, projection.right).into_iter();
+    let found = handles.find(|(known, _)| *known == handle);
+    let (_, at) = found.ok_or_else(no_handle)?;
+    let centered = match shape {
+        Shape::Triangle(Triangle {
+            outline: Outline::Centered(own),
+            ..
+        }) => Some(own),
+        _ => None,
+    };
+    let moved = match (handle, shape, centered, at) {
+        ("radius", Shape::Sphere(sphere), ..) => {
+            part.with(handle, Value::Number(radius(&sphere, to, projection)?))
         }
-        (shape, _, Some(at)) if projection.depth(at) > 0.0 => {
-            let own = handle.rsplit('_').next().and_then(Along::named);
-            let along = own.or(along);
-            shift(shape, handle, moved_point(at, to, along, projection)? - at);
+        ("normal", _, Some(own), _) => {
+            part.with(handle, Value::Vector(turned_normal(&own, to, projection)))
+        }
+        ("spin", _, Some(own), Some(apex)) => {
+            part.with(handle, Value::Angle(spun(&own, apex, to, projection)?))
+        }
+        (.., Some(at)) if projection.depth(at) > 0.0 => {
+            let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
+            let along = Along::named(axis).or(along);
+            let by = moved_point(at, to, along, projection)? - at;
+            // What has corners moves by them: as a field, the centre of a box is rounded, and that of three vertices is none.
+            let fields = match (field, shape) {
+                ("center", Shape::Box(_)) => &["min", "max"][..],
+                ("center", Shape::Triangle(_)) => &CORNERS,
+                _ => &[field],
+            };
+            fields.iter().try_fold(part, |part, field| {
+                let by = match part.value(field)? {
+                    Value::Number(_) => Value::Number(by.y),
+                    _ => Value::Vector(by),
+                };
+                part.with(field, operate(Operator::Add, part.value(field)?, by)?)
+            })
         }
         _ => return Err(format!("the handle `{handle}` is not in front of the eye")),
-    }
-    Ok(moved)
-}
-
-/// Moves what a handle holds.
-fn shift(shape: &mut Shape, handle: &str, by: DVec3) {
-    match shape {
-        Shape::Sphere(sphere) => sphere.center += by,
-        Shape::Box(cuboid) => {
-            if !handle.starts_with("max") {
-                cuboid.min += by;
-            }
-            if !handle.starts_with("min") {
-                cuboid.max += by;
-            }
-        }
-        Shape::Triangle(triangle) => match &mut triangle.outline {
-            Outline::Centered(own) => own.centroid += by,
-            Outline::Vertices(corners) => {
-                for (corner, name) in corners.iter_mut().zip(CORNERS) {
-                    if handle == "center" || handle == name {
-                        *corner += by;
-                    }
-                }
-            }
-        },
-        Shape::Checkerboard(board) => board.y += by.y,
-    }
+    };
+    moved.ok_or_else(no_handle)
 }
 
 /// A point moved to where it is seen at a point of the picture, or as near to that as what it moves along allows.
@@ -168,35 +170,27 @@ fn moved_point(
     along: Option<Along>,
     projection: &Projection,
 ) -> Result<DVec3, String> {
-    let (moved, goal) = match along {
-        None => (projection.on_plane(to, point, projection.ahead), to),
-        Some(Along::Floor) => (projection.on_plane(to, point, DVec3::Y), to),
+    let mut across = DVec3::ZERO;
+    let moved = match along {
+        None => projection.on_plane(to, point, projection.ahead),
+        Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            let (moved, nearest) = along_axis(point, to, DVec3::AXES[axis], projection);
-            (Some(moved), nearest)
+            // The axis is seen as a line, and what is seen across it from `to` lies in a plane with the eye, which the axis meets at the nearest point.
+            let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
+            let normal = unit(from_eye.cross(axis)).0;
+            across = unit(normal.reject_from(projection.ahead)).0;
+            let plane = projection.ray(to).cross(across);
+            Some(point - axis * (from_eye.dot(plane) / axis.dot(plane)))
         }
     };
     let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
-    match seen {
-        Some((moved, seen)) if seen.distance(goal) <= TOLERANCE => Ok(moved),
-        // Very far away, numbers have too few digits.
-        Some(_) => Err("that is too far away".to_owned()),
-        None => Err("what it moves along is not seen there".to_owned()),
+    let (moved, seen) = seen.ok_or("what it moves along is not seen there")?;
+    let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
+    let left = (seen - to) - across * (seen - to).dot(across);
+    match left.length() <= TOLERANCE {
+        true => Ok(moved),
+        false => Err(TOO_FAR.to_owned()),
     }
-}
-
-/// A point moved along an axis, to where it is seen nearest to a point of the picture; and where that is.
-fn along_axis(point: DVec3, to: DVec2, axis: DVec3, projection: &Projection) -> (DVec3, DVec2) {
-    // The plane of the eye and the axis through the point cuts the picture in a line; its normal, in the camera's axes, has that line's coefficients.
-    let plane = unit((point - projection.eye).cross(axis)).0;
-    let normal = DVec2::new(plane.dot(projection.right), -plane.dot(projection.top));
-    let offset = projection.ray(to).dot(plane) / (normal.length_squared() * projection.pitch);
-    let nearest = to - normal * offset;
-    let ray = projection.ray(nearest);
-    // p + s a lies on the ray t where (p + s a) × t = 0.
-    let across = axis.cross(ray);
-    let step = -(point - projection.eye).cross(ray).dot(across) / across.length_squared();
-    (point + axis * step, nearest)
 }
 
 /// The radius with which a sphere's outline passes through a point of the picture.
@@ -212,11 +206,7 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
 }
 
 /// The normal whose tip is seen at a point of the picture, on the side of the centroid where it is now; or that whose tip comes nearest.
-fn turned_normal(
-    triangle: &CenteredTriangle,
-    to: DVec2,
-    projection: &Projection,
-) -> Result<DVec3, String> {
+fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
@@ -224,15 +214,8 @@ fn turned_normal(
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());
-    let side = match normal.dot(ray) > 0.0 {
-        true => ray,
-        false => -ray,
-    };
-    let tip = foot + side * rest.max(0.0).sqrt();
-    match tip == DVec3::ZERO || !tip.is_finite() {
-        true => Err("the normal cannot point there".to_owned()),
-        false => Ok(unit(tip).0 * length),
-    }
+    let tip = foot + ray * rest.max(0.0).sqrt().copysign(normal.dot(ray));
+    unit(tip).0 * length
 }
 
 /// The spin with which the apex is seen in the direction of a point of the picture from the centroid.

@@ -76,11 +76,15 @@ try {
   console.log(`rate: ${round(coarse / seconds)} coarse pictures a second while dragging (${coarse} in ${round(seconds)} s)`);
 
   const session = await page.context().newCDPSession(page);
+  const all = await browser.newBrowserCDPSession();
+  const resident = pid => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]) / 1024;
   const memory = async () => {
     await session.send("HeapProfiler.collectGarbage");
     const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
-    const resident = host.pid ? Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${host.pid}/status`, "utf8"))[1]) / 1024 : NaN;
-    return { heap: round(heap / 2 ** 20), host: round(resident) };
+    // Pictures that a browser keeps are not in the heap.
+    const { processInfo } = await all.send("SystemInfo.getProcessInfo");
+    const whole = Math.max(...processInfo.filter(({ type }) => type === "renderer").map(({ id }) => resident(id)));
+    return { heap: round(heap / 2 ** 20), host: host.pid ? round(resident(host.pid)) : NaN, whole: round(whole) };
   };
   await moving(100);
   const before = await memory();
@@ -89,7 +93,7 @@ try {
     pictures += (await moving(100)).coarse;
     if (i % 25 === 24) {
       const now = await memory();
-      console.log(`memory after ${pictures} pictures: page ${now.heap} MiB (${before.heap} at first), host ${now.host} MiB (${before.host})`);
+      console.log(`memory after ${pictures} pictures: page ${now.heap} MiB (${before.heap} at first) of ${now.whole} (${before.whole}), host ${now.host} MiB (${before.host})`);
     }
   }
   await page.mouse.up();

@@ -180,7 +180,10 @@ proptest! {
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
                 // Half a pixel inwards the sphere is hit, and half a pixel outwards it is not.
-                let inwards = (found - to).normalize_or_zero() * 0.75;
+                // Where the centre is behind the eye, it is inwards to go away from where it would be seen.
+                let CameraFacts { eye, w, .. } = camera_of(&after);
+                let side = (eye - place).dot(w).signum();
+                let inwards = (found - to).normalize_or_zero() * (0.75 * side);
                 let hits = |at: DVec2| probe(&after, at).hits.iter().any(|(hit, ..)| hit.object == 0);
                 let is_near = to.abs().max_element() < 1e4 && before.image.width > 100 && before.image.width < 1000;
                 prop_assert!(!is_near || hits(to + inwards) || found.distance(to) < 1.0, "{}", message);
