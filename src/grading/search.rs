@@ -3,30 +3,33 @@
 use std::{
     cell::RefCell,
     collections::VecDeque,
+    iter,
     sync::{Arc, atomic::AtomicBool},
 };
 
 use super::{
     Reference,
-    candidate::{Candidate, Cause, Named},
-    fit::{Fitted, Trial, fit},
+    candidate::{Candidate, Mistake},
+    fit::{Fitted, absolute, fit},
     grid::Grid,
     jpeg::Jpeg,
     level::Level,
-    light::Curve,
+    likelihood::Score,
     made::Made,
     mistakes::{ROWS, Shows},
-    parameters::Parameter,
-    score::{Model, Score, Strays, gain, score},
+    strays::Strays,
     textbook::Behaviour,
     work::{self, Work},
 };
 use crate::{area::Area, film::Film, scene::Scene};
 
-/// The longest sides of the grids, in cells, and the samples in a cell of the tiny one, on which starts are looked for.
-pub const TINY: (u32, usize) = (32, 5);
+/// The longest sides of the grids, in cells.
+const TINY: u32 = 32;
 const COARSE: u32 = 48;
 const MIDDLE: u32 = 96;
+
+/// The samples in a cell of the tiny grid, on which starts are looked for.
+const SAMPLES: usize = 5;
 
 /// So many pictures of all pixels are kept, those that were made last: one candidate's, and one's that it is compared with.
 const LAST: usize = 2;
@@ -38,7 +41,7 @@ const PIXELS_OF_EDGES: u64 = 20_000;
 pub struct Search<'a> {
     pub scene: &'a Scene,
     reference: &'a Reference<'a>,
-    pub tiny: Level<'a>,
+    tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
@@ -50,13 +53,20 @@ pub struct Search<'a> {
     pub cancel: &'a AtomicBool,
 }
 
-/// What was found.
+/// A candidate that was judged.
 pub struct Found {
-    pub candidate: Candidate,
-    pub score: Score,
-    pub cost: f64,
-    /// What it makes on the grid that it was judged on.
+    /// What it makes on the level that it was judged on.
     pub made: Arc<Made>,
+    pub score: Score,
+    /// Half a logarithm of the number of pixels for each number that was fitted, less the logarithm of the likelihood.
+    pub cost: f64,
+}
+
+impl Found {
+    /// The candidate.
+    pub fn candidate(&self) -> &Candidate {
+        &self.made.candidate
+    }
 }
 
 impl<'a> Search<'a> {
@@ -74,18 +84,16 @@ impl<'a> Search<'a> {
             let corner = [area.x - part.x, area.y - part.y];
             Level::new(grid, film, corner, samples, jpeg)
         };
-        let work = Work::new(work::most(part.pixels()), cancel);
-        work.spend(reference.work);
         Self {
             scene,
             reference,
-            tiny: level(part, TINY.0, Some(TINY.1)),
+            tiny: level(part, TINY, Some(SAMPLES)),
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             edges: level(middle(part), u32::MAX, None),
             last: RefCell::default(),
-            work,
+            work: Work::new(part.pixels(), reference.work, cancel),
             cancel,
         }
     }
@@ -131,7 +139,7 @@ impl<'a> Search<'a> {
         let fine = self.fine.grid.cells;
         let is_same = |made: &&Arc<Made>| made.part == fine && made.candidate.traces_as(candidate);
         let reduce = |made: &Made| {
-            let moments = level.reduced(made.moments(), fine);
+            let moments = Arc::new(level.reduced(&made.right, fine));
             Arc::new(Made::new(made.candidate.clone(), level.grid.cells, moments))
         };
         let right = &self.reference.right;
@@ -142,215 +150,129 @@ impl<'a> Search<'a> {
         last.iter().find(is_same).map(|made| reduce(made))
     }
 
-    /// What a candidate shows on the tiny grid, for others to be compared with it.
-    pub fn made_to_compare(&self, candidate: &Candidate) -> Option<Arc<Made>> {
+    /// The tiny level, and what a candidate makes there by samples, for others to be compared with it: where it is known what it makes exactly, all that is
+    /// compared is off by what its samples are off.
+    pub fn around(&self, candidate: &Candidate) -> Option<(Level<'a>, Arc<Made>)> {
         let level = &self.tiny;
+        let made = self.made(candidate, level, None)?;
         let exact = match candidate.behaviour == Behaviour::RIGHT {
             true => self.reduced(candidate, level),
             false => None,
         };
-        let made = candidate.made_to_compare(exact.as_deref(), &level.grid, TINY.1, &self.work)?;
-        Some(Arc::new(made))
+        let exact = exact.filter(|exact| exact.part == made.part);
+        let exact =
+            exact.map(|exact| Made::new(candidate.clone(), exact.part, Arc::clone(&exact.right)));
+        let exact = level.predict(exact.as_ref().unwrap_or(&made));
+        Some((level.with_error(&level.predict(&made), &exact), made))
     }
 
-    /// What a candidate makes on a level, if there was not too much work before.
-    pub fn tried(
+    /// The absolute differences that a candidate leaves on a level; none if there was too much work before.
+    pub fn left(&self, candidate: &Candidate, level: &Level, like: &Made) -> Option<f64> {
+        let differences = self.differences(candidate, level, like)?;
+        Some(absolute(&differences))
+    }
+
+    fn differences(&self, candidate: &Candidate, level: &Level, like: &Made) -> Option<Vec<f64>> {
+        self.work.may_go_on().then_some(())?;
+        let made = self.made(candidate, level, Some(like))?;
+        Some(level.predict(&made).differences())
+    }
+
+    /// Judges a candidate on a level.
+    pub fn judged(
         &self,
         candidate: &Candidate,
         level: &Level,
         like: Option<&Made>,
-    ) -> Option<Arc<Made>> {
-        self.work
-            .may_go_on()
-            .then(|| self.made(candidate, level, like))?
-    }
-
-    /// By how much the picture differs from what was made.
-    pub fn differences(&self, made: &Made, level: &Level) -> Vec<f64> {
-        level
-            .model(made)
-            .differences(level.seen(made.candidate.curve))
-    }
-
-    /// Judges a candidate.
-    pub fn judged(&self, candidate: Candidate) -> Option<Found> {
-        self.judged_on(&self.middle, candidate, None)
-    }
-
-    /// Judges a candidate on a level.
-    pub fn judged_on(
-        &self,
-        level: &Level,
-        candidate: Candidate,
-        like: Option<&Made>,
     ) -> Option<Found> {
-        let made = self.made(&candidate, level, like)?;
-        let score = score(level.seen(candidate.curve), &level.model(&made));
-        // A part is judged as the whole is: of a few pixels anything can be fitted.
-        let [width, height] = level.grid.size().map(f64::from);
-        let cost = score.cost(candidate.fitted(), width * height);
-        Some(Found {
-            candidate,
-            score,
-            cost,
-            made,
-        })
+        let made = self.made(candidate, level, like)?;
+        let score = level.predict(&made).score();
+        let cost = price(level, candidate.fitted()) - score.likelihood;
+        Some(Found { made, score, cost })
     }
 
     /// How much likelier than a null model another one is that was judged on the same level, less what the numbers cost that it has more.
     pub fn gain(&self, level: &Level, null: &Found, other: &Found) -> f64 {
-        let models = [null, other].map(|found| level.model(&found.made));
-        let gain = gain(level.seen(Curve::Right), models.each_ref(), &null.score);
-        let [width, height] = level.grid.size().map(f64::from);
-        let more = other.candidate.fitted() - null.candidate.fitted();
-        gain - 0.5 * more as f64 * libm::log(width * height)
+        let [one, two] = [null, other].map(|found| level.predict(&found.made));
+        let more = other.candidate().fitted() - null.candidate().fitted();
+        one.gain(&null.score, &two) - price(level, more)
     }
 
     /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
     pub fn is_explained(&self, candidate: &Candidate) -> bool {
         let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
         let rows = rows.take_while(|_| self.work.may_go_on());
-        let mut all = std::iter::once(candidate.clone())
-            .chain(rows.filter_map(|row| candidate.with(row.named())));
-        all.any(|candidate| self.has_no_strays(&candidate))
+        let mut all = iter::once(candidate.clone())
+            .chain(rows.filter_map(|row| candidate.with(Mistake::Row(row, None))));
+        all.any(|candidate| self.explains_all(&candidate, None))
     }
 
     /// What shows something else than a candidate for certain; none if it is not known.
-    pub fn strays(&self, candidate: &Candidate) -> Option<Strays> {
-        self.strays_on(&self.fine, candidate, None)
-    }
-
-    fn strays_on(
+    pub fn strays(
         &self,
-        level: &Level,
         candidate: &Candidate,
+        level: &Level,
         like: Option<&Made>,
     ) -> Option<Strays> {
         let made = self.made(candidate, level, like)?;
-        self.work.compared(level.grid.count());
-        let seen = level.seen(candidate.curve);
-        Some(Strays::new(seen, &level.model(&made), level.grid.width()))
+        self.work.spend(work::of_exact(0, 0, level.grid.count()));
+        Some(level.predict(&made).strays())
     }
 
-    /// Whether it is known that nothing shows something else than a candidate for certain.
-    pub fn has_no_strays(&self, candidate: &Candidate) -> bool {
-        self.has_none(candidate, None)
-    }
-
-    /// The same of something that was judged.
-    pub fn explains_all(&self, found: &Found) -> bool {
-        self.has_none(&found.candidate, Some(&found.made))
-    }
-
+    /// Whether it is known that nothing shows something else than a candidate for certain, of which may be known what it makes on the middle grid.
+    ///
     /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its cells is so in a pixel, if what the cells show is exact.
-    fn has_none(&self, candidate: &Candidate, like: Option<&Made>) -> bool {
-        let is_none = |level: &Level| {
-            let strays = self.strays_on(level, candidate, like);
+    pub fn explains_all(&self, candidate: &Candidate, like: Option<&Made>) -> bool {
+        let has_none = |level: &Level| {
+            let strays = self.strays(candidate, level, like);
             strays.is_some_and(|strays| strays.is_empty())
         };
         let is_exact = candidate.behaviour == Behaviour::RIGHT && self.fine.jpeg.is_none();
-        (!is_exact || is_none(&self.middle)) && is_none(&self.fine)
+        (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
     }
 
     /// Whether what was found beside another candidate can be seen.
     pub fn is_seen(&self, found: &Found, beside: &Candidate) -> bool {
         let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
-        let samples = found
-            .score
-            .samples
-            .map_or(f64::INFINITY, |samples| samples / count);
-        let models = [&found.candidate, beside].map(|candidate| self.pixels(candidate));
-        let [Some(one), Some(other)] = models else {
+        let samples = found.score.samples.unwrap_or(f64::INFINITY) / count;
+        let predict = |candidate| {
+            let made = self.made(candidate, &self.fine, None)?;
+            self.work
+                .spend(work::of_exact(0, 0, self.fine.grid.count()));
+            Some(self.fine.predict(&made))
+        };
+        let (Some(one), Some(other)) = (predict(found.candidate()), predict(beside)) else {
             return false;
         };
-        one.is_seen_beside(&other, self.fine.grid.width(), samples.max(1.0))
+        one.is_seen_beside(&other, samples.max(1.0))
     }
 
-    /// What a candidate shows in the pixels; none if it is cancelled, or takes too much work.
-    fn pixels(&self, candidate: &Candidate) -> Option<Model> {
-        let made = self.made(candidate, &self.fine, None)?;
-        self.work.compared(self.fine.grid.count());
-        Some(self.fine.model(&made))
-    }
-
-    /// What differs if a parameter has other numbers than in what was made.
-    pub fn changed<'l>(
-        &self,
-        like: &Made,
-        parameter: &Parameter,
-        numbers: &[f64],
-        level: &'l Level,
-    ) -> Option<Shown<'l>> {
-        // Another scene of many objects is much work by itself.
-        self.work.may_go_on().then_some(())?;
-        let changed = Candidate {
-            scene: parameter.put(&like.candidate.scene, numbers)?,
-            ..like.candidate.clone()
-        };
-        self.trial(&changed, level, like)
-    }
-
-    fn trial<'l>(
+    /// The last numbers of a candidate, so many, fitted on a level, where something like it was made; each is varied so as to change the picture by about so much
+    /// of a cell.
+    pub fn fit(
         &self,
         candidate: &Candidate,
-        level: &'l Level<'l>,
-        like: &Made,
-    ) -> Option<Shown<'l>> {
-        let made = self.tried(candidate, level, Some(like))?;
-        let model = level.model(&made);
-        Some(Shown { level, model })
-    }
-
-    /// The numbers of a parameter fitted on a level, on which something else was made.
-    pub fn fit_one(
-        &self,
-        like: &Made,
-        parameter: &Parameter,
-        level: &Level,
-        start: Vec<f64>,
+        free: usize,
+        (level, like): (&Level, &Made),
+        cells: f64,
         rounds: [usize; 2],
-    ) -> Option<Fitted> {
-        let steps = steps(&like.candidate, parameter, level);
-        let trial = |numbers: &[f64]| self.changed(like, parameter, numbers, level);
-        fit(start, &steps, rounds, &trial)
+    ) -> Option<(Candidate, Fitted)> {
+        let start = candidate.numbers();
+        let (fixed, start) = start.split_at(start.len() - free);
+        let steps = candidate.steps(cells * f64::from(level.grid.factor));
+        let with = |free: &[f64]| candidate.with_numbers(self.scene, &[fixed, free].concat());
+        let deviations = || level.predict(like).deviations();
+        let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level, like);
+        let steps = &steps[fixed.len()..];
+        let fitted = fit(start.to_vec(), steps, rounds, &deviations, &trial)?;
+        Some((with(&fitted.numbers)?, fitted))
     }
+}
 
-    /// All numbers of a candidate fitted together on a level, on which it was made.
-    pub fn fitted(
-        &self,
-        candidate: Candidate,
-        level: &Level,
-        made: &Made,
-        rounds: [usize; 2],
-    ) -> Option<Candidate> {
-        let (named, start) = (&candidate.named, joined(&candidate.named));
-        if start.is_empty() {
-            return Some(candidate);
-        }
-        let fitted = self.fit_all(&candidate, level, made, rounds)?;
-        Candidate::of(self.scene, &split(named, &fitted.numbers))
-    }
-
-    /// The same, with how far each may be off.
-    pub fn fit_all(
-        &self,
-        candidate: &Candidate,
-        level: &Level,
-        made: &Made,
-        rounds: [usize; 2],
-    ) -> Option<Fitted> {
-        let named = &candidate.named;
-        let of = |named: &Named| match &named.cause {
-            Cause::Numbers(parameter, _) => steps(candidate, parameter, level),
-            _ => Vec::new(),
-        };
-        let steps: Vec<f64> = named.iter().flat_map(of).map(|step| step / 2.0).collect();
-        let trial = |numbers: &[f64]| {
-            let candidate = Candidate::of(self.scene, &split(named, numbers))?;
-            self.trial(&candidate, level, made)
-        };
-        fit(joined(named), &steps, rounds, &trial)
-    }
+/// What so many numbers cost that are fitted to a level. A part of a picture is judged as the whole is: of a few pixels anything can be fitted.
+pub fn price(level: &Level, fitted: usize) -> f64 {
+    let [width, height] = level.grid.size().map(f64::from);
+    0.5 * fitted as f64 * libm::log(width * height)
 }
 
 /// The middle of a part of a picture, of its proportions and of so many pixels at most.
@@ -366,53 +288,4 @@ fn middle(part: Area) -> Area {
         width,
         height,
     }
-}
-
-/// What a candidate shows on a level.
-pub struct Shown<'l> {
-    level: &'l Level<'l>,
-    model: Model,
-}
-
-impl Trial for Shown<'_> {
-    fn differences(&self) -> Vec<f64> {
-        self.model.differences(self.level.seen(self.model.curve))
-    }
-
-    fn deviations(&self) -> Vec<f64> {
-        self.model.deviations(self.level.grid.width())
-    }
-}
-
-/// By how much each number of a parameter is varied on a level.
-pub fn steps(candidate: &Candidate, parameter: &Parameter, level: &Level) -> Vec<f64> {
-    let steps = parameter.steps(&candidate.scene).into_iter();
-    match parameter.is_color() {
-        true => steps.collect(),
-        false => steps
-            .map(|step| step * f64::from(level.grid.factor) / 2.0)
-            .collect(),
-    }
-}
-
-/// All numbers of mistakes, one after the other.
-pub fn joined(named: &[Named]) -> Vec<f64> {
-    let numbers = |named: &Named| match &named.cause {
-        Cause::Numbers(_, numbers) => numbers.clone(),
-        _ => Vec::new(),
-    };
-    named.iter().flat_map(numbers).collect()
-}
-
-/// Mistakes with other numbers.
-pub fn split(named: &[Named], mut numbers: &[f64]) -> Vec<Named> {
-    let mut named = named.to_vec();
-    for one in &mut named {
-        if let Cause::Numbers(_, own) = &mut one.cause {
-            let (first, rest) = numbers.split_at(own.len());
-            own.copy_from_slice(first);
-            numbers = rest;
-        }
-    }
-    named
 }

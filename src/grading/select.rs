@@ -4,19 +4,20 @@
 //! only where colours meet is judged on the pixels.
 
 use super::{
-    candidate::{Candidate, Cause, Named},
-    fit::absolute,
+    candidate::{Candidate, Mistake},
     light::Curve,
     made::Made,
-    mistakes::{OBJECT_ROWS, ROWS, Row, Shows},
-    number_text,
+    mistakes::{OBJECT_ROWS, ROWS, Shows},
     numbers::numbers,
     objects::labels,
     parameters::Owner,
     patch::patch,
-    search::{Found, Search, joined, split},
+    search::{Found, Search, price},
 };
-use crate::cancel::{self, Cancelled};
+use crate::{
+    cancel::{self, Cancelled},
+    numbers::rounded,
+};
 
 /// So many mistakes are named at most.
 const MOST_MISTAKES: usize = 4;
@@ -24,8 +25,11 @@ const MOST_MISTAKES: usize = 4;
 /// So many are fitted and judged at a time, of those that leave least on the coarse grid.
 const FINALISTS: usize = 3;
 
-/// Rounds of fitting numbers to the middle grid: none by squares, as new numbers come from a fit to a coarser one, and earlier ones from this.
-const ROUNDS: [usize; 2] = [0, 4];
+/// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier ones from this.
+const ROUNDS: usize = 4;
+
+/// By how much of a cell numbers are varied on the middle grid.
+const STEP: f64 = 0.25;
 
 /// So many objects are looked at, those around which most is wrong.
 const SUSPECTS: usize = 12;
@@ -36,120 +40,105 @@ const ONE: f64 = 3.0;
 /// The mistakes that explain a picture, from what a program without mistakes would have made.
 pub fn run(search: &Search) -> Result<Option<Found>, Cancelled> {
     let right = Candidate::right(search.scene);
-    let Some(mut best) = search.judged_on(&search.middle, right, None) else {
+    let Some(mut best) = search.judged(&right, &search.middle, None) else {
         return Ok(None);
     };
     // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
     // alone.
-    let mut is_open = search.explains_all(&best);
-    while best.candidate.named.len() < MOST_MISTAKES
-        && (is_open || !search.is_explained(&best.candidate))
+    let mut is_open = explains_all(search, &best);
+    while best.candidate().mistakes.len() < MOST_MISTAKES
+        && (is_open || !search.is_explained(best.candidate()))
         && search.work.may_go_on()
         && let Some(next) = step(search, &best, is_open)
     {
         best = next;
         is_open = false;
     }
-    let short = shortened(search, best);
-    let mut best = with_edges(search, short, None)?;
+    let short = shortened(search, &best);
+    let mut best = with_edges(search, &short, None);
     // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
     if let Some(found) = &best
-        && let [one] = found.candidate.named.as_slice()
-        && let Cause::Numbers(parameter, _) = &one.cause
+        && let [Mistake::Numbers(parameter, _)] = found.candidate().mistakes.as_slice()
         && parameter.owner == Owner::Camera
     {
-        let right = Candidate::right(search.scene);
-        let other = with_edges(search, right, found.score.samples)?;
-        let other = other.filter(|other| search.has_no_strays(&other.candidate));
-        best = best
-            .into_iter()
-            .chain(other)
-            .min_by(|one, other| one.cost.total_cmp(&other.cost));
+        let other = with_edges(search, &right, found.score.samples);
+        let other = other.filter(|other| search.explains_all(other.candidate(), None));
+        let both = best.into_iter().chain(other);
+        best = both.min_by(|one, other| one.cost.total_cmp(&other.cost));
     }
     cancel::unless_set(search.cancel, best)
 }
 
+fn explains_all(search: &Search, found: &Found) -> bool {
+    search.explains_all(found.candidate(), Some(&found.made))
+}
+
 /// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels. How many samples a pixel has may be known from
 /// another candidate that explains the picture.
-fn with_edges(
-    search: &Search,
-    candidate: Candidate,
-    samples: Option<f64>,
-) -> Result<Option<Found>, Cancelled> {
+fn with_edges(search: &Search, candidate: &Candidate, samples: Option<f64>) -> Option<Found> {
     // Where areas are not explained yet, that comes first. What is found so far is judged, however much work that is.
-    let most = search.work.lift();
-    let is_open = !search.has_no_strays(&candidate);
-    let null = search.judged_on(&search.edges, candidate, None);
-    search.work.restore(most);
-    let Some(null) = null else {
-        return Ok(None);
-    };
+    let (is_open, null) = search.work.without_limit(|| {
+        let is_open = !search.explains_all(candidate, None);
+        (is_open, search.judged(candidate, &search.edges, None))
+    });
+    let null = null?;
     // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
-    let may = null.candidate.looks.is_empty()
-        && null.candidate.curve == Curve::Right
-        && search.fine.jpeg.is_none();
-    let samples = samples.or(null.score.samples);
-    let is_one = samples.is_some_and(|samples| samples < ONE);
-    let shows = |row: &&Row| match row.shows {
+    let may =
+        candidate.looks.is_empty() && candidate.curve == Curve::Right && search.fine.jpeg.is_none();
+    let is_one = (samples.or(null.score.samples)).is_some_and(|samples| samples < ONE);
+    let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges => may && !is_one,
         Shows::Everywhere => may,
-    };
-    let rows = ROWS.iter().filter(shows);
-    let candidates = rows.filter_map(|row| null.candidate.with(row.named()));
-    let judged = candidates
+    });
+    let best = rows
         .take_while(|_| search.work.may_go_on())
-        .filter_map(|candidate| search.judged_on(&search.edges, candidate, Some(&null.made)));
-    let judged: Vec<Found> = judged.collect();
-    let best = judged
-        .into_iter()
+        .filter_map(|row| candidate.with(Mistake::Row(row, None)))
+        .filter_map(|candidate| search.judged(&candidate, &search.edges, Some(&null.made)))
         .map(|found| (search.gain(&search.edges, &null, &found), found))
         .filter(|(gain, _)| *gain > 0.0)
-        .filter(|(_, found)| !is_open || search.has_no_strays(&found.candidate))
+        .filter(|(_, found)| !is_open || search.explains_all(found.candidate(), None))
         .max_by(|one, other| one.0.total_cmp(&other.0));
-    cancel::unless_set(search.cancel, Some(best.map_or(null, |(_, found)| found)))
+    Some(best.map_or(null, |(_, found)| found))
 }
 
 /// The best candidate with one more mistake, if it is better.
 fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
-    let coarse = search.made(&from.candidate, &search.coarse, None)?;
+    let coarse = search.made(from.candidate(), &search.coarse, None)?;
     let suspects = suspects(search, from);
     let mut tried = rows(search, from, &coarse, &suspects);
     // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
     let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, row)) = row
         && !is_open
-        && let Some(found) = likelier(search, from, row.clone())
+        && let Some(found) = likelier(search, from, row)
         && let Some(found) = refined(search, found)
         && found.cost < from.cost
-        && search.explains_all(&found)
+        && explains_all(search, &found)
     {
         return Some(found);
     }
     // Half of the work that is left is left for judging those that were tried.
-    let most = search.work.keep(0.5);
-    if let Some(tiny) = search.made_to_compare(&from.candidate) {
-        tried.extend(numbers(search, from, [&tiny, &coarse], &suspects));
-    }
-    let are_all_numbers_tried = search.work.may_go_on();
-    search.work.restore(most);
+    let are_all_numbers_tried = search.work.within(0.5, || {
+        tried.extend(numbers(search, from, &coarse, &suspects));
+        search.work.may_go_on()
+    });
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-    let finalists = tried
-        .into_iter()
-        .take(FINALISTS)
-        .map(|(_, candidate)| candidate);
-    let unfitted = finalists.filter_map(|candidate| likelier(search, from, candidate));
+    tried.truncate(FINALISTS);
+    let unfitted = tried
+        .iter()
+        .filter_map(|one| likelier(search, from, &one.1));
     let mut unfitted: Vec<Found> = unfitted.collect();
     unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     let mut judged: Vec<Found> = Vec::new();
     // What explains all is taken to be beaten only by what has fewer numbers: more of them come nearer before all are fitted to the end.
     let mut fewest = usize::MAX;
     for found in unfitted {
-        if found.candidate.fitted() < fewest
+        if found.candidate().fitted() < fewest
             && let Some(found) = refined(search, found)
         {
-            if !is_open && search.explains_all(&found) {
-                fewest = found.candidate.fitted();
+            if !is_open && explains_all(search, &found) {
+                fewest = found.candidate().fitted();
             }
             judged.push(found);
         }
@@ -163,65 +152,62 @@ fn step(search: &Search, from: &Found, is_open: bool) -> Option<Found> {
             false => best.cost < from.cost,
         };
         is_likelier
-            && (are_all_tried || search.explains_all(best))
-            && search.is_seen(best, &from.candidate)
+            && (are_all_tried || explains_all(search, best))
+            && search.is_seen(best, from.candidate())
     };
     // The few that were judged are looked at in all pixels, however much work that is.
-    let most = search.work.lift();
-    let better = judged.into_iter().find(is_better);
-    search.work.restore(most);
+    let better = search
+        .work
+        .without_limit(|| judged.into_iter().find(is_better));
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
     better.or_else(|| {
         (!is_open && are_all_tried).then_some(())?;
-        let patched = from.candidate.with(patch(search, from)?)?;
-        let found = search.judged_on(&search.middle, patched, Some(&from.made))?;
+        let patched = from.candidate().with(patch(search, from)?)?;
+        let found = search.judged(&patched, &search.middle, Some(&from.made))?;
         (found.cost < from.cost).then_some(found)
     })
 }
 
 /// A candidate judged; none if it is no likelier than what it is made from.
-fn likelier(search: &Search, from: &Found, candidate: Candidate) -> Option<Found> {
-    let found = search.judged_on(&search.middle, candidate, Some(&from.made))?;
+fn likelier(search: &Search, from: &Found, candidate: &Candidate) -> Option<Found> {
+    let found = search.judged(candidate, &search.middle, Some(&from.made))?;
     (found.score.likelihood > from.score.likelihood).then_some(found)
 }
 
 /// A candidate that was judged, with its numbers fitted to the middle grid, and judged again.
 fn refined(search: &Search, found: Found) -> Option<Found> {
-    let candidate = search.fitted(found.candidate, &search.middle, &found.made, ROUNDS)?;
-    search.judged_on(&search.middle, candidate, Some(&found.made))
+    let candidate = found.candidate();
+    let free = candidate.numbers().len();
+    if free == 0 {
+        return Some(found);
+    }
+    let middle = &search.middle;
+    let (fitted, _) = search.fit(candidate, free, (middle, &found.made), STEP, [0, ROUNDS])?;
+    search.judged(&fitted, middle, Some(&found.made))
 }
 
 /// The rows of the table, and how much each leaves on the coarse grid.
 fn rows(search: &Search, from: &Found, coarse: &Made, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
-    let mut named: Vec<Named> = rows.map(Row::named).collect();
-    for &object in suspects {
-        let name = Owner::Object(object).name(search.scene);
-        named.extend(OBJECT_ROWS.iter().map(|row| Named {
-            id: row.id,
-            message: format!("{name} {}", row.message),
-            help: row.help.to_owned(),
-            cause: Cause::ObjectRow(row.change, object),
-        }));
-    }
-    let candidates = named
-        .into_iter()
-        .filter_map(|named| from.candidate.with(named));
-    let left = |candidate: Candidate| {
-        let made = search.tried(&candidate, &search.coarse, Some(coarse))?;
-        Some((
-            absolute(&search.differences(&made, &search.coarse)),
-            candidate,
-        ))
-    };
-    candidates.filter_map(left).collect()
+    let rows = rows.map(|row| Mistake::Row(row, None));
+    let of_objects = suspects.iter().flat_map(|&object| {
+        let rows = OBJECT_ROWS.iter();
+        rows.map(move |row| Mistake::Row(row, Some(object)))
+    });
+    let candidates = rows.chain(of_objects);
+    let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
+    candidates
+        .filter_map(|candidate| {
+            let left = search.left(&candidate, &search.coarse, coarse)?;
+            Some((left, candidate))
+        })
+        .collect()
 }
 
 /// The objects that may be wrong, those first around which most is.
 fn suspects(search: &Search, from: &Found) -> Vec<usize> {
     let grid = &search.middle.grid;
-    let candidate = &from.candidate;
-    let labels = labels(search, candidate, grid);
+    let labels = labels(search, from.candidate(), grid);
     let mut wrong = vec![0.0; search.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
         // An object that grew is wrong beside where it is seen.
@@ -246,45 +232,30 @@ fn suspects(search: &Search, from: &Found) -> Vec<usize> {
 }
 
 /// A candidate whose numbers have as few digits as do.
-fn shortened(search: &Search, found: Found) -> Candidate {
-    let mut named = found.candidate.named.clone();
-    level(&mut named);
-    let Some(leveled) = Candidate::of(search.scene, &named).filter(|_| !joined(&named).is_empty())
-    else {
-        return found.candidate;
+fn shortened(search: &Search, found: &Found) -> Candidate {
+    let (candidate, middle) = (found.candidate(), &search.middle);
+    let free = candidate.numbers().len();
+    let leveled = candidate.with_numbers(search.scene, &candidate.leveled_numbers());
+    let Some(leveled) = leveled.filter(|_| free > 0) else {
+        return candidate.clone();
     };
-    let Some(fitted) = search.fit_all(&leveled, &search.middle, &found.made, [0, 1]) else {
-        return found.candidate;
+    let Some((_, fitted)) = search.fit(&leveled, free, (middle, &found.made), STEP, [0, 1]) else {
+        return leveled;
     };
-    let of = |named: &Named| match &named.cause {
-        Cause::Numbers(parameter, _) => parameter.steps(&leveled.scene),
-        _ => Vec::new(),
-    };
-    let steps: Vec<f64> = named.iter().flat_map(of).collect();
-    let named = &named;
     // A number that is short was not fitted: it may cost what that costs.
-    let [width, height] = search.middle.grid.size().map(f64::from);
-    let price = 0.5 * libm::log(width * height);
+    let most = found.cost + price(middle, free);
     for digits in [8.0, 2.0] {
         // What a vector's length may be off is no matter, so that no error is more than a part of a step.
-        let rounded = joined(named).into_iter().zip(&fitted.errors).zip(&steps);
-        let rounded: Vec<f64> = rounded
-            .map(|((x, error), step)| number_text::rounded(x, (digits * error).min(step.abs())))
-            .collect();
-        if let Some(candidate) = Candidate::of(search.scene, &split(named, &rounded))
-            && let Some(judged) = search.judged_on(&search.middle, candidate, Some(&found.made))
-            && judged.cost <= found.cost + price * rounded.len() as f64
+        let errors = fitted.errors.iter().zip(leveled.steps(1.0));
+        let errors = errors.map(|(error, step)| (digits * error).min(step.abs()));
+        let numbers = leveled.numbers().into_iter().zip(errors);
+        let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
+        if let Some(short) = leveled.with_numbers(search.scene, &numbers)
+            && let Some(judged) = search.judged(&short, middle, Some(&found.made))
+            && judged.cost <= most
         {
-            return judged.candidate;
+            return short;
         }
     }
     leveled
-}
-
-fn level(named: &mut [Named]) {
-    for one in named {
-        if let Cause::Numbers(parameter, numbers) = &mut one.cause {
-            number_text::level(parameter, numbers);
-        }
-    }
 }
