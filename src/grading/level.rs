@@ -7,7 +7,8 @@ use std::{
 };
 
 use super::{
-    grid::Grid, jpeg::Jpeg, light::Curve, made::Made, moments::Moments, prediction::Prediction,
+    grid::Grid, jpeg::Jpeg, light::Curve, moments::Moments, prediction::Prediction,
+    rendering::Rendering,
 };
 use crate::{area::Area, film::Film};
 
@@ -24,7 +25,7 @@ pub struct Level<'a> {
     pub jpeg: Option<Jpeg>,
     coded: OnceCell<Vec<[f64; 3]>>,
     /// What a right program makes on it.
-    pub right: OnceCell<Arc<Made>>,
+    pub right: OnceCell<Arc<Moments>>,
 }
 
 impl<'a> Level<'a> {
@@ -94,12 +95,12 @@ impl<'a> Level<'a> {
     }
 
     /// What it should show if a candidate is right.
-    pub fn predict(&self, made: &Made) -> Prediction<'_> {
-        let candidate = &made.candidate;
+    pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
+        let candidate = &rendering.candidate;
         let mut prediction = Prediction {
             seen: self.seen(candidate.curve),
             width: self.grid.width(),
-            moments: made.laid_out(&self.grid),
+            moments: rendering.laid_out(&self.grid),
             curve: candidate.curve,
             is_cut_off: false,
         };

@@ -3,32 +3,36 @@
 //! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict: right, right but for sampling noise, wrong by mistakes that
 //! are named, or wrong for an unknown reason; and how far each object is off.
 //!
-//! `mistakes` is the table of what a class gets wrong, `parameters` are the numbers of the scene; a `candidate` is a program that has some of them wrong,
-//! in its scene, in its `layout`, in what it does to `light`, or in how it behaves. What it shows on a `grid` is `made` exactly, or by the tracer in `textbook`
-//! where it behaves as no scene can say, both from the same `axes`; `score` says how likely somebody's picture is then, and `fit` finds `numbers`. A `search`
-//! holds the picture, but for its `empty_pixels`, a `level` for each grid; `select` chooses mistakes, a `patch` being the last of them, and `number_text` writes
-//! their numbers. `work` is what is spent on a picture.
+//! 1. A `Reference` is the exact picture, and the variance of a sample in each pixel (`moments`): made once for a class. `empty_pixels` are taken out of a picture.
+//! 2. A `candidate` is a program with mistakes: rows of the table in `mistakes`, numbers of the scene (`parameters`), or a `patch` that no object explains. They
+//!    change its scene, its `layout`, what it does to `light`, or how it behaves.
+//! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the tracer in `textbook` where it behaves as no
+//!    scene can say, both from the same `axes`. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
+//! 4. A prediction says how likely what is seen is (`likelihood`), and what no sampling explains (`strays`).
+//! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
+//!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
+//! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
 
 mod axes;
 mod candidate;
 mod empty_pixels;
-mod fit;
+mod forward_selection;
 mod grid;
 mod jpeg;
+mod judge;
 mod layout;
 mod level;
+mod levenberg_marquardt;
 mod light;
 mod likelihood;
-mod made;
 mod mistakes;
 mod moments;
-mod numbers;
+mod numeric_mistakes;
 mod objects;
 mod parameters;
 mod patch;
 mod prediction;
-mod search;
-mod select;
+mod rendering;
 mod strays;
 mod textbook;
 mod verdict;
@@ -54,10 +58,10 @@ use crate::{
 use self::{
     candidate::{Candidate, Mistake},
     empty_pixels::without_empty,
+    judge::{Judge, Judged},
     light::Curve,
-    made::Made,
     moments::Moments,
-    search::{Found, Search},
+    rendering::Rendering,
     strays::WRONG,
 };
 pub use self::{
@@ -73,7 +77,7 @@ pub struct Reference<'a> {
     /// The part.
     pub part: Area,
     scene: &'a Scene,
-    right: Arc<Made>,
+    right: Arc<Rendering>,
     /// The work of making it.
     work: f64,
 }
@@ -100,7 +104,11 @@ impl<'a> Reference<'a> {
             exact,
             scene,
             part,
-            right: Arc::new(Made::new(Candidate::right(scene), part, Arc::new(moments))),
+            right: Arc::new(Rendering::new(
+                Candidate::right(scene),
+                part,
+                Arc::new(moments),
+            )),
             work,
         })
     }
@@ -143,32 +151,32 @@ impl<'a> Reference<'a> {
             .filter_map(|empty| without_empty(film, &self.right.right, *empty));
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
-        let search = Search::new(self, &film, jpeg, cancel);
-        judged(&search, &film, cancel)
+        let judge = Judge::new(self, &film, jpeg, cancel);
+        judged(&judge, &film, cancel)
     }
 }
 
-fn judged(search: &Search, film: &Film, cancel: &AtomicBool) -> Result<Verdict, RenderError> {
-    let found = select::run(search)?;
+fn judged(judge: &Judge, film: &Film, cancel: &AtomicBool) -> Result<Verdict, RenderError> {
+    let found = forward_selection::run(judge)?;
     // What was found is told, however much work that is.
-    let verdict = search.work.without_limit(|| told(search, film, found));
+    let verdict = judge.work.without_limit(|| told(judge, film, found));
     Ok(cancel::unless_set(cancel, verdict)?)
 }
 
-fn told(search: &Search, film: &Film, found: Option<Found>) -> Verdict {
-    let (scene, jpeg) = (search.scene, search.fine.jpeg);
+fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
+    let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
     let mut verdict = match found {
-        Some(found) if !found.candidate().mistakes.is_empty() => wrong(search, &found),
-        _ if search.explains_all(&right, None) && !has_other_colors(film, scene, jpeg) => {
-            let judged = search.judged(&right, &search.fine, None);
+        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found),
+        _ if judge.explains_all(&right, None) && !has_other_colors(film, scene, jpeg) => {
+            let judged = judge.judged(&right, &judge.fine, None);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
                 ..Verdict::of(Kind::Noise, scene)
             }
         }
         _ => {
-            let (objects, is_background_right) = objects::judged(search, &right);
+            let (objects, is_background_right) = objects::judged(judge, &right);
             Verdict {
                 objects,
                 is_background_right,
@@ -177,7 +185,7 @@ fn told(search: &Search, film: &Film, found: Option<Found>) -> Verdict {
         }
     };
     verdict.is_coded = jpeg.is_some();
-    verdict.is_cut = search.work.is_cut();
+    verdict.is_cut = judge.work.is_cut();
     verdict
 }
 
@@ -200,10 +208,10 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 }
 
 /// The verdict on a picture with mistakes.
-fn wrong(search: &Search, found: &Found) -> Verdict {
-    let (scene, last) = (search.scene, found.candidate());
+fn wrong(judge: &Judge, found: &Judged) -> Verdict {
+    let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end.
-    let judged = |candidate: &Candidate| search.judged(candidate, &search.middle, None);
+    let judged = |candidate: &Candidate| judge.judged(candidate, &judge.middle, None);
     let noise = judged(last).map_or(0.0, |last| last.score.noise);
     let beyond = |candidate: &Candidate| {
         judged(candidate).map_or(0.0, |found| (found.score.squares - noise).max(0.0))
@@ -236,8 +244,8 @@ fn wrong(search: &Search, found: &Found) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!search.explains_all(last, None)).then(|| (left / all).min(1.0));
-    let (objects, is_background_right) = objects::judged(search, last);
+    let rest = (!judge.explains_all(last, None)).then(|| (left / all).min(1.0));
+    let (objects, is_background_right) = objects::judged(judge, last);
     Verdict {
         samples: found.score.samples,
         rest: rest.filter(|rest| *rest > 0.0),

@@ -6,8 +6,8 @@ use super::{
     axes::Axes,
     candidate::Candidate,
     grid::Grid,
+    judge::Judge,
     parameters::Owner,
-    search::Search,
     textbook::{corners, vertices},
     work,
 };
@@ -52,8 +52,8 @@ pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
 /// All of them, and whether the background is right, in a picture with these mistakes.
 ///
 /// An object is right if it has its own numbers in the candidate's scene, and if where a right program would show it in that scene the picture shows nothing else.
-pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
-    let scene = search.scene;
+pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
+    let scene = judge.scene;
     let is_drawn = &candidate.is_drawn;
     let mut objects = right(scene);
     for (index, one) in objects.iter_mut().enumerate() {
@@ -64,10 +64,10 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
         };
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
-    let strays = search.strays(&candidate.shown_rightly(), &search.fine, None);
+    let strays = judge.strays(&candidate.shown_rightly(), &judge.fine, None);
     let strays = strays.unwrap_or_default();
-    let grid = &search.fine.grid;
-    let labels = labels(search, candidate, grid);
+    let grid = &judge.fine.grid;
+    let labels = labels(judge, candidate, grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let cells = grid.cells;
     let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
@@ -93,14 +93,14 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
 }
 
 /// The object that a right program shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
-pub fn labels(search: &Search, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
+pub fn labels(judge: &Judge, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
     let is_drawn = &candidate.is_drawn;
     let scene = candidate.shown_rightly().drawn(grid);
-    let Ok(world) = World::new_unless(&scene, search.cancel) else {
+    let Ok(world) = World::new_unless(&scene, judge.cancel) else {
         return vec![None; grid.count()];
     };
     let work = work::of_exact(0, is_drawn.len(), grid.count());
-    search.work.spend(work);
+    judge.work.spend(work);
     let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
     let label = |(x, y)| world.object_at(x, y).map(|object| drawn[object]);
     grid.cells.iter().map(label).collect()

@@ -4,18 +4,18 @@ use glam::DVec2;
 
 use super::{
     candidate::Mistake,
+    judge::{Judge, Judged},
     light::is_near,
-    search::{Found, Search},
 };
 
 /// Fewer pixels than this are not taken for something too many.
 const SMALLEST: usize = 4;
 
 /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
-pub fn patch(search: &Search, from: &Found) -> Option<Mistake> {
-    let grid = &search.fine.grid;
-    let made = search.made(from.candidate(), &search.fine, None)?;
-    let shown = search.fine.predict(&made);
+pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
+    let grid = &judge.fine.grid;
+    let rendering = judge.render(from.candidate(), &judge.fine, None)?;
+    let shown = judge.fine.predict(&rendering);
     let (seen, strays) = (shown.seen, shown.strays().pixels);
     let pairs = seen.iter().zip(&shown.moments.mean);
     let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();

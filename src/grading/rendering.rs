@@ -23,7 +23,7 @@ const MISSED: f64 = 1e-3;
 
 /// What a candidate makes.
 #[derive(Clone)]
-pub struct Made {
+pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
     /// What it would make if it behaved as a right program; in samples, what it makes as it behaves.
@@ -32,7 +32,7 @@ pub struct Made {
     behaved: Option<Arc<Moments>>,
 }
 
-impl Made {
+impl Rendering {
     /// What a candidate that behaves as a right program makes in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
@@ -77,15 +77,15 @@ impl Candidate {
 
     /// What it makes in the cells of a grid: exactly, or by so many samples in a cell where these are given. What it makes as one of others does is taken from
     /// that which makes most of it. None if it is cancelled, or takes too much work.
-    pub fn made(
+    pub fn render(
         &self,
         grid: &Grid,
         samples: Option<usize>,
-        likes: &[&Made],
+        likes: &[&Rendering],
         work: &Work,
-    ) -> Option<Made> {
+    ) -> Option<Rendering> {
         let part = self.layout.sources(grid.cells, grid.size());
-        let is_alike = |like: &&Made| {
+        let is_alike = |like: &&Rendering| {
             let behaves = like.candidate.behaviour == self.behaviour;
             like.part == part && (samples.is_none() || behaves)
         };
@@ -131,7 +131,7 @@ impl Candidate {
             }
             behaved = Some(all);
         }
-        Some(Made {
+        Some(Rendering {
             candidate: self.clone(),
             part,
             right,

@@ -4,11 +4,11 @@
 
 use super::{
     candidate::{Candidate, Mistake},
+    judge::{Judge, Judged},
     level::Level,
-    made::Made,
     parameters::{self, Owner, Parameter},
     prediction::Prediction,
-    search::{Found, Search},
+    rendering::Rendering,
 };
 use crate::color::{Color, linear_to_srgb};
 
@@ -20,14 +20,14 @@ const FITTED: usize = 4;
 
 /// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least. `like` is what the
 /// candidate so far makes on the coarse grid.
-pub fn numbers(
-    search: &Search,
-    from: &Found,
-    like: &Made,
+pub fn numeric_mistakes(
+    judge: &Judge,
+    from: &Judged,
+    like: &Rendering,
     suspects: &[usize],
 ) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
-    let Some((tiny, tiny_like)) = search.around(candidate) else {
+    let Some((tiny, tiny_like)) = judge.around(candidate) else {
         return Vec::new();
     };
     let is_suspect = |parameter: &Parameter| match parameter.owner {
@@ -36,32 +36,32 @@ pub fn numbers(
     };
     let all = parameters::fitted(&candidate.scene).into_iter();
     let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
-    let shown = search.middle.predict(&from.made);
+    let shown = judge.middle.predict(&from.rendering);
     let started = all.filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
         let starts = match parameter.is_color() {
             true => vec![colors(&numbers, &shown)],
             false => {
-                let pixels = f64::from(search.coarse.grid.factor) / 2.0;
+                let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
                 let steps = parameter.steps(&candidate.scene, pixels);
                 starts(&parameter, &numbers, &steps)
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
             let started = candidate.with(Mistake::Numbers(parameter.clone(), start))?;
-            Some((search.left(&started, &tiny, &tiny_like)?, started))
+            Some((judge.left(&started, &tiny, &tiny_like)?, started))
         });
         let mut tried: Vec<_> = tried.collect();
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));
         tried.truncate(STARTS);
         Some((tried.first()?.0, (parameter, tried)))
     });
-    let fit = |parameter: &Parameter, start: &Candidate, like: (&Level, &Made), rounds| {
+    let fit = |parameter: &Parameter, start: &Candidate, like: (&Level, &Rendering), rounds| {
         // Colours are read, but where something is done to them.
         let is_read = parameter.is_color() && candidate.looks.is_empty();
         let free = parameter.numbers(&candidate.scene).len();
         let rounds = if is_read { [0, 0] } else { rounds };
-        let (candidate, fitted) = search.fit(start, free, like, 0.5, rounds)?;
+        let (candidate, fitted) = judge.fit(start, free, like, 0.5, rounds)?;
         Some((fitted.left, candidate))
     };
     let tiny = (&tiny, &*tiny_like);
@@ -80,7 +80,7 @@ pub fn numbers(
         fitted
     });
     least_first(on_coarse)
-        .filter_map(|(parameter, start)| fit(&parameter, &start, (&search.coarse, like), [2, 1]))
+        .filter_map(|(parameter, start)| fit(&parameter, &start, (&judge.coarse, like), [2, 1]))
         .collect()
 }
 

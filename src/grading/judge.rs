@@ -10,13 +10,13 @@ use std::{
 use super::{
     Reference,
     candidate::{Candidate, Mistake},
-    fit::{Fitted, absolute, fit},
     grid::Grid,
     jpeg::Jpeg,
     level::Level,
+    levenberg_marquardt::{Fitted, absolute, fit},
     likelihood::Score,
-    made::Made,
     mistakes::{ROWS, Shows},
+    rendering::Rendering,
     strays::Strays,
     textbook::Behaviour,
     work::{self, Work},
@@ -38,7 +38,7 @@ const LAST: usize = 2;
 const PIXELS_OF_EDGES: u64 = 20_000;
 
 /// A picture that is compared with a scene.
-pub struct Search<'a> {
+pub struct Judge<'a> {
     pub scene: &'a Scene,
     reference: &'a Reference<'a>,
     tiny: Level<'a>,
@@ -48,28 +48,28 @@ pub struct Search<'a> {
     /// The pixels in the middle of the picture.
     pub edges: Level<'a>,
     /// What was made last of all pixels.
-    last: RefCell<VecDeque<Arc<Made>>>,
+    last: RefCell<VecDeque<Arc<Rendering>>>,
     pub work: Work<'a>,
     pub cancel: &'a AtomicBool,
 }
 
 /// A candidate that was judged.
-pub struct Found {
+pub struct Judged {
     /// What it makes on the level that it was judged on.
-    pub made: Arc<Made>,
+    pub rendering: Arc<Rendering>,
     pub score: Score,
     /// Half a logarithm of the number of pixels for each number that was fitted, less the logarithm of the likelihood.
     pub cost: f64,
 }
 
-impl Found {
+impl Judged {
     /// The candidate.
     pub fn candidate(&self) -> &Candidate {
-        &self.made.candidate
+        &self.rendering.candidate
     }
 }
 
-impl<'a> Search<'a> {
+impl<'a> Judge<'a> {
     /// For a picture of a part of a scene's.
     pub fn new(
         reference: &'a Reference,
@@ -99,83 +99,80 @@ impl<'a> Search<'a> {
     }
 
     /// What a candidate makes on a level; none if it is cancelled, or takes too much work.
-    pub fn made(
+    pub fn render(
         &self,
         candidate: &Candidate,
         level: &Level,
-        like: Option<&Made>,
-    ) -> Option<Arc<Made>> {
+        like: Option<&Rendering>,
+    ) -> Option<Arc<Rendering>> {
         let is_fine = level.grid == self.fine.grid && level.samples.is_none();
-        let mut known: Vec<Arc<Made>> = Vec::new();
+        let mut known: Vec<Arc<Rendering>> = Vec::new();
         if is_fine {
             known.extend(self.last.borrow().iter().map(Arc::clone));
             known.push(Arc::clone(&self.reference.right));
         } else if level.samples.is_none() {
             let right = Candidate::right(self.scene);
-            known.extend(match self.reduced(candidate, level) {
-                Some(same) => vec![same],
-                None => self.reduced(&right, level).into_iter().collect(),
-            });
+            let reduced = [candidate, &right].map(|one| self.reduced(one, level));
+            known.extend(reduced.into_iter().flatten().map(Arc::new));
         }
-        let likes: Vec<&Made> = like
-            .into_iter()
-            .chain(known.iter().map(|one| &**one))
-            .collect();
-        let made = candidate.made(&level.grid, level.samples, &likes, &self.work)?;
-        let made = Arc::new(made);
+        let known = known.iter().map(|one| &**one);
+        let likes: Vec<&Rendering> = like.into_iter().chain(known).collect();
+        let rendering = candidate.render(&level.grid, level.samples, &likes, &self.work)?;
+        let rendering = Arc::new(rendering);
         let mut last = self.last.borrow_mut();
-        let is_known = |one: &Arc<Made>| {
+        let is_known = |one: &Arc<Rendering>| {
             one.candidate.traces_as(candidate) && one.candidate.behaviour == candidate.behaviour
         };
         if is_fine && !last.iter().any(is_known) {
-            last.push_front(Arc::clone(&made));
+            last.push_front(Arc::clone(&rendering));
             last.truncate(LAST);
         }
-        Some(made)
+        Some(rendering)
     }
 
     /// What a candidate makes on a level, from what was made of the same program of all pixels.
-    fn reduced(&self, candidate: &Candidate, level: &Level) -> Option<Arc<Made>> {
+    fn reduced(&self, candidate: &Candidate, level: &Level) -> Option<Rendering> {
         let fine = self.fine.grid.cells;
-        let is_same = |made: &&Arc<Made>| made.part == fine && made.candidate.traces_as(candidate);
-        let reduce = |made: &Made| {
-            let moments = Arc::new(level.reduced(&made.right, fine));
-            Arc::new(Made::new(made.candidate.clone(), level.grid.cells, moments))
-        };
+        let is_same =
+            |one: &&Arc<Rendering>| one.part == fine && one.candidate.traces_as(candidate);
+        let reduce = |one: &Rendering| Arc::new(level.reduced(&one.right, fine));
         let right = &self.reference.right;
-        if is_same(&right) {
-            return Some(Arc::clone(level.right.get_or_init(|| reduce(right))));
-        }
-        let last = self.last.borrow();
-        last.iter().find(is_same).map(|made| reduce(made))
+        let moments = match is_same(&right) {
+            true => Arc::clone(level.right.get_or_init(|| reduce(right))),
+            false => reduce(self.last.borrow().iter().find(is_same)?),
+        };
+        Some(Rendering::new(candidate.clone(), level.grid.cells, moments))
     }
 
     /// The tiny level, and what a candidate makes there by samples, for others to be compared with it: where it is known what it makes exactly, all that is
     /// compared is off by what its samples are off.
-    pub fn around(&self, candidate: &Candidate) -> Option<(Level<'a>, Arc<Made>)> {
+    pub fn around(&self, candidate: &Candidate) -> Option<(Level<'a>, Arc<Rendering>)> {
         let level = &self.tiny;
-        let made = self.made(candidate, level, None)?;
+        let sampled = self.render(candidate, level, None)?;
         let exact = match candidate.behaviour == Behaviour::RIGHT {
             true => self.reduced(candidate, level),
             false => None,
         };
-        let exact = exact.filter(|exact| exact.part == made.part);
-        let exact =
-            exact.map(|exact| Made::new(candidate.clone(), exact.part, Arc::clone(&exact.right)));
-        let exact = level.predict(exact.as_ref().unwrap_or(&made));
-        Some((level.with_error(&level.predict(&made), &exact), made))
+        let exact = exact.filter(|exact| exact.part == sampled.part);
+        let exact = level.predict(exact.as_ref().unwrap_or(&sampled));
+        Some((level.with_error(&level.predict(&sampled), &exact), sampled))
     }
 
     /// The absolute differences that a candidate leaves on a level; none if there was too much work before.
-    pub fn left(&self, candidate: &Candidate, level: &Level, like: &Made) -> Option<f64> {
+    pub fn left(&self, candidate: &Candidate, level: &Level, like: &Rendering) -> Option<f64> {
         let differences = self.differences(candidate, level, like)?;
         Some(absolute(&differences))
     }
 
-    fn differences(&self, candidate: &Candidate, level: &Level, like: &Made) -> Option<Vec<f64>> {
+    fn differences(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        like: &Rendering,
+    ) -> Option<Vec<f64>> {
         self.work.may_go_on().then_some(())?;
-        let made = self.made(candidate, level, Some(like))?;
-        Some(level.predict(&made).differences())
+        let rendering = self.render(candidate, level, Some(like))?;
+        Some(level.predict(&rendering).differences())
     }
 
     /// Judges a candidate on a level.
@@ -183,17 +180,21 @@ impl<'a> Search<'a> {
         &self,
         candidate: &Candidate,
         level: &Level,
-        like: Option<&Made>,
-    ) -> Option<Found> {
-        let made = self.made(candidate, level, like)?;
-        let score = level.predict(&made).score();
+        like: Option<&Rendering>,
+    ) -> Option<Judged> {
+        let rendering = self.render(candidate, level, like)?;
+        let score = level.predict(&rendering).score();
         let cost = price(level, candidate.fitted()) - score.likelihood;
-        Some(Found { made, score, cost })
+        Some(Judged {
+            rendering,
+            score,
+            cost,
+        })
     }
 
     /// How much likelier than a null model another one is that was judged on the same level, less what the numbers cost that it has more.
-    pub fn gain(&self, level: &Level, null: &Found, other: &Found) -> f64 {
-        let [one, two] = [null, other].map(|found| level.predict(&found.made));
+    pub fn gain(&self, level: &Level, null: &Judged, other: &Judged) -> f64 {
+        let [one, two] = [null, other].map(|found| level.predict(&found.rendering));
         let more = other.candidate().fitted() - null.candidate().fitted();
         one.gain(&null.score, &two) - price(level, more)
     }
@@ -212,17 +213,17 @@ impl<'a> Search<'a> {
         &self,
         candidate: &Candidate,
         level: &Level,
-        like: Option<&Made>,
+        like: Option<&Rendering>,
     ) -> Option<Strays> {
-        let made = self.made(candidate, level, like)?;
+        let rendering = self.render(candidate, level, like)?;
         self.work.spend(work::of_exact(0, 0, level.grid.count()));
-        Some(level.predict(&made).strays())
+        Some(level.predict(&rendering).strays())
     }
 
     /// Whether it is known that nothing shows something else than a candidate for certain, of which may be known what it makes on the middle grid.
     ///
     /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its cells is so in a pixel, if what the cells show is exact.
-    pub fn explains_all(&self, candidate: &Candidate, like: Option<&Made>) -> bool {
+    pub fn explains_all(&self, candidate: &Candidate, like: Option<&Rendering>) -> bool {
         let has_none = |level: &Level| {
             let strays = self.strays(candidate, level, like);
             strays.is_some_and(|strays| strays.is_empty())
@@ -232,14 +233,14 @@ impl<'a> Search<'a> {
     }
 
     /// Whether what was found beside another candidate can be seen.
-    pub fn is_seen(&self, found: &Found, beside: &Candidate) -> bool {
+    pub fn is_seen(&self, found: &Judged, beside: &Candidate) -> bool {
         let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
         let samples = found.score.samples.unwrap_or(f64::INFINITY) / count;
         let predict = |candidate| {
-            let made = self.made(candidate, &self.fine, None)?;
+            let rendering = self.render(candidate, &self.fine, None)?;
             self.work
                 .spend(work::of_exact(0, 0, self.fine.grid.count()));
-            Some(self.fine.predict(&made))
+            Some(self.fine.predict(&rendering))
         };
         let (Some(one), Some(other)) = (predict(found.candidate()), predict(beside)) else {
             return false;
@@ -253,7 +254,7 @@ impl<'a> Search<'a> {
         &self,
         candidate: &Candidate,
         free: usize,
-        (level, like): (&Level, &Made),
+        (level, like): (&Level, &Rendering),
         cells: f64,
         rounds: [usize; 2],
     ) -> Option<(Candidate, Fitted)> {
