@@ -104,37 +104,37 @@ impl Candidate {
         Some(candidate)
     }
 
-    /// All numbers of its mistakes, one after the other.
+    /// Those of its mistakes that are numbers.
+    pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
+        self.mistakes.iter().filter_map(|mistake| match mistake {
+            Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
+            _ => None,
+        })
+    }
+
+    /// All these numbers, one after the other.
     pub fn numbers(&self) -> Vec<f64> {
-        let numbers = |mistake: &Mistake| match mistake {
-            Mistake::Numbers(_, numbers) => numbers.clone(),
-            _ => Vec::new(),
-        };
-        self.mistakes.iter().flat_map(numbers).collect()
+        self.numeric()
+            .flat_map(|(_, numbers)| numbers.to_vec())
+            .collect()
     }
 
     /// The same, where a vector of which the direction alone counts has a length with which it is short: its greatest number is 1.
     pub fn leveled_numbers(&self) -> Vec<f64> {
-        let numbers = |mistake: &Mistake| match mistake {
-            Mistake::Numbers(parameter, numbers) => match parameter.fields[..] {
-                ["normal" | "direction"] => {
-                    let greatest = numbers.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
-                    numbers.iter().map(|x| x / greatest).collect()
-                }
-                _ => numbers.clone(),
-            },
-            _ => Vec::new(),
+        let leveled = |(parameter, numbers): (&Parameter, &[f64])| -> Vec<f64> {
+            let greatest = match parameter.fields[..] {
+                ["normal" | "direction"] => numbers.iter().fold(0.0, |most, x| x.abs().max(most)),
+                _ => 1.0,
+            };
+            numbers.iter().map(|x| x / greatest).collect()
         };
-        self.mistakes.iter().flat_map(numbers).collect()
+        self.numeric().flat_map(leveled).collect()
     }
 
     /// By how much each of these changes the picture by about so many pixels.
     pub fn steps(&self, pixels: f64) -> Vec<f64> {
-        let steps = |mistake: &Mistake| match mistake {
-            Mistake::Numbers(parameter, _) => parameter.steps(&self.scene, pixels),
-            _ => Vec::new(),
-        };
-        self.mistakes.iter().flat_map(steps).collect()
+        let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
+        self.numeric().flat_map(steps).collect()
     }
 
     /// The same with other numbers.

@@ -35,7 +35,8 @@ pub fn numeric_mistakes(
         _ => true,
     };
     let all = parameters::fitted(&candidate.scene).into_iter();
-    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
+    let is_named = |parameter: &Parameter| candidate.numeric().any(|(own, _)| own == parameter);
+    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(parameter));
     let shown = judge.middle.predict(&from.rendering);
     let started = all.filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
@@ -113,11 +114,6 @@ fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
     numbers.chunks_exact(3).flat_map(color).collect()
-}
-
-fn is_named(candidate: &Candidate, parameter: &Parameter) -> bool {
-    let mut mistakes = candidate.mistakes.iter();
-    mistakes.any(|mistake| matches!(mistake, Mistake::Numbers(own, _) if own == parameter))
 }
 
 /// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.
