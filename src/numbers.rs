@@ -64,34 +64,14 @@ pub fn beside(x: f64, others: &[f64]) -> String {
     }
 }
 
-/// A number that was found in place of another one, in three digits, or as many as it takes to show the first of their difference.
-pub fn found(is: f64, should: f64) -> String {
-    let unit = f64::min(digit(is, 2), digit(is - should, 0));
-    beside(to_unit(is, unit), &[should])
-}
-
-/// The same of a coordinate or an angle, which may be any number where nothing is meant: three digits of the larger of the two.
-pub fn found_near(is: f64, should: f64) -> String {
-    let unit = f64::min(digit(is.abs().max(should.abs()), 2), digit(is - should, 0));
-    beside(to_unit(is, unit), &[should])
-}
-
-/// What one is worth in a number's digit that so many others stand before; infinite if it has none.
-fn digit(x: f64, before: i32) -> f64 {
-    let first = libm::log10(x.abs()).floor();
-    match first.is_finite() {
-        true => libm::pow(10.0, first - f64::from(before)),
-        false => f64::INFINITY,
+/// A number with as few decimals as do where it may be off by so much.
+pub fn rounded(x: f64, error: f64) -> f64 {
+    if !(error > 0.0 && error.is_finite()) {
+        return x;
     }
-}
-
-fn to_unit(x: f64, unit: f64) -> f64 {
-    let rounded = (x / unit).round() * unit;
-    // Without the tail that a multiple of a power of ten has in binary.
-    match rounded.is_finite() {
-        true => format!("{rounded:.12e}").parse().unwrap_or(x),
-        false => x,
-    }
+    let decimals = (-libm::log10(error).floor()).clamp(0.0, 12.0) as usize;
+    // Without −0.
+    format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }
 
 /// Decimals without the zeros at their end.
@@ -124,32 +104,6 @@ pub fn grouped(count: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_found_differs_from_what_should_be() {
-        for (is, should, text) in [
-            (7.0, 0.0, "7"),
-            (2.0561, 0.0, "2.06"),
-            (3.0041, 3.0, "3.004"),
-            (-1.602, -1.6, "-1.602"),
-            (2.753, 2.75, "2.753"),
-            (5.0, 5.0, "5"),
-            (0.0, 3.0, "0"),
-            (1.00000001, 1.0, "1.00000001"),
-        ] {
-            assert_eq!(found(is, should), text);
-        }
-        for (is, should, text) in [
-            (-3.09e-6, 0.8, "0"),
-            (0.001_234, 0.8, "0.001"),
-            (2.0561, 0.0, "2.06"),
-            (3e-6, 0.0, "3e-6"),
-            (-1.602, -1.6, "-1.602"),
-            (5.0, 5.0, "5"),
-        ] {
-            assert_eq!(found_near(is, should), text);
-        }
-    }
 
     #[test]
     fn numbers_keep_the_digits_that_matter() {

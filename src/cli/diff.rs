@@ -9,9 +9,9 @@ use std::{
 use pinhole::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grading::{self, Jpeg, Kind, ObjectVerdict, Verdict},
+    grading::{Jpeg, Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
-    render::RenderError,
+    render::{Control, RenderError},
 };
 use serde_json::{Map, Value, json};
 
@@ -20,7 +20,7 @@ use super::{
     args::{DiffArgs, Format},
     input::{self, Input, is_standard, shown},
     interrupt::Interrupt,
-    judge::{self, Judge, quoted},
+    judge::{self, quoted},
     output, progress,
 };
 
@@ -82,20 +82,25 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let part = judge::part(&a, &scene)
         .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
-    let judge = progress::watched(part.pixels(), |done| {
-        Judge::new(&scene, part, None, cancel, &|more| {
-            done.fetch_add(more, Ordering::Relaxed);
-        })
+    let reference = progress::watched(part.pixels(), |done| {
+        let control = Control {
+            threads: None,
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            },
+            cancel,
+        };
+        Reference::new(&scene, part, &control)
     });
-    let judge = match judge {
-        Ok(judge) => judge,
+    let reference = match reference {
+        Ok(reference) => reference,
         Err(error) => return ended(error),
     };
     let steps = args.tolerance.unwrap_or_else(|| a.rounding.steps());
-    let comparison = judge
-        .compare(&a, steps)
+    let comparison = reference
+        .compare(&a.film, steps)
         .map_err(|error| Trouble(error.to_string()))?;
-    let verdict = match judge.judge(&a, jpeg, &comparison, cancel) {
+    let verdict = match reference.judge(&a.film, jpeg, &comparison, cancel) {
         Ok(verdict) => verdict,
         Err(error) => return ended(error),
     };
@@ -110,8 +115,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         is_strict,
     };
     report.print(args.format.format)?;
-    let films = [&a.film, &judge.exact().film];
-    write_heat_map(args, films, judge.tolerance(steps), is_equal, cancel)?;
+    let films = [&a.film, &reference.exact.film];
+    write_heat_map(args, films, reference.tolerance(steps), is_equal, cancel)?;
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
@@ -358,7 +363,7 @@ pub fn json(
     let figures = figures.map(|(name, value)| (name.to_owned(), value));
     figures
         .into_iter()
-        .chain(verdict.map(grading::json).unwrap_or_default())
+        .chain(verdict.map(Verdict::to_json).unwrap_or_default())
         .collect()
 }
 

@@ -11,8 +11,8 @@ use std::{
 use pinhole::{
     area::Area,
     film::{self, Picture},
-    grading::Jpeg,
-    render::RenderError,
+    grading::{Jpeg, Reference},
+    render::{Control, RenderError},
     scene::Scene,
 };
 use rayon::{ThreadPoolBuilder, prelude::*};
@@ -26,8 +26,7 @@ use super::{
     graded::{Graded, Judged, csv, table},
     input::{self, Input, shown},
     interrupt::Interrupt,
-    judge::{self, Judge},
-    output, progress,
+    judge, output, progress,
     thumbnails::Thumbnails,
 };
 
@@ -92,13 +91,18 @@ fn graded(
     let whole = Area::whole(scene.image.width, scene.image.height);
     let processors = || thread::available_parallelism().map_or(1, NonZero::get);
     let threads = args.threads.count().map_or_else(processors, NonZero::get);
-    let judge = progress::watched(whole.pixels(), |done| {
-        Judge::new(scene, whole, NonZero::new(threads), cancel, &|more| {
-            done.fetch_add(more, Ordering::Relaxed);
-        })
+    let reference = progress::watched(whole.pixels(), |done| {
+        let control = Control {
+            threads: NonZero::new(threads),
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            },
+            cancel,
+        };
+        Reference::new(scene, whole, &control)
     });
-    let judge = match judge {
-        Ok(judge) => judge,
+    let reference = match reference {
+        Ok(reference) => reference,
         Err(error) => return Ok(Err(error)),
     };
     let pool = ThreadPoolBuilder::new()
@@ -106,7 +110,7 @@ fn graded(
         .build()?;
     Ok(progress::watched(paths.len() as u64, |done| {
         let grade = |path: &PathBuf| {
-            let result = grade(path, scene, &judge, args, cancel)?;
+            let result = grade(path, scene, &reference, args, cancel)?;
             done.fetch_add(1, Ordering::Relaxed);
             let name = shown(path);
             Ok(Graded { name, result })
@@ -119,7 +123,7 @@ fn graded(
 fn grade(
     path: &Path,
     scene: &Scene,
-    whole: &Judge,
+    whole: &Reference,
     args: &GradeArgs,
     cancel: &AtomicBool,
 ) -> Result<Result<Judged, String>, RenderError> {
@@ -129,23 +133,28 @@ fn grade(
         Err(error) => return Ok(Err(error)),
     };
     let own;
-    let judge = if part == whole.part {
+    let reference = if part == whole.part {
         whole
     } else {
-        // Pictures are judged in parallel, each on one thread.
-        own = Judge::new(scene, part, NonZero::new(1), cancel, &|_| {})?;
+        let control = Control {
+            // Pictures are judged in parallel, each on one thread.
+            threads: NonZero::new(1),
+            progress: &|_| {},
+            cancel,
+        };
+        own = Reference::new(scene, part, &control)?;
         &own
     };
     let steps = picture.rounding.steps();
-    let comparison = match judge.compare(&picture, steps) {
+    let comparison = match reference.compare(&picture.film, steps) {
         Ok(comparison) => comparison,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let verdict = judge.judge(&picture, jpeg, &comparison, cancel)?;
+    let verdict = reference.judge(&picture.film, jpeg, &comparison, cancel)?;
     let thumbnails = match args.output {
         Some(_) => {
-            let (film, exact) = (&picture.film, &judge.exact().film);
-            match Thumbnails::new(film, exact, judge.tolerance(steps)) {
+            let (film, exact) = (&picture.film, &reference.exact.film);
+            match Thumbnails::new(film, exact, reference.tolerance(steps)) {
                 Ok(thumbnails) => Some(thumbnails),
                 Err(error) => return Ok(Err(error.to_string())),
             }

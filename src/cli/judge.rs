@@ -1,70 +1,8 @@
-//! A scene that pictures are judged by: what `diff` and `grade` have in common.
+//! Pictures that are judged by a scene: what `diff` and `grade` have in common.
 
-use std::{num::NonZero, path::Path, sync::atomic::AtomicBool};
+use std::path::Path;
 
-use pinhole::{
-    area::Area,
-    film::{self, Comparison, Picture, SizesDiffer, Tolerance},
-    grading::{Jpeg, Reference, Verdict},
-    render::{Control, Exact, RenderError},
-    scene::Scene,
-};
-
-/// A scene, or a part of it, and its exact picture.
-pub struct Judge<'a> {
-    /// The part.
-    pub part: Area,
-    reference: Reference<'a>,
-}
-
-impl<'a> Judge<'a> {
-    /// Makes the exact picture, on so many threads or as many as there are; `progress` counts its pixels.
-    pub fn new(
-        scene: &'a Scene,
-        part: Area,
-        threads: Option<NonZero<usize>>,
-        cancel: &AtomicBool,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Result<Self, RenderError> {
-        let control = Control {
-            threads,
-            progress,
-            cancel,
-        };
-        let reference = Reference::new(scene, part, &control)?;
-        Ok(Self { part, reference })
-    }
-
-    /// The exact picture.
-    pub fn exact(&self) -> &Exact {
-        &self.reference.exact
-    }
-
-    /// How far a picture is from the exact one: beyond so many steps, and the exact picture's own bound.
-    pub fn compare(&self, picture: &Picture, steps: f64) -> Result<Comparison, SizesDiffer> {
-        film::compare(&picture.film, &self.exact().film, self.tolerance(steps))
-    }
-
-    /// So many steps, and the exact picture's own bound on top.
-    pub fn tolerance(&self, steps: f64) -> Tolerance<'_> {
-        Tolerance {
-            steps,
-            bounds: Some(&self.exact().bounds),
-        }
-    }
-
-    /// What is wrong with a picture.
-    pub fn judge(
-        &self,
-        picture: &Picture,
-        jpeg: Option<Jpeg>,
-        comparison: &Comparison,
-        cancel: &AtomicBool,
-    ) -> Result<Verdict, RenderError> {
-        self.reference
-            .judge(&picture.film, jpeg, comparison, cancel)
-    }
-}
+use pinhole::{area::Area, film::Picture, scene::Scene};
 
 /// The part of a scene that a picture shows: the crop that it carries, or all of it.
 ///

@@ -40,7 +40,7 @@ impl Axes {
         }
         let u = u.normalize_or(DVec3::X);
         let v = w.cross(u);
-        let roll = radians(camera.roll);
+        let roll = camera.roll.in_radians();
         let (sin, cos) = (libm::sin(roll), libm::cos(roll));
         let (width, height) = (f64::from(image.width), f64::from(image.height));
         Self {
@@ -79,15 +79,10 @@ impl Axes {
     }
 }
 
-/// An angle in radians.
-pub fn radians(angle: Angle) -> f64 {
-    angle.degrees.to_radians() + angle.radians
-}
-
 /// How many pixels a unit of the view plane at distance 1 has.
 pub fn focal(camera: &Camera, image: &Image) -> f64 {
     let (width, height) = (f64::from(image.width), f64::from(image.height));
-    let half = |angle| libm::tan(radians(angle) / 2.0);
+    let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
     match camera.lens {
         Lens::Distance(d) => d * height / camera.view_height,
         Lens::Fov(angle) => height / (2.0 * half(angle)),

@@ -4,47 +4,33 @@ use std::sync::Arc;
 
 use super::{
     layout::Layout,
-    light::{Average, Curve, Look},
+    light::{Curve, Look},
+    mistakes::Row,
     parameters::Parameter,
     textbook::Behaviour,
 };
-use crate::scene::{Scene, Shape};
+use crate::scene::Scene;
 
-/// A mistake that a candidate has.
+/// A mistake of a program.
 #[derive(Clone, Debug)]
-pub struct Named {
-    /// A word for programs.
-    pub id: &'static str,
-    /// What it is, but for numbers.
-    pub message: String,
-    /// The way out.
-    pub help: String,
-    /// What it does.
-    pub cause: Cause,
-}
-
-/// What a mistake does.
-#[derive(Clone, Debug)]
-pub enum Cause {
-    /// A row of the table that does this, if it can.
-    Row(fn(&mut Candidate) -> Option<()>),
-    /// A row that does this to an object.
-    ObjectRow(fn(&mut Candidate, usize) -> Option<()>, usize),
+pub enum Mistake {
+    /// A row of the table, and the object that it is about, if it is about one.
+    Row(&'static Row, Option<usize>),
     /// Numbers that are others.
     Numbers(Parameter, Vec<f64>),
-    /// Something too many.
-    Patch(Look),
+    /// Something too many: pixels of a colour, in linear light, between the least and the greatest column and row.
+    Patch([f64; 3], [[f64; 2]; 2]),
 }
 
-impl Cause {
+impl Mistake {
     /// How many numbers tell it.
     pub fn fitted(&self) -> usize {
         match self {
-            Self::Row(_) | Self::ObjectRow(..) => 1,
+            Self::Row(..) => 1,
             // Which numbers they are, and they themselves.
             Self::Numbers(_, numbers) => 1 + numbers.len(),
             // A row, a colour and a rectangle.
-            Self::Patch(_) => 8,
+            Self::Patch(..) => 8,
         }
     }
 }
@@ -58,8 +44,8 @@ pub struct Candidate {
     pub is_drawn: Vec<bool>,
     /// How it behaves.
     pub behaviour: Behaviour,
-    /// What it averages.
-    pub average: Average,
+    /// By which curve it decodes the colours that it averages.
+    pub averaged: Curve,
     /// How it encodes what it averaged.
     pub curve: Curve,
     /// How it lays out what it makes.
@@ -67,7 +53,7 @@ pub struct Candidate {
     /// What it does to the light.
     pub looks: Vec<Look>,
     /// Its mistakes.
-    pub named: Vec<Named>,
+    pub mistakes: Vec<Mistake>,
 }
 
 impl Candidate {
@@ -77,11 +63,11 @@ impl Candidate {
             scene: scene.clone(),
             is_drawn: vec![true; scene.objects.len()],
             behaviour: Behaviour::RIGHT,
-            average: Average::Light,
+            averaged: Curve::Right,
             curve: Curve::Right,
             layout: Layout::default(),
             looks: Vec::new(),
-            named: Vec::new(),
+            mistakes: Vec::new(),
         }
     }
 
@@ -93,48 +79,91 @@ impl Candidate {
         }
     }
 
-    /// The same with one more mistake.
-    pub fn with(&self, named: Named) -> Option<Self> {
+    /// The same with one more mistake; none if that cannot be, or changes nothing.
+    pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
-        match &named.cause {
-            Cause::Row(change) => change(&mut candidate)?,
-            Cause::ObjectRow(change, object) => change(&mut candidate, *object)?,
-            Cause::Numbers(parameter, numbers) => {
+        match &mistake {
+            Mistake::Row(row, object) => {
+                (row.change)(&mut candidate, object.unwrap_or_default());
+                let is_same = candidate.traces_as(self)
+                    && candidate.behaviour == self.behaviour
+                    && candidate.curve == self.curve
+                    && candidate.layout == self.layout
+                    && candidate.looks.len() == self.looks.len();
+                (!is_same).then_some(())?;
+            }
+            Mistake::Numbers(parameter, numbers) => {
                 candidate.scene = parameter.put(&candidate.scene, numbers)?
             }
-            Cause::Patch(look) => candidate.looks.push(*look),
+            Mistake::Patch(light, area) => candidate.looks.push(Look::Patch {
+                light: *light,
+                area: *area,
+            }),
         }
-        candidate.named.push(named);
+        candidate.mistakes.push(mistake);
         Some(candidate)
     }
 
-    /// One with these mistakes, one after the other.
-    pub fn of(scene: &Scene, named: &[Named]) -> Option<Self> {
-        named.iter().try_fold(Self::right(scene), |candidate, one| {
-            candidate.with(one.clone())
+    /// Those of its mistakes that are numbers.
+    pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
+        self.mistakes.iter().filter_map(|mistake| match mistake {
+            Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
+            _ => None,
         })
     }
 
-    /// An object of its scene.
-    pub fn shape(&mut self, object: usize) -> &mut Shape {
-        &mut Arc::make_mut(&mut self.scene.objects)[object].shape
+    /// All these numbers, one after the other.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.numeric()
+            .flat_map(|(_, numbers)| numbers.to_vec())
+            .collect()
+    }
+
+    /// The same, where a vector of which the direction alone counts has a length with which it is short: its greatest number is 1.
+    pub fn leveled_numbers(&self) -> Vec<f64> {
+        let leveled = |(parameter, numbers): (&Parameter, &[f64])| -> Vec<f64> {
+            let greatest = match parameter.fields[..] {
+                ["normal" | "direction"] => numbers.iter().fold(0.0, |most, x| x.abs().max(most)),
+                _ => 1.0,
+            };
+            numbers.iter().map(|x| x / greatest).collect()
+        };
+        self.numeric().flat_map(leveled).collect()
+    }
+
+    /// By how much each of these changes the picture by about so many pixels.
+    pub fn steps(&self, pixels: f64) -> Vec<f64> {
+        let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
+        self.numeric().flat_map(steps).collect()
+    }
+
+    /// The same with other numbers.
+    pub fn with_numbers(&self, scene: &Scene, mut numbers: &[f64]) -> Option<Self> {
+        let mut mistakes = self.mistakes.clone();
+        for mistake in &mut mistakes {
+            if let Mistake::Numbers(_, own) = mistake {
+                let (first, rest) = numbers.split_at(own.len());
+                own.copy_from_slice(first);
+                numbers = rest;
+            }
+        }
+        let mut mistakes = mistakes.into_iter();
+        mistakes.try_fold(Self::right(scene), |candidate, one| candidate.with(one))
     }
 
     /// Whether it traces what another one does, but for how they behave, and for what they do then.
     pub fn traces_as(&self, other: &Self) -> bool {
         let (one, two) = (&self.scene, &other.scene);
-        let is_one_view = one.camera == two.camera && one.image == two.image;
-        let are_same_objects =
-            Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects;
-        is_one_view
-            && self.average == other.average
+        one.camera == two.camera
+            && one.image == two.image
+            && self.averaged == other.averaged
             && self.layout.is_shifted() == other.layout.is_shifted()
             && self.is_drawn == other.is_drawn
-            && are_same_objects
+            && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
     }
 
     /// How many numbers were fitted.
     pub fn fitted(&self) -> usize {
-        self.named.iter().map(|named| named.cause.fitted()).sum()
+        self.mistakes.iter().map(Mistake::fitted).sum()
     }
 }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use super::{
     light::{Curve, is_near},
-    score::{DEVIATIONS, FLAT, Model, score},
-    textbook::Moments,
+    moments::Moments,
+    prediction::{FLAT, Prediction},
+    strays::DEVIATIONS,
 };
 use crate::film::Film;
 
@@ -51,14 +52,15 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
             *pixel = [f64::NAN; 3];
         }
     }
-    let model = Model {
+    let prediction = Prediction {
+        seen: without.pixels(),
+        width,
         moments: Arc::clone(moments),
-        doubt: Vec::new(),
-        cut: 0.0,
         curve: Curve::Right,
+        is_cut_off: false,
     };
     // The noise is that of as many samples as one over the mean of 1/n over the pixels that have some, which is less than one more than n.
-    let samples = score(without.pixels(), &model).samples?;
+    let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)
 }

@@ -6,7 +6,11 @@
 //! squares, so the mean variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's square each. A block of one colour has one
 //! coefficient. Chroma may be kept for each second column and row alone: then colours mix with those up to two pixels away.
 
-use super::{light::STEP, score::DEVIATIONS, textbook::Moments};
+use super::{
+    light::STEP,
+    moments::{Moments, range},
+    strays::DEVIATIONS,
+};
 use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// The side of a block.
@@ -81,40 +85,29 @@ impl Jpeg {
         let height = mean.len() / width;
         // How much of blue-yellow and red-green difference is in a channel.
         const SHARES: [f64; 3] = [1.402, 0.344 + 0.714, 1.772];
-        let near =
-            |at: usize, by: usize, most: usize| at.saturating_sub(by)..(at + by + 1).min(most);
-        let within = |columns: std::ops::Range<usize>, rows: std::ops::Range<usize>| {
-            let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-            for y in rows {
-                for pixel in &mean[y * width + columns.start..y * width + columns.end] {
-                    for i in 0..3 {
-                        (least[i], most[i]) = (least[i].min(pixel[i]), most[i].max(pixel[i]));
-                    }
-                }
-            }
-            [0, 1, 2].map(|i| most[i] - least[i])
-        };
         let side = if self.is_subsampled { 2 * BLOCK } else { BLOCK };
         let side = (side / factor).max(1);
         let reach = MIXED.div_ceil(factor);
         let count = (factor * factor) as f64;
         let columns = width.div_ceil(side);
-        let blocks: Vec<bool> = (0..columns * height.div_ceil(side))
-            .map(|block| {
-                let (x, y) = (block % columns * side, block / columns * side);
-                let spread = within(x..(x + side).min(width), y..(y + side).min(height));
-                spread == [0.0; 3]
-            })
-            .collect();
+        let mut blocks = vec![None; columns * height.div_ceil(side)];
+        let block = |at: usize| at / width / side * columns + at % width / side;
+        let mut are_flat = vec![true; blocks.len()];
+        for at in 0..mean.len() {
+            let first = *blocks[block(at)].get_or_insert(mean[at]);
+            are_flat[block(at)] &= first == mean[at];
+        }
         let pixel = |at: usize| {
-            let (x, y) = (at % width, at / width);
-            let is_flat = blocks[y / side * columns + x / side];
+            let is_flat = are_flat[block(at)];
             let square = |table: &Table| match is_flat {
                 true => table.first / 64.0,
                 false => table.mean / count,
             };
             let mixed = match self.is_subsampled && !is_flat {
-                true => within(near(x, reach, width), near(y, reach, height)),
+                true => {
+                    let [least, most] = range(mean, width, at, reach);
+                    [0, 1, 2].map(|i| most[i] - least[i])
+                }
                 false => [0.0; 3],
             };
             [0, 1, 2].map(|i| {

@@ -6,7 +6,10 @@ use std::{
     sync::Arc,
 };
 
-use super::{grid::Grid, jpeg::Jpeg, light::Curve, made::Made, score::Model, textbook::Moments};
+use super::{
+    grid::Grid, jpeg::Jpeg, light::Curve, moments::Moments, prediction::Prediction,
+    rendering::Rendering,
+};
 use crate::{area::Area, film::Film};
 
 /// A grid over a part of a picture.
@@ -16,13 +19,13 @@ pub struct Level<'a> {
     /// The part's corner in the film.
     corner: [u32; 2],
     /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
-    seen: [OnceCell<Vec<[f64; 3]>>; Curve::ALL.len()],
+    seen: [OnceCell<Vec<[f64; 3]>>; Curve::COUNT],
     /// How many samples a cell has; none if it is computed exactly.
     pub samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
     coded: OnceCell<Vec<[f64; 3]>>,
     /// What a right program makes on it.
-    pub right: OnceCell<Arc<Made>>,
+    pub right: OnceCell<Arc<Moments>>,
 }
 
 impl<'a> Level<'a> {
@@ -46,6 +49,17 @@ impl<'a> Level<'a> {
         }
     }
 
+    /// The same, where all that is compared is off by what one prediction differs from an exact one.
+    pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
+        let level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
+        let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
+        let seen = sampled.seen.iter().zip(means);
+        let seen =
+            seen.map(|(seen, (sampled, exact))| [0, 1, 2].map(|i| seen[i] + sampled[i] - exact[i]));
+        level.seen[sampled.curve as usize].get_or_init(|| seen.collect());
+        level
+    }
+
     /// What the picture shows in the cells, as light that was encoded in a way.
     pub fn seen(&self, curve: Curve) -> &[[f64; 3]] {
         self.seen[curve as usize].get_or_init(|| {
@@ -58,9 +72,8 @@ impl<'a> Level<'a> {
             let known: RefCell<HashMap<u64, f64>> = RefCell::default();
             let light = |seen: f64| {
                 let mut known = known.borrow_mut();
-                *known
-                    .entry(seen.to_bits())
-                    .or_insert_with(|| curve.light(seen))
+                let light = known.entry(seen.to_bits());
+                *light.or_insert_with(|| curve.light(seen))
             };
             self.grid.reduce(|x, y| pixel(x, y).map(light))
         })
@@ -75,29 +88,33 @@ impl<'a> Level<'a> {
             let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
             [0, 1, 2].map(|i| mean[i] * mean[i] + variance[i])
         });
-        let pairs = mean.iter().zip(squares);
-        let variance = pairs
-            .map(|(mean, squares)| [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0)))
-            .collect();
-        Moments { mean, variance }
+        Moments::exact(mean.into_iter().zip(squares).map(|(mean, squares)| {
+            let variance = [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0));
+            (mean, variance)
+        }))
     }
 
-    /// What a candidate shows on it.
-    pub fn model(&self, made: &Made) -> Model {
-        let mut model = made.model(&self.grid, self.seen(made.candidate.curve));
+    /// What it should show if a candidate is right.
+    pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
+        let candidate = &rendering.candidate;
+        let mut prediction = Prediction {
+            seen: self.seen(candidate.curve),
+            width: self.grid.width(),
+            moments: rendering.laid_out(&self.grid),
+            curve: candidate.curve,
+            is_cut_off: false,
+        };
+        prediction.look(&candidate.looks, &self.grid);
         if let Some(jpeg) = self.jpeg {
-            let (width, factor) = (self.grid.width(), self.grid.factor as usize);
-            let own = || jpeg.variances(&model.moments, width, factor);
+            let (moments, factor) = (&prediction.moments, self.grid.factor as usize);
+            let own = || jpeg.variances(moments, prediction.width, factor);
             // On cells of several pixels it is about the same for all candidates.
             let variances = match factor {
-                1 => &own(),
-                _ => self.coded.get_or_init(own),
+                1 => own(),
+                _ => self.coded.get_or_init(own).clone(),
             };
-            model.doubt.resize(variances.len(), [0.0; 3]);
-            for (doubt, more) in model.doubt.iter_mut().zip(variances) {
-                *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
-            }
+            Arc::make_mut(&mut prediction.moments).add_doubt(&variances);
         }
-        model
+        prediction
     }
 }

@@ -1,34 +1,11 @@
-//! What a program may do to light: average something else, encode it otherwise, mix its channels.
+//! What a program may do to light: encode it otherwise, mix its channels.
 
-use crate::{
-    color::{Color, linear_to_srgb, srgb_to_linear},
-    exact::ExactPixel,
-};
+use std::sync::OnceLock;
+
+use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
 pub const STEP: f64 = 1.0 / 255.0;
-
-/// What is averaged in place of light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Average {
-    /// Light, as it should be.
-    Light,
-    /// sRGB numbers.
-    Encoded,
-    /// The power 2.2 of sRGB numbers.
-    Power22,
-}
-
-impl Average {
-    /// Of light.
-    pub fn of(self, light: f64) -> f64 {
-        match self {
-            Self::Light => light,
-            Self::Encoded => linear_to_srgb(light),
-            Self::Power22 => libm::pow(linear_to_srgb(light), 2.2),
-        }
-    }
-}
 
 /// How light is encoded, told by what light is seen in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,25 +23,15 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Right,
-        Self::Missing,
-        Self::Twice,
-        Self::Power22,
-        Self::Root,
-    ];
+    /// How many there are.
+    pub const COUNT: usize = Self::Root as usize + 1;
 
     /// The light that was encoded, where other light is seen.
     pub fn light(self, seen: f64) -> f64 {
-        // A file of floats may have negative ones, of which there are no powers.
-        let seen = if self != Self::Right && seen < 0.0 {
-            0.0
-        } else {
-            seen
-        };
         match self {
             Self::Right => seen,
+            // A file of floats may have negative ones, of which there are no powers.
+            _ if seen < 0.0 => 0.0,
             Self::Missing => linear_to_srgb(seen),
             Self::Twice => srgb_to_linear(seen),
             Self::Power22 => libm::pow(linear_to_srgb(seen), 2.2),
@@ -82,6 +49,21 @@ impl Curve {
             Self::Power22 => srgb_to_linear(libm::pow(light, 1.0 / 2.2)),
             Self::Root => srgb_to_linear(light.sqrt()),
         }
+    }
+
+    /// The light of a step of the encoding of what is seen in its place.
+    pub fn step(self, light: f64) -> f64 {
+        /// So many lights are told apart.
+        const LIGHTS: usize = 4096;
+        static STEPS: [OnceLock<Vec<f64>>; Curve::COUNT] =
+            [const { OnceLock::new() }; Curve::COUNT];
+        let of = |at: usize| {
+            let encoded = linear_to_srgb(self.seen(at as f64 / LIGHTS as f64));
+            let light = |encoded: f64| self.light(srgb_to_linear(encoded.max(0.0)));
+            light(encoded + STEP / 2.0) - light(encoded - STEP / 2.0)
+        };
+        let steps = STEPS[self as usize].get_or_init(|| (0..=LIGHTS).map(of).collect());
+        steps[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
     }
 }
 
@@ -107,35 +89,6 @@ pub enum Look {
 
 /// Whether two colours are within a step of each other.
 pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
-    /// The least and the greatest slope of sRGB, for light of 1 and of 0.
-    const SLOPES: [f64; 2] = [1.055 / 2.4, 12.92];
-    let is_near = |i: usize| {
-        let difference = (one[i] - other[i]).abs();
-        if difference * SLOPES[1] < 1.5 * STEP {
-            return true;
-        }
-        let is_light = one[i] <= 1.0 && other[i] <= 1.0;
-        if is_light && difference * SLOPES[0] > 1.5 * STEP {
-            return false;
-        }
-        (linear_to_srgb(one[i]) - linear_to_srgb(other[i])).abs() < 1.5 * STEP
-    };
-    (0..3).all(is_near)
-}
-
-/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel and its square.
-pub fn numbers(average: Average) -> impl Fn(Color) -> [f64; 6] {
-    move |color| {
-        let [r, g, b] = color.to_linear().map(|light| average.of(light));
-        [r, g, b, r * r, g * g, b * b]
-    }
-}
-
-/// The mean and the variance of an exact pixel.
-pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
-    let [r, g, b, rr, gg, bb] = pixel.mean;
-    let doubt = pixel.bound * pixel.bound;
-    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
-    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
-    ([r, g, b], variances)
+    let step = |light| Curve::Right.step(light);
+    (0..3).all(|i| (one[i] - other[i]).abs() < 1.5 * f64::max(step(one[i]), step(other[i])))
 }

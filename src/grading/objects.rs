@@ -6,12 +6,13 @@ use super::{
     axes::Axes,
     candidate::Candidate,
     grid::Grid,
+    judge::Judge,
     parameters::Owner,
-    search::Search,
     textbook::{corners, vertices},
+    work,
 };
 use crate::{
-    scene::{Scene, Shape},
+    scene::{Checkerboard, Scene, Shape},
     tracer::World,
 };
 
@@ -51,8 +52,8 @@ pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
 /// All of them, and whether the background is right, in a picture with these mistakes.
 ///
 /// An object is right if it has its own numbers in the candidate's scene, and if where a right program would show it in that scene the picture shows nothing else.
-pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
-    let scene = search.scene;
+pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
+    let scene = judge.scene;
     let is_drawn = &candidate.is_drawn;
     let mut objects = right(scene);
     for (index, one) in objects.iter_mut().enumerate() {
@@ -63,11 +64,10 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
         };
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
-    let strays = search
-        .strays(&candidate.shown_rightly())
-        .unwrap_or_default();
-    let grid = &search.fine.grid;
-    let labels = labels(search, candidate, grid);
+    let strays = judge.strays(&candidate.shown_rightly(), &judge.fine, None);
+    let strays = strays.unwrap_or_default();
+    let grid = &judge.fine.grid;
+    let labels = labels(judge, candidate, grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let cells = grid.cells;
     let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
@@ -93,13 +93,14 @@ pub fn judged(search: &Search, candidate: &Candidate) -> (Vec<ObjectVerdict>, bo
 }
 
 /// The object that a right program shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
-pub fn labels(search: &Search, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
+pub fn labels(judge: &Judge, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
     let is_drawn = &candidate.is_drawn;
     let scene = candidate.shown_rightly().drawn(grid);
-    let Ok(world) = World::new_unless(&scene, search.cancel) else {
+    let Ok(world) = World::new_unless(&scene, judge.cancel) else {
         return vec![None; grid.count()];
     };
-    search.work.labelled(is_drawn.len(), grid.count());
+    let work = work::of_exact(0, is_drawn.len(), grid.count());
+    judge.work.spend(work);
     let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
     let label = |(x, y)| world.object_at(x, y).map(|object| drawn[object]);
     grid.cells.iter().map(label).collect()
@@ -108,55 +109,52 @@ pub fn labels(search: &Search, candidate: &Candidate, grid: &Grid) -> Vec<Option
 /// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.
 fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let axes = [from, to].map(|scene| Axes::new(&scene.camera, &scene.image));
-    let points = [from, to].map(|scene| points(&scene.objects[object].shape, &axes[0], from));
-    let [before, after] = points;
+    let size = 2.0 * axes[0].middle;
+    let own = &from.objects[object].shape;
+    let squares = match own {
+        Shape::Checkerboard(board) => squares(board, &axes[0]),
+        _ => Vec::new(),
+    };
+    let [before, after] = [own, &to.objects[object].shape].map(|shape| points(shape, &squares));
     let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
         let (before, after) = (axes[0].place(before)?, axes[1].place(after));
-        // What is not before the eye any more is far off.
-        let size = DVec2::new(f64::from(from.image.width), f64::from(from.image.height));
         let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
-        is_near.then(|| {
-            after.map_or(size.length(), |after| {
-                before.distance(after).min(size.length())
-            })
-        })
+        // What is not before the eye any more is far off.
+        let off = after.map_or(size.length(), |after| before.distance(after));
+        is_near.then(|| off.min(size.length()))
     });
     moved.fold(0.0, f64::max)
 }
 
-/// Points that are fixed to a shape, those of a board in its squares.
-fn points(shape: &Shape, axes: &Axes, scene: &Scene) -> Vec<DVec3> {
+/// Points that are fixed to a shape; those of a board are told by their squares.
+fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {
-            let ways = [DVec3::X, DVec3::Y, DVec3::Z];
-            ways.into_iter()
-                .flat_map(|way| [way, -way])
-                .map(|way| sphere.center + sphere.radius * way)
+            let ways = [DVec3::X, DVec3::Y, DVec3::Z].into_iter();
+            let ways = ways.flat_map(|way| [way, -way]);
+            ways.map(|way| sphere.center + sphere.radius * way)
                 .collect()
         }
         Shape::Triangle(triangle) => vertices(&triangle.outline).to_vec(),
         Shape::Box(cuboid) => corners(cuboid.min, cuboid.max).to_vec(),
         Shape::Checkerboard(board) => {
-            // What the scene's own board shows in a few places of the picture, in squares.
-            let own = scene.objects.iter().find_map(|object| match object.shape {
-                Shape::Checkerboard(board) => Some(board),
-                _ => None,
-            });
-            let own = own.unwrap_or(*board);
-            let size = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height));
-            let places =
-                (0..25).map(|at| size * DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0);
-            let crossing = |place| {
-                let ray = axes.ray(place);
-                let t = (own.y - scene.camera.eye.y) / ray.y;
-                // Beyond some hundred squares nothing of them is seen.
-                let is_seen = t > 0.0 && t < 100.0 * own.square;
-                is_seen.then(|| (scene.camera.eye + t * ray) / own.square)
-            };
-            let squares = places.filter_map(crossing);
-            squares
+            let points = squares.iter();
+            points
                 .map(|at| DVec3::new(at.x * board.square, board.y, at.z * board.square))
                 .collect()
         }
     }
+}
+
+/// What a board shows in a few places of the picture, in squares.
+fn squares(board: &Checkerboard, axes: &Axes) -> Vec<DVec3> {
+    let place = |at: i32| DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0;
+    let crossing = |at| {
+        let ray = axes.ray(2.0 * axes.middle * place(at));
+        let t = (board.y - axes.eye.y) / ray.y;
+        // Beyond some hundred squares nothing of them is seen.
+        let is_seen = t > 0.0 && t < 100.0 * board.square;
+        is_seen.then(|| (axes.eye + t * ray) / board.square)
+    };
+    (0..25).filter_map(crossing).collect()
 }

@@ -72,46 +72,29 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     found
 }
 
-/// What stands for a far plane that is not there, of which no value says so: nothing that is farther is seen.
-pub const UNLIMITED: &str = "camera.far=1e9";
+/// The fields in which one scene differs from another.
+pub fn changed(from: &Scene, to: &Scene) -> Vec<Parameter> {
+    let all = all(to).into_iter();
+    let all = all.filter(|parameter| parameter.fields.len() == 1);
+    all.filter(|parameter| parameter.values(from) != parameter.values(to))
+        .collect()
+}
 
 /// The `--set` arguments that make one scene of another, where these say it.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
-    if from.objects.len() != to.objects.len() {
-        return Vec::new();
+    let mut changed = changed(from, to);
+    for parameter in &mut changed {
+        // Either takes the place of min and max, and would leave the other at its default.
+        if parameter.owner.kind(to) == "box" && matches!(parameter.fields[0], "center" | "size") {
+            parameter.fields = vec!["center", "size"];
+        }
     }
+    changed.dedup();
+    let arguments = changed.iter().flat_map(|parameter| parameter.arguments(to));
+    // No value says that there is no far plane: nothing is seen that is farther than this.
     let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
-    let far = is_unlimited.then(|| UNLIMITED.to_owned());
-    let all = all(to)
-        .into_iter()
-        .filter(|parameter| parameter.fields.len() == 1);
-    all.filter(|parameter| parameter.values(from) != parameter.values(to))
-        .flat_map(|parameter| {
-            let beside = match parameter.fields[0] {
-                // Either takes the place of min and max, and would leave the other at its default.
-                "center" if parameter.is_box(to) => Some("size"),
-                "size" => Some("center"),
-                _ => None,
-            };
-            let mut arguments = parameter.arguments(to);
-            if let Some(other) = beside {
-                arguments.extend(
-                    Parameter {
-                        owner: parameter.owner,
-                        fields: vec![other],
-                    }
-                    .arguments(to),
-                );
-            }
-            arguments
-        })
-        .chain(far)
-        .fold(Vec::new(), |mut all, argument| {
-            if !all.contains(&argument) {
-                all.push(argument);
-            }
-            all
-        })
+    let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
+    arguments.chain(far).collect()
 }
 
 impl Owner {
@@ -145,15 +128,16 @@ impl Owner {
 }
 
 impl Parameter {
-    fn is_box(&self, scene: &Scene) -> bool {
-        self.owner.kind(scene) == "box"
-    }
-
     /// Its values.
     pub fn values(&self, scene: &Scene) -> Vec<Value> {
         let part = self.owner.part(scene);
         let fields = self.fields.iter();
         fields.filter_map(|field| part.value(field)).collect()
+    }
+
+    /// The value of its first field.
+    pub fn value(&self, scene: &Scene) -> Option<Value> {
+        self.values(scene).into_iter().next()
     }
 
     /// Its numbers: angles in degrees, colours from 0 to 255.
@@ -229,8 +213,8 @@ impl Parameter {
             .collect()
     }
 
-    /// By how much each number changes the picture by about a pixel, or a colour by a few steps.
-    pub fn steps(&self, scene: &Scene) -> Vec<f64> {
+    /// By how much each number changes the picture by about so many pixels, or a colour by a few steps.
+    pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         let axes = Axes::new(&scene.camera, &scene.image);
         let wide = f64::from(scene.image.width.max(scene.image.height));
         let pixel = match self.owner {
@@ -269,11 +253,9 @@ impl Parameter {
             (_, Value::Number(number)) => vec![2.0 / wide * number.abs()],
             (_, Value::Method(_)) => Vec::new(),
         };
-        self.fields
-            .iter()
-            .zip(self.values(scene))
-            .flat_map(step)
-            .collect()
+        let steps = self.fields.iter().zip(self.values(scene)).flat_map(step);
+        let by = if self.is_color() { 1.0 } else { pixels };
+        steps.map(|step| by * step).collect()
     }
 
     /// Whether it moves one object that has bounds.

@@ -3,23 +3,21 @@
 use glam::DVec2;
 
 use super::{
-    candidate::{Cause, Named},
-    light::{Look, is_near},
-    score::Strays,
-    search::{Found, Search},
+    candidate::Mistake,
+    judge::{Judge, Judged},
+    light::is_near,
 };
-use crate::color::{Color, linear_to_srgb};
 
 /// Fewer pixels than this are not taken for something too many.
 const SMALLEST: usize = 4;
 
 /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
-pub fn patch(search: &Search, from: &Found) -> Option<Named> {
-    let (grid, seen) = (&search.fine.grid, search.fine.seen(from.candidate.curve));
-    let made = search.made(&from.candidate, &search.fine, None)?;
-    let model = search.fine.model(&made);
-    let strays = Strays::new(seen, &model, grid.width()).pixels;
-    let pairs = seen.iter().zip(&model.moments.mean);
+pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
+    let grid = &judge.fine.grid;
+    let rendering = judge.render(from.candidate(), &judge.fine, None)?;
+    let shown = judge.fine.predict(&rendering);
+    let (seen, strays) = (shown.seen, shown.strays().pixels);
+    let pairs = seen.iter().zip(&shown.moments.mean);
     let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
     let mut largest: Vec<usize> = Vec::new();
     for start in strays {
@@ -56,17 +54,5 @@ pub fn patch(search: &Search, from: &Found) -> Option<Named> {
     }
     let reach = f64::from(grid.factor);
     let area = [(least - reach).to_array(), (most + reach).to_array()];
-    let at = (least + most) / 2.0;
-    let color = Color {
-        srgb: light.map(|light| 255.0 * linear_to_srgb(light)),
-    };
-    Some(Named {
-        id: "object_extra",
-        message: format!(
-            "there is something too many, of the colour {color}, around the pixel ({:.0}, {:.0})",
-            at.x, at.y
-        ),
-        help: "the scene has nothing of the kind there".to_owned(),
-        cause: Cause::Patch(Look::Patch { light, area }),
-    })
+    Some(Mistake::Patch(light, area))
 }

@@ -6,10 +6,7 @@
 
 use glam::{BVec3, DVec2, DVec3};
 
-use super::{
-    axes::{Axes, radians},
-    light::Average,
-};
+use super::{axes::Axes, light::Curve, moments::Moments};
 use crate::{
     area::Area,
     color::Color,
@@ -106,15 +103,6 @@ impl Squares {
     }
 }
 
-/// What cells show.
-#[derive(Clone, Debug)]
-pub struct Moments {
-    /// The mean of each, in linear light.
-    pub mean: Vec<[f64; 3]>,
-    /// The variance of one sample in it.
-    pub variance: Vec<[f64; 3]>,
-}
-
 /// The corners of a box.
 pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|corner| {
@@ -161,7 +149,7 @@ pub struct Textbook {
 
 impl Textbook {
     /// Prepares a scene, and what is averaged.
-    pub fn new(scene: &Scene, behaviour: Behaviour, average: Average) -> Self {
+    pub fn new(scene: &Scene, behaviour: Behaviour, averaged: Curve) -> Self {
         let eye = scene.camera.eye;
         let shapes = scene.objects.iter().map(|object| match object.shape {
             Shape::Sphere(sphere) => {
@@ -195,18 +183,13 @@ impl Textbook {
         });
         let shapes = shapes.collect();
         let axes = Axes::new(&scene.camera, &scene.image);
-        let bounds = scene.objects.iter().map(|object| {
-            let of = |is_before| bounds(&object.shape, &axes, is_before);
-            let behind = || match behaviour.behind {
-                Behind::Unseen => of(false).map(|_| NOWHERE),
-                _ => of(false),
-            };
-            of(true).or_else(behind).unwrap_or(EVERYWHERE)
-        });
+        let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
+        let objects = scene.objects.iter();
+        let bounds = objects.map(|object| bounds(&object.shape, &axes).unwrap_or(everywhere));
         let bounds = bounds.collect();
         let objects = scene.objects.iter();
         let colors = objects.map(|object| object.shape.colors());
-        let averaged = |color: Color| color.to_linear().map(|light| average.of(light));
+        let averaged = |color: Color| color.to_linear().map(|light| averaged.light(light));
         let colors = colors
             .chain([[scene.image.background; 2]])
             .map(|two| two.map(averaged));
@@ -249,8 +232,7 @@ impl Textbook {
             let variance = [0, 1, 2].map(|i| (squares[i] / count - mean[i] * mean[i]).max(0.0));
             (mean, variance)
         };
-        let (mean, variance) = part.iter().map(pixel).unzip();
-        Moments { mean, variance }
+        Moments::exact(part.iter().map(pixel))
     }
 
     fn color(&self, place: DVec2) -> [f64; 3] {
@@ -269,7 +251,7 @@ impl Textbook {
     /// The object that is seen at a place, and whether it is a board's second colour.
     fn seen(&self, place: DVec2) -> Option<(usize, bool)> {
         let ray = self.axes.ray(place);
-        let mut best: Option<(usize, f64)> = None;
+        let mut best: Option<(usize, f64, f64)> = None;
         for (object, (shape, [least, most])) in self.shapes.iter().zip(&self.bounds).enumerate() {
             if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
                 continue;
@@ -277,20 +259,17 @@ impl Textbook {
             let Some(t) = self.crossing(shape, ray) else {
                 continue;
             };
-            let is_better = match (self.behaviour.visible, best) {
-                (_, None) | (Visible::Last, _) => true,
-                (Visible::First, _) => false,
-                (Visible::Nearest, Some((_, least))) => match self.behaviour.behind {
-                    Behind::ByDistance => t.abs() < least.abs(),
-                    _ => t < least,
-                },
-                (Visible::Farthest, Some((_, most))) => t > most,
+            let order = match self.behaviour.visible {
+                Visible::Nearest => self.order(t),
+                Visible::First => object as f64,
+                Visible::Last => -(object as f64),
+                Visible::Farthest => -t,
             };
-            if is_better {
-                best = Some((object, t));
+            if best.is_none_or(|(_, _, least)| order < least) {
+                best = Some((object, t, order));
             }
         }
-        let (object, t) = best?;
+        let (object, t, _) = best?;
         let second = match self.shapes[object] {
             Prepared::Board { square, .. } => {
                 let point = self.axes.eye + t * ray;
@@ -304,22 +283,31 @@ impl Textbook {
         Some((object, second))
     }
 
+    /// Whether a crossing counts.
+    fn counts(&self, t: f64) -> bool {
+        let is_ahead = t > self.near && t < self.far;
+        let is_behind = self.behaviour.behind != Behind::Unseen && t < 0.0;
+        is_ahead || (is_behind && -t < self.far)
+    }
+
+    /// Of two crossings that of lesser order is seen.
+    fn order(&self, t: f64) -> f64 {
+        match self.behaviour.behind {
+            Behind::ByDistance => t.abs(),
+            _ => t,
+        }
+    }
+
     /// The one of two crossings, in order, that is seen, of those that count.
-    fn first(&self, [one, other]: [(f64, bool); 2]) -> Option<f64> {
-        let is_later = match self.behaviour.behind {
-            Behind::ByDistance => other.1 && (!one.1 || other.0.abs() < one.0.abs()),
-            _ => !one.1,
-        };
-        let (t, counts) = if is_later { other } else { one };
-        counts.then_some(t)
+    fn first(&self, crossings: [f64; 2]) -> Option<f64> {
+        let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t)));
+        match counting {
+            [Some(one), Some(other)] if self.order(other) < self.order(one) => Some(other),
+            [one, other] => one.or(other),
+        }
     }
 
     fn crossing(&self, shape: &Prepared, ray: DVec3) -> Option<f64> {
-        let counts = |t: f64| {
-            let is_ahead = t > self.near && t < self.far;
-            let is_behind = self.behaviour.behind != Behind::Unseen && t < 0.0;
-            is_ahead || (is_behind && -t < self.far)
-        };
         match *shape {
             Prepared::Sphere { to, power } => {
                 let (a, b) = (ray.length_squared(), ray.dot(to));
@@ -328,7 +316,7 @@ impl Textbook {
                     return None;
                 }
                 let root = root.sqrt();
-                self.first([(b - root) / a, (b + root) / a].map(|t| (t, counts(t))))
+                self.first([(b - root) / a, (b + root) / a])
             }
             Prepared::Triangle {
                 normal,
@@ -336,7 +324,7 @@ impl Textbook {
                 edges,
             } => {
                 let t = height / normal.dot(ray);
-                let is_inside = counts(t)
+                let is_inside = self.counts(t)
                     && edges
                         .iter()
                         .all(|(inward, least)| inward.dot(t * ray) >= *least);
@@ -345,27 +333,18 @@ impl Textbook {
             Prepared::Box { min, max } => {
                 let (one, other) = (min / ray, max / ray);
                 let (first, last) = (one.min(other).max_element(), one.max(other).min_element());
-                match first <= last {
-                    true => self.first([first, last].map(|t| (t, counts(t)))),
-                    false => None,
-                }
+                (first <= last).then(|| self.first([first, last]))?
             }
             Prepared::Board { y, .. } => {
                 let t = y / ray.y;
-                counts(t).then_some(t)
+                self.counts(t).then_some(t)
             }
         }
     }
 }
 
-/// Bounds of what may be seen anywhere.
-const EVERYWHERE: [DVec2; 2] = [DVec2::NEG_INFINITY, DVec2::INFINITY];
-
-/// Bounds of what is not seen.
-const NOWHERE: [DVec2; 2] = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-
 /// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind it.
-pub fn bounds(shape: &Shape, axes: &Axes, is_before: bool) -> Option<[DVec2; 2]> {
+pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
     let (min, max) = match shape {
         Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
         Shape::Box(cuboid) => (cuboid.min, cuboid.max),
@@ -375,14 +354,15 @@ pub fn bounds(shape: &Shape, axes: &Axes, is_before: bool) -> Option<[DVec2; 2]>
         }
         Shape::Checkerboard(_) => return None,
     };
-    let mut bounds = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-    for corner in corners(min, max) {
-        let (place, depth) = axes.projected(corner);
-        (depth != 0.0 && is_before == (depth > 0.0)).then_some(())?;
-        bounds = [bounds[0].min(place), bounds[1].max(place)];
-    }
+    let corners = corners(min, max).map(|corner| axes.projected(corner));
+    let is_before = corners[0].1 > 0.0;
+    let is_on_one_side = |(_, depth): &(_, f64)| *depth != 0.0 && is_before == (*depth > 0.0);
+    corners.iter().all(is_on_one_side).then_some(())?;
+    let places = || corners.into_iter().map(|(place, _)| place);
+    let least = places().fold(DVec2::INFINITY, DVec2::min);
+    let most = places().fold(DVec2::NEG_INFINITY, DVec2::max);
     // Room for roundings.
-    Some([bounds[0] - 1e-6, bounds[1] + 1e-6])
+    Some([least - 1e-6, most + 1e-6])
 }
 
 /// The vertices of a triangle: left and right base end, apex.
@@ -397,7 +377,7 @@ pub fn vertices(outline: &Outline) -> [DVec3; 3] {
             };
             let right = right.normalize_or(DVec3::X);
             let top = n.cross(right);
-            let spin = radians(triangle.spin);
+            let spin = triangle.spin.in_radians();
             let (sin, cos) = (libm::sin(spin), libm::cos(spin));
             let (right, top) = (cos * right + sin * top, cos * top - sin * right);
             let [a, b, c] = triangle.sides.to_array();

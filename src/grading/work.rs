@@ -5,8 +5,8 @@
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
 use super::{
-    light::{Average, moments, numbers},
-    textbook::Moments,
+    light::Curve,
+    moments::{Moments, moments, numbers},
 };
 use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 
@@ -30,22 +30,17 @@ pub struct Work<'a> {
     cancel: &'a AtomicBool,
 }
 
-/// The work that may be spent on a picture of so many pixels.
-pub fn most(pixels: u64) -> f64 {
-    PICTURE + PIXEL * pixels as f64
-}
-
-/// The work of an exact picture of so many objects.
-pub fn of_exact(units: u64, objects: usize, pixels: u64) -> f64 {
+/// The work of an exact picture of so many objects that took the integrator so many units.
+pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
     units as f64 + WORLD_OBJECT * objects as f64 + CELL * pixels as f64
 }
 
 impl<'a> Work<'a> {
-    /// None yet.
-    pub fn new(most: f64, cancel: &'a AtomicBool) -> Self {
+    /// What may be spent on a picture of so many pixels, of which so much is spent.
+    pub fn new(pixels: u64, spent: f64, cancel: &'a AtomicBool) -> Self {
         Self {
-            spent: Cell::new(0.0),
-            most: Cell::new(most),
+            spent: Cell::new(spent),
+            most: Cell::new(PICTURE + PIXEL * pixels as f64),
             is_cut: Cell::new(false),
             cancel,
         }
@@ -58,7 +53,7 @@ impl<'a> Work<'a> {
 
     /// Whether not too much was spent yet; if it was, something is left out.
     pub fn may_go_on(&self) -> bool {
-        let may = self.spent.get() < self.most.get();
+        let may = self.left() > 0.0;
         self.is_cut.set(self.is_cut.get() || !may);
         may
     }
@@ -68,39 +63,39 @@ impl<'a> Work<'a> {
         self.is_cut.get()
     }
 
-    /// Keeps a share of the work that is left, until it is restored to what is answered.
-    pub fn keep(&self, share: f64) -> f64 {
-        let most = self.most.get();
-        let left = (most - self.spent.get()).max(0.0);
-        self.most.replace(most - share * left)
+    /// Does something with a share of the work that is left.
+    pub fn within<T>(&self, share: f64, run: impl FnOnce() -> T) -> T {
+        let most = self.spent.get() + share * self.left();
+        self.up_to(most, run)
     }
 
-    /// Restores what was kept.
-    pub fn restore(&self, most: f64) {
-        self.most.set(most);
+    /// Does something that has to be done, however much work it is.
+    pub fn without_limit<T>(&self, run: impl FnOnce() -> T) -> T {
+        self.up_to(f64::INFINITY, run)
     }
 
-    /// What follows has to be done, however much it is, until what is answered is restored.
-    pub fn lift(&self) -> f64 {
-        self.most.replace(f64::INFINITY)
+    fn up_to<T>(&self, most: f64, run: impl FnOnce() -> T) -> T {
+        let before = self.most.replace(most);
+        let result = run();
+        self.most.set(before);
+        result
+    }
+
+    fn left(&self) -> f64 {
+        (self.most.get() - self.spent.get()).max(0.0)
     }
 
     /// The exact means and variances of what a part of a scene's picture shows; none if they take too much.
-    pub fn exact_moments(&self, scene: &Scene, average: Average, part: Area) -> Option<Moments> {
+    pub fn exact_moments(&self, scene: &Scene, averaged: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
-        let left = (self.most.get() - self.spent.get()).max(0.0);
-        let integrator = Integrator::of(&world, numbers(average)).within(left as u64);
+        let integrator = Integrator::of(&world, numbers(averaged)).within(self.left() as u64);
         let pixels = integrator.pixels(part, self.cancel);
-        self.spend(of_exact(
-            integrator.work(),
-            scene.objects.len(),
-            part.pixels(),
-        ));
+        let cells = part.pixels() as usize;
+        self.spend(of_exact(integrator.work(), scene.objects.len(), cells));
         if pixels.is_none() {
             self.is_cut.set(true);
         }
-        let (mean, variance) = pixels?.iter().map(moments).unzip();
-        Some(Moments { mean, variance })
+        Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
     /// A part of a picture of so many objects is to be sampled; none if that takes more than is left, which is spent then.
@@ -108,20 +103,9 @@ impl<'a> Work<'a> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;
         let all = objects * OBJECT + rays * (RAY + TEST * objects) + CELL * cells;
-        let left = (self.most.get() - self.spent.get()).max(0.0);
-        self.spend(all.min(left));
-        let fits = all <= left;
+        let fits = all <= self.left();
+        self.spend(all.min(self.left()));
         self.is_cut.set(self.is_cut.get() || !fits);
         fits.then_some(())
-    }
-
-    /// So many cells of a scene of so many objects are asked what they show.
-    pub fn labelled(&self, objects: usize, cells: usize) {
-        self.spend(of_exact(0, objects, cells as u64));
-    }
-
-    /// So many cells are compared.
-    pub fn compared(&self, cells: usize) {
-        self.spend(CELL * cells as f64);
     }
 }

@@ -1,19 +1,26 @@
-//! The mistakes that a class makes, as changes of a right program, and the two scenes that they are made in.
+//! The mistakes that a class makes, as changes of a right program, and the scenes that they are made in.
 
 use glam::{DVec3, dvec3};
-use image::{Rgb, RgbImage, imageops};
+use image::imageops;
 
 use super::textbook::{Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible};
 
 /// A mistake.
 pub struct Mistake {
-    /// What `diff` is to say, one of these between bars: a mistake's id, with the object's name behind it, or what it is to `--set`.
+    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its message behind it, or what it is to `--set`.
     pub name: &'static str,
     /// Makes it.
     pub make: fn(&mut Program),
 }
 
-pub const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
+impl Mistake {
+    /// What it is called in a picture's title.
+    pub fn title(&self) -> &'static str {
+        self.name.split('|').next().unwrap_or_default()
+    }
+}
+
+const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
     Mistake { name, make }
 }
 
@@ -28,24 +35,17 @@ pub const OF_THE_PICTURE: &[Mistake] = &[
     row("turned_180|up_negated", |p| {
         p.afterwards = Some(imageops::rotate180)
     }),
-    row("channels", |p| {
-        p.afterwards = Some(|picture| each(picture, |[r, g, b]| [b, g, r]));
-    }),
+    row("channels", |p| p.change = |[r, g, b]| [b, g, r]),
     row("gray", |p| {
-        p.afterwards = Some(|picture| {
-            each(picture, |[r, g, b]| {
-                let [r, g, b] = [r, g, b].map(f64::from);
-                [(0.299 * r + 0.587 * g + 0.114 * b).round() as u8; 3]
-            })
-        });
+        p.change = |color| gray(color, [0.299, 0.587, 0.114])
     }),
     row("not_encoded", |p| p.encoding = Encoding::None),
     row("encoded_twice", |p| p.encoding = Encoding::Twice),
     row("gamma_22", |p| {
-        p.afterwards = Some(|picture| each(picture, |color| color.map(|byte| power(byte, 2.2))));
+        p.change = |color| color.map(|byte| power(byte, 2.2))
     }),
     row("gamma_2", |p| {
-        p.afterwards = Some(|picture| each(picture, |color| color.map(|byte| power(byte, 2.0))));
+        p.change = |color| color.map(|byte| power(byte, 2.0))
     }),
     row("gamma_22_averaged", |p| p.encoding = Encoding::Power(2.2)),
     row("averaged_encoded", |p| p.averages_encoded = true),
@@ -100,15 +100,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
         });
     }),
     row("depth_ignored", |p| p.visible = Visible::Last),
-    row("box_corner|Crate.center", |p| {
-        change(p, "Crate", |shape| {
-            if let Shape::Box(least, greatest) = shape {
-                let half = (*greatest - *least) / 2.0;
-                *least += half;
-                *greatest += half;
-            }
-        });
-    }),
+    row("box_corner|Crate.center", |p| stretch(p, [0.5, 0.5])),
     row("Ball.color", |p| color(p, "Ball", [128, 0, 0])),
     row("Sail.color", |p| color(p, "Sail", [0, 64, 255])),
     row("Crate.color", |p| color(p, "Crate", [255, 200, 40])),
@@ -116,42 +108,116 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("Crate.center", |p| shift(p, "Crate", dvec3(-0.3, 0.1, 0.2))),
     row("Sail.centroid", |p| shift(p, "Sail", dvec3(-0.2, 0.3, 0.1))),
     row("Ball.radius", |p| {
-        change(p, "Ball", |shape| {
-            if let Shape::Sphere(_, radius) = shape {
-                *radius *= 1.2;
-            }
-        });
+        if let Shape::Sphere(_, radius) = p.shape("Ball") {
+            *radius *= 1.2;
+        }
     }),
     row("Crate.size", |p| {
-        change(p, "Crate", |shape| {
-            if let Shape::Box(_, greatest) = shape {
-                greatest.y += 0.4;
-            }
-        });
+        if let Shape::Box(_, greatest) = p.shape("Crate") {
+            greatest.y += 0.4;
+        }
     }),
-    row("Sail.spin", |p| {
-        change(p, "Sail", |shape| {
-            if let Shape::Triangle(corners) = shape {
-                let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-                *corners = corners.map(|corner| 2.0 * middle - corner);
-            }
-        });
-    }),
+    row("Sail.spin", |p| turn(p, |corner| -corner)),
     row("Sail.normal", |p| {
-        change(p, "Sail", |shape| {
-            if let Shape::Triangle(corners) = shape {
-                let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-                *corners = corners.map(|corner| {
-                    let DVec3 { x, y, z } = corner - middle;
-                    middle + dvec3(0.8 * x + 0.6 * z, y, 0.8 * z - 0.6 * x)
-                });
-            }
-        });
+        turn(p, |DVec3 { x, y, z }| {
+            dvec3(0.8 * x + 0.6 * z, y, 0.8 * z - 0.6 * x)
+        })
     }),
 ];
 
-/// The picture of the assignment, turned a little.
-pub fn figure() -> Program {
+/// Others, of which some show in few scenes.
+pub const OTHERS: &[Mistake] = &[
+    row("transposed", |p| {
+        p.afterwards = Some(|picture| imageops::flip_horizontal(&imageops::rotate90(picture)))
+    }),
+    row("squeezed", |p| p.is_squeezed = true),
+    row("channels red, blue, green", |p| {
+        p.change = |[r, g, b]| [r, b, g]
+    }),
+    row("channels green, red, blue", |p| {
+        p.change = |[r, g, b]| [g, r, b]
+    }),
+    row("channels green, blue, red", |p| {
+        p.change = |[r, g, b]| [g, b, r]
+    }),
+    row("channels blue, red, green", |p| {
+        p.change = |[r, g, b]| [b, r, g]
+    }),
+    row("gray the mean of their encoded values", |p| {
+        p.change = |color| gray(color, [1.0; 3])
+    }),
+    row("gray weighted as light", |p| {
+        p.change = |color| gray(color, [0.2126, 0.7152, 0.0722])
+    }),
+    row("half_pixel up and left", |p| p.offset = -0.5),
+    row("up_ignored (0, 1, 0)", |p| p.up = DVec3::Y),
+    row("up_negated|turned_180", |p| p.up = -p.up),
+    row("fov_halved", |p| p.distance *= 2.0),
+    row("fov_doubled", |p| p.distance *= 0.5),
+    row("looks_back", |p| p.lookat = 2.0 * p.eye - p.lookat),
+    row("near_ignored", |p| p.near = 0.0),
+    row("far_ignored", |p| p.far = f64::INFINITY),
+    row("view_height_ignored", |p| p.view_height = 2.0),
+    row("behind_seen sky: hits", |p| p.behind = Behind::First),
+    row("board_remainder sum", |p| p.squares = Squares::Remainder),
+    row("board_remainder by their remainders", |p| {
+        p.squares = Squares::Remainders
+    }),
+    row("depth_ignored first", |p| p.visible = Visible::First),
+    row("depth_ignored farthest", |p| p.visible = Visible::Farthest),
+    row("box_corner its greatest corner", |p| {
+        stretch(p, [-0.5, -0.5])
+    }),
+    row("box_doubled Crate", |p| stretch(p, [-0.5, 0.5])),
+    row("box_base Crate", |p| {
+        shift(p, "Crate", dvec3(0.0, 0.75, 0.0))
+    }),
+];
+
+/// The scenes: the picture of the assignment, turned a little; another one with the same names, seen from closer by, with a far plane, and more objects; and
+/// what some mistakes need to show: a near plane that cuts objects off, a low window, and the floor as the first object.
+pub fn scene(name: &str) -> (Program, String) {
+    let (mut program, mut text) = match name {
+        "street" => (street(), STREET.to_owned()),
+        _ => (figure(), FIGURE.to_owned()),
+    };
+    match name {
+        "clipped" => {
+            program.near = 6.5;
+            text = text.replace("d 2.75", "d 2.75  near 6.5");
+        }
+        "low" => {
+            program.view_height = 1.6;
+            text = text.replace("d 2.75", "d 2.75  view_height 1.6");
+        }
+        "backwards" => {
+            program.objects.reverse();
+            text = text.lines().rev().map(|line| format!("{line}\n")).collect();
+        }
+        _ => {}
+    }
+    (program, text)
+}
+
+const FIGURE: &str = "image { width WIDTH  height HEIGHT }
+camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  roll 10deg  d 2.75 }
+sphere Ball { center (-1.6, 1, 0) }
+triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1) }
+box Crate { center (2, 0.75, -0.5) }
+checkerboard Floor { colors (gray, white) }
+";
+
+const STREET: &str = "image { width WIDTH  height HEIGHT  background midnightblue }
+camera { eye (-2.5, 2, 6)  lookat (0.4, 0.7, 0)  up (0.3, 1, 0.1)  roll -20deg  d 2  far 30 }
+sphere Ball { center (-0.9, 0.8, 0.5)  radius 0.8 }
+triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1) }
+box Crate { center (2, 0.75, -0.5) }
+checkerboard Floor { square 0.8  colors (gray, #f0e6c8) }
+sphere Moon { center (2.2, 2.4, -3)  radius 0.6  color #dcdcdc }
+box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
+";
+
+fn figure() -> Program {
     // The sail of the assignment, whose corners are given: the base's ends and the apex.
     let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
     let normal = dvec3(0.3, 0.0, 1.0).normalize();
@@ -198,7 +264,6 @@ pub fn figure() -> Program {
         ],
         sampling: Sampling::Regular,
         samples: 1,
-        seed: 1,
         is_wide: false,
         is_squeezed: false,
         offset: 0.0,
@@ -209,12 +274,12 @@ pub fn figure() -> Program {
         encoding: Encoding::Srgb,
         averages_encoded: false,
         cuts_bytes: false,
+        change: |bytes| bytes,
         afterwards: None,
     }
 }
 
-/// Another scene with the same names: seen from closer by, with a far plane, and more objects.
-pub fn street() -> Program {
+fn street() -> Program {
     let mut street = figure();
     street.background = [25, 25, 112];
     street.eye = dvec3(-2.5, 2.0, 6.0);
@@ -240,14 +305,6 @@ pub fn street() -> Program {
     street
 }
 
-pub fn each(picture: &RgbImage, change: impl Fn([u8; 3]) -> [u8; 3]) -> RgbImage {
-    let mut changed = picture.clone();
-    changed
-        .pixels_mut()
-        .for_each(|Rgb(color)| *color = change(*color));
-    changed
-}
-
 /// A byte of sRGB as a plain power would have encoded its light.
 fn power(byte: u8, power: f64) -> u8 {
     let part = f64::from(byte) / 255.0;
@@ -258,42 +315,45 @@ fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light, 1.0 / power)).round() as u8
 }
 
+/// Gray by encoded values.
+fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
+    let sum: f64 = weights.iter().sum();
+    let parts = color.iter().zip(weights);
+    let parts = parts.map(|(&byte, weight)| weight * f64::from(byte));
+    [(parts.sum::<f64>() / sum).round() as u8; 3]
+}
+
 fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3])) {
-    for object in &mut program.objects {
-        if let Shape::Board(y, square, second) = &mut object.shape {
-            change(y, square, second);
-        }
+    if let Shape::Board(y, square, second) = program.shape("Floor") {
+        change(y, square, second);
     }
 }
 
-pub fn change(program: &mut Program, name: &str, change: impl Fn(&mut Shape)) {
-    for object in program
-        .objects
-        .iter_mut()
-        .filter(|object| object.name == name)
-    {
-        change(&mut object.shape);
-    }
-}
-
-pub fn shift(program: &mut Program, name: &str, by: DVec3) {
-    change(program, name, |shape| match shape {
+fn shift(program: &mut Program, name: &str, by: DVec3) {
+    match program.shape(name) {
         Shape::Sphere(center, _) => *center += by,
         Shape::Triangle(corners) => corners.iter_mut().for_each(|corner| *corner += by),
-        Shape::Box(least, greatest) => {
-            *least += by;
-            *greatest += by;
-        }
+        Shape::Box(least, greatest) => (*least, *greatest) = (*least + by, *greatest + by),
         Shape::Board(y, ..) => *y += by.y,
-    });
+    }
+}
+
+/// Moves the crate's corners, each by so many times its size.
+fn stretch(program: &mut Program, by: [f64; 2]) {
+    if let Shape::Box(least, greatest) = program.shape("Crate") {
+        let size = *greatest - *least;
+        (*least, *greatest) = (*least + by[0] * size, *greatest + by[1] * size);
+    }
+}
+
+/// Turns the sail about its middle.
+fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
+    if let Shape::Triangle(corners) = program.shape("Sail") {
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        *corners = corners.map(|corner| middle + turned(corner - middle));
+    }
 }
 
 fn color(program: &mut Program, name: &str, color: [u8; 3]) {
-    for object in program
-        .objects
-        .iter_mut()
-        .filter(|object| object.name == name)
-    {
-        object.color = color;
-    }
+    program.object(name).color = color;
 }

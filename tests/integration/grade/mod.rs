@@ -1,17 +1,16 @@
-//! Grading: pictures of the corpus judged by the library, and the command `grade`.
+//! Grading: pictures of a tracer of its own judged by the library, and the command `grade`.
 
+mod case;
 mod command;
-mod corpus;
 mod mistakes;
-mod rarer;
 mod textbook;
 
-use std::{fs, io::Cursor, sync::atomic::AtomicBool};
+use std::{io::Cursor, sync::atomic::AtomicBool};
 
 use image::ImageFormat;
 use pinhole::{
     area::Area,
-    film::{self, Tolerance},
+    film,
     grading::{self, Jpeg, Reference},
     render::Control,
     scene,
@@ -20,64 +19,34 @@ use pinhole::{
 use rayon::prelude::*;
 use serde_json::Value;
 
-use self::corpus::{Case, Judgement, SIZES, cases, samplings};
+use self::case::Case;
 use crate::effort::{Effort, sampled_and_exhaustive};
 
-/// Pictures of all kinds, a title of the corpus in each line of this file: right ones by every method, and mistakes that a class makes.
-const TITLES: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/tests/integration/grade/titles.txt"
-);
+/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a class makes.
+const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
 
 fn the_mistakes_of_a_class_are_named(effort: Effort) {
-    let all: Vec<Case> = (0..4)
-        .flat_map(|count| SIZES.map(|size| (count, size)))
-        .flat_map(|(count, size)| {
-            samplings().flat_map(move |sampling| cases(count, size, sampling))
-        })
-        .collect();
-    let text = fs::read_to_string(TITLES).unwrap();
-    let titles: Vec<&str> = effort.first(6, text.lines()).collect();
-    let judged = titles.par_iter().filter_map(|title| {
-        let case = all.iter().find(|case| case.title == *title);
-        wrongly_judged(case.unwrap_or_else(|| panic!("{title} is no case")))
-    });
-    let judged: Vec<String> = judged.collect();
-    assert!(judged.is_empty(), "{}", judged.join("\n"));
-}
-
-sampled_and_exhaustive!(every_row_of_the_table_is_named);
-
-fn every_row_of_the_table_is_named(effort: Effort) {
-    let names = rarer::cases().map(|case| case.title);
-    let names: Vec<String> = names
-        .chain(corpus::kinds().map(|kind| kind.name.to_owned()))
-        .collect();
+    let cases: Vec<Case> = PICTURES.lines().map(Case::of).collect();
     for id in grading::mistake_ids() {
-        let mut words = names.iter().flat_map(|name| name.split(['|', ' ']));
+        let mistakes = cases.iter().flat_map(|case| &case.mistakes);
+        let mut words = mistakes.flat_map(|mistake| mistake.name.split(['|', ' ']));
         assert!(words.any(|word| word == id), "{id} is nowhere");
     }
-    let cases: Vec<Case> = effort.first(2, rarer::cases()).collect();
-    let judged: Vec<String> = cases.par_iter().filter_map(wrongly_judged).collect();
+    let cases: Vec<&Case> = effort.first(8, &cases).collect();
+    let judged: Vec<String> = cases.into_par_iter().filter_map(wrongly_judged).collect();
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// What is said of a case that is judged otherwise than right.
+/// What is said of a picture that is judged otherwise than right.
 fn wrongly_judged(case: &Case) -> Option<String> {
-    let title = &case.title;
-    if !case.is_seen() {
-        return Some(format!("{title} is not seen"));
-    }
     let mut file = Cursor::new(Vec::new());
-    case.picture()
-        .write_to(&mut file, ImageFormat::Png)
-        .unwrap();
-    let answer = answer(&[], case, file.get_ref());
-    let judgement = case.judge(&answer);
-    if judgement != Judgement::Right {
-        return Some(format!("{title}: {judgement:?}: {}", answer["line"]));
+    let picture = case.picture();
+    picture.write_to(&mut file, ImageFormat::Png).unwrap();
+    let answer = answer(&case.text, &[], file.get_ref());
+    if !case.is_told(&answer) {
+        return Some(format!("{}: {}", case.title, answer["line"]));
     }
     // What is told makes the picture.
     let sets = answer["mistakes"].as_array().unwrap().iter();
@@ -90,15 +59,14 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     if sets.is_empty() || sets.iter().any(Vec::is_empty) {
         return None;
     }
-    let told = self::answer(&sets.concat(), case, file.get_ref());
+    let told = self::answer(&case.text, &sets.concat(), file.get_ref());
     let is_right = told["verdict"] == "right" || told["verdict"] == "noise";
-    (!is_right).then(|| format!("{title}: with {sets:?}: {}", told["line"]))
+    (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
 
-/// What is said of a file with a case's picture, where a scene is set otherwise.
-fn answer(sets: &[&str], case: &Case, file: &[u8]) -> Value {
-    let text = case.right.scene();
-    let mut sources = Sources::new(Source::from_text("a.scn", &text));
+/// What is said of a file with a picture of a scene that is set otherwise.
+fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
+    let mut sources = Sources::new(Source::from_text("a.scn", text));
     sets.iter().for_each(|set| sources.push_set(set));
     let scene = scene::read(&sources).scene.unwrap();
     let part = Area::whole(scene.image.width, scene.image.height);
@@ -109,15 +77,8 @@ fn answer(sets: &[&str], case: &Case, file: &[u8]) -> Value {
         cancel: &cancel,
     };
     let reference = Reference::new(&scene, part, &control).unwrap();
-    let exact = &reference.exact;
-    let picture = film::read_picture(file).unwrap();
-    let tolerance = Tolerance {
-        steps: picture.rounding.steps(),
-        bounds: Some(&exact.bounds),
-    };
-    let comparison = film::compare(&picture.film, &exact.film, tolerance).unwrap();
-    let verdict = reference
-        .judge(&picture.film, Jpeg::of(file), &comparison, &cancel)
-        .unwrap();
-    Value::Object(grading::json(&verdict))
+    let film = film::read_picture(file).unwrap().film;
+    let comparison = reference.compare(&film, 0.5).unwrap();
+    let verdict = reference.judge(&film, Jpeg::of(file), &comparison, &cancel);
+    Value::Object(verdict.unwrap().to_json())
 }

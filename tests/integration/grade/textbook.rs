@@ -4,7 +4,7 @@
 //! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes. What a program may do wrong are
 //! its fields; the mistakes that a class makes stand in `mistakes`.
 
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use image::{Rgb, RgbImage};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
 
@@ -95,62 +95,69 @@ pub enum Sampling {
     Hammersley,
 }
 
+pub const SAMPLINGS: [Sampling; 4] = [
+    Sampling::Random,
+    Sampling::Jittered,
+    Sampling::Regular,
+    Sampling::Hammersley,
+];
+
 /// A scene, and what the program does with it.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Of the picture, in pixels.
     pub size: [u32; 2],
-    /// Where no object is seen.
     pub background: [u8; 3],
-    /// Of the camera.
     pub eye: DVec3,
-    /// Of the camera.
     pub lookat: DVec3,
-    /// Of the camera.
     pub up: DVec3,
     /// In radians.
     pub roll: f64,
     /// Of the view plane.
     pub distance: f64,
-    /// Of the window.
     pub view_height: f64,
-    /// Of the near plane, in depth.
     pub near: f64,
-    /// Of the far plane, in depth.
     pub far: f64,
     /// In the order of the text.
     pub objects: Vec<Object>,
-    /// Method and seed.
     pub sampling: Sampling,
-    /// A square number of samples in each pixel.
+    /// A square number in each pixel.
     pub samples: u32,
-    /// Of the random numbers.
-    pub seed: u64,
     /// Whether the window's height is taken for its width.
     pub is_wide: bool,
     /// Whether the window is as wide as it is tall.
     pub is_squeezed: bool,
     /// Added to each sample's place, in pixels.
     pub offset: f64,
-    /// Whether what lies behind the eye is seen.
     pub behind: Behind,
-    /// Which of the surfaces that a ray hits is seen.
     pub visible: Visible,
-    /// How the number of a square is told.
     pub squares: Squares,
     /// Added to the number of a square.
     pub parity: i64,
-    /// What the picture's light is encoded by.
     pub encoding: Encoding,
     /// Whether the mean is of encoded colours.
     pub averages_encoded: bool,
     /// Whether bytes are cut off, not rounded.
     pub cuts_bytes: bool,
-    /// What is done to the picture at the end.
+    /// What is done to colours at the end.
+    pub change: fn([u8; 3]) -> [u8; 3],
+    /// What is done to the picture then.
     pub afterwards: Option<fn(&RgbImage) -> RgbImage>,
 }
 
 impl Program {
+    /// One of its objects.
+    pub fn object(&mut self, name: &str) -> &mut Object {
+        let mut objects = self.objects.iter_mut();
+        let found = objects.find(|object| object.name == name);
+        found.expect("an object of this name")
+    }
+
+    /// The shape of one.
+    pub fn shape(&mut self, name: &str) -> &mut Shape {
+        &mut self.object(name).shape
+    }
+
     /// The picture.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
@@ -164,7 +171,7 @@ impl Program {
             true => self.view_height / f64::from(width),
             false => pixel,
         };
-        let mut random = SmallRng::seed_from_u64(self.seed);
+        let mut random = SmallRng::seed_from_u64(1);
         let picture = RgbImage::from_fn(width, height, |column, row| {
             let mut sum = DVec3::ZERO;
             for index in 0..self.samples {
@@ -179,14 +186,15 @@ impl Program {
                 });
             }
             let mean = (sum / f64::from(self.samples)).to_array();
-            Rgb(mean.map(|part| {
+            let bytes = mean.map(|part| {
                 let encoded = match self.averages_encoded {
                     true => part,
                     false => self.encode(part),
                 };
                 let half = if self.cuts_bytes { 0.0 } else { 0.5 };
                 (255.0 * encoded + half) as u8
-            }))
+            });
+            Rgb((self.change)(bytes))
         });
         match self.afterwards {
             Some(change) => change(&picture),
@@ -317,69 +325,5 @@ impl Program {
                 [Some(t).filter(|t| t.is_finite()), None]
             }
         }
-    }
-
-    /// The scene's text, for Pinhole.
-    pub fn scene(&self) -> String {
-        let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
-        let vector = |v: DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
-        let [width, height] = self.size;
-        let far = match self.far.is_finite() {
-            true => format!("  far {}", self.far),
-            false => String::new(),
-        };
-        let window = match self.view_height {
-            2.0 => String::new(),
-            tall => format!("  view_height {tall}"),
-        };
-        let near = match self.near {
-            0.0 => String::new(),
-            near => format!("  near {near}"),
-        };
-        let mut text = format!(
-            "image {{ width {width}  height {height}  background {} }}\n\
-             camera {{ eye {}  lookat {}  up {}  roll {}deg  d {}{window}{near}{far} }}\n",
-            hex(self.background),
-            vector(self.eye),
-            vector(self.lookat),
-            vector(self.up),
-            self.roll.to_degrees().round(),
-            self.distance,
-        );
-        for object in &self.objects {
-            let (kind, fields) = match object.shape {
-                Shape::Sphere(center, radius) => (
-                    "sphere",
-                    format!("center {}  radius {radius}", vector(center)),
-                ),
-                Shape::Triangle([a, b, c]) => {
-                    let (centroid, normal) = ((a + b + c) / 3.0, (b - a).cross(c - a));
-                    let sides = dvec3(a.distance(c), b.distance(c), a.distance(b));
-                    let [centroid, normal, sides] = [centroid, normal, sides].map(vector);
-                    (
-                        "triangle",
-                        format!("centroid {centroid}  normal {normal}  sides {sides}"),
-                    )
-                }
-                Shape::Box(least, greatest) => {
-                    let (center, size) = ((least + greatest) / 2.0, greatest - least);
-                    (
-                        "box",
-                        format!("center {}  size {}", vector(center), vector(size)),
-                    )
-                }
-                Shape::Board(y, square, second) => {
-                    let colors = format!("({}, {})", hex(object.color), hex(second));
-                    text += &format!(
-                        "checkerboard {} {{ y {y}  square {square}  colors {colors} }}\n",
-                        object.name
-                    );
-                    continue;
-                }
-            };
-            let color = hex(object.color);
-            text += &format!("{kind} {} {{ {fields}  color {color} }}\n", object.name);
-        }
-        text
     }
 }

@@ -23,65 +23,46 @@ pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// What a model makes of numbers.
-pub trait Trial {
-    /// Its differences from a picture.
-    fn differences(&self) -> Vec<f64>;
-
-    /// The standard deviations that are to be expected of them.
-    fn deviations(&self) -> Vec<f64>;
-}
-
-/// What is to be small: the sum of squares of differences in units, and of absolute values of what is beyond a bend (Huber, Robust estimation of a location
-/// parameter, 1964).
-struct Loss {
-    units: Vec<f64>,
-    bend: f64,
-}
+/// What is to be small: the sum of squares of differences; or in units of their deviations, and of absolute values of what is beyond one (Huber, Robust
+/// estimation of a location parameter, 1964).
+struct Loss(Option<Vec<f64>>);
 
 impl Loss {
     fn of(&self, differences: &[f64]) -> f64 {
-        let weights = self.weights(differences).zip(differences);
-        weights.map(|(weight, d)| weight * d * d).sum()
+        let weights = (0..).zip(differences);
+        weights.map(|(at, d)| self.weight(at, *d) * d * d).sum()
     }
 
-    /// The weights of the squares.
-    fn weights(&self, differences: &[f64]) -> impl Iterator<Item = f64> {
-        let all = differences.iter().zip(&self.units);
-        all.map(|(d, unit)| (self.bend * unit / d.abs()).min(1.0) / (unit * unit))
+    /// The weight of a square.
+    fn weight(&self, at: usize, difference: f64) -> f64 {
+        match &self.0 {
+            None => 1.0,
+            Some(units) => (units[at] / difference.abs()).min(1.0) / (units[at] * units[at]),
+        }
     }
 }
 
-/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives none for numbers that cannot be, and where no more
-/// work may be done.
+/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives the differences from a picture; none for numbers that
+/// cannot be, and where no more work may be done.
 ///
 /// By squares first, which have one valley; then in standard deviations, of which more than one counts by its absolute value, so that what the numbers
-/// cannot explain does not draw them away from what they can.
-pub fn fit<T: Trial>(
+/// cannot explain does not draw them away from what they can. `rounds` are those of both.
+pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
     rounds: [usize; 2],
-    trial: &dyn Fn(&[f64]) -> Option<T>,
+    deviations: &dyn Fn() -> Vec<f64>,
+    trial: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Fitted> {
     let count = start.len();
     let mut numbers = start;
-    let mut shown = trial(&numbers)?;
-    let mut now = shown.differences();
+    let mut now = trial(&numbers)?;
     let mut normal = vec![vec![0.0; count]; count];
     let mut slopes: Vec<Vec<f64>> = Vec::new();
     let mut are_new = true;
-    let mut has_moved = false;
-    'fitting: for (is_robust, rounds) in [false, true].into_iter().zip(rounds) {
-        let loss = match is_robust && rounds > 0 {
-            true => Loss {
-                units: shown.deviations(),
-                bend: 1.0,
-            },
-            false => Loss {
-                units: vec![1.0; now.len()],
-                bend: f64::INFINITY,
-            },
-        };
+    let phases = [(rounds[0], false), (rounds[1], true)];
+    'fitting: for (rounds, is_robust) in phases.into_iter().filter(|phase| phase.0 > 0) {
+        let loss = Loss(is_robust.then(deviations));
         let mut left = loss.of(&now);
         let mut damping = 1e-3;
         let mut round = 0;
@@ -91,20 +72,18 @@ pub fn fit<T: Trial>(
                 let varied = |by: f64| {
                     let mut other = numbers.clone();
                     other[i] += by;
-                    Some((by, trial(&other)?.differences()))
+                    Some((by, trial(&other)?))
                 };
                 let Some((by, other)) = varied(steps[i]).or_else(|| varied(-steps[i])) else {
-                    if has_moved {
-                        break 'fitting;
-                    }
-                    return None;
+                    break 'fitting;
                 };
                 // In units of the step, so that all numbers are alike.
                 let sign = steps[i] / by;
                 let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
-                slopes.push(slope.collect::<Vec<_>>());
+                slopes.push(slope.collect());
             }
-            let weights: Vec<f64> = loss.weights(&now).collect();
+            let weights = (0..).zip(&now).map(|(at, d)| loss.weight(at, *d));
+            let weights: Vec<f64> = weights.collect();
             let product = |a: &[f64], b: &[f64]| -> f64 {
                 let terms = a.iter().zip(b).zip(&weights);
                 terms.map(|((a, b), weight)| a * b * weight).sum()
@@ -130,14 +109,12 @@ pub fn fit<T: Trial>(
                 is_far.get_or_insert(moves.iter().any(|by| by.abs() > CLOSE));
                 let moved = numbers.iter().zip(steps).zip(&moves);
                 let moved: Vec<f64> = moved.map(|((x, step), by)| x + step * by).collect();
-                if let Some(other) = trial(&moved) {
-                    let differences = other.differences();
+                if let Some(differences) = trial(&moved) {
                     let less = loss.of(&differences);
                     if less < left {
                         update(&mut slopes, &moves, &now, &differences);
-                        are_new = false;
-                        (has_improved, has_moved) = (true, true);
-                        (left, now, shown, numbers) = (less, differences, other, moved);
+                        (are_new, has_improved) = (false, true);
+                        (left, now, numbers) = (less, differences, moved);
                         damping *= 0.1;
                         break;
                     }
@@ -216,18 +193,6 @@ fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
 mod tests {
     use super::*;
 
-    struct Line(Vec<f64>);
-
-    impl Trial for Line {
-        fn differences(&self) -> Vec<f64> {
-            self.0.clone()
-        }
-
-        fn deviations(&self) -> Vec<f64> {
-            vec![1e-3; self.0.len()]
-        }
-    }
-
     #[test]
     fn a_line_is_found_among_points_of_which_some_are_elsewhere() {
         let points: Vec<f64> = (0..40)
@@ -241,9 +206,16 @@ mod tests {
             .collect();
         let trial = |numbers: &[f64]| {
             let line = |(x, y): (usize, &f64)| numbers[0] + numbers[1] * x as f64 - y;
-            Some(Line(points.iter().enumerate().map(line).collect()))
+            Some(points.iter().enumerate().map(line).collect())
         };
-        let fitted = fit(vec![0.0, 0.0], &[0.1, 0.1], [30, 30], &trial).unwrap();
+        let fitted = fit(
+            vec![0.0, 0.0],
+            &[0.1, 0.1],
+            [30, 30],
+            &|| vec![1e-3; 40],
+            &trial,
+        )
+        .unwrap();
         assert!(
             (fitted.numbers[0] - 2.0).abs() < 0.02 && (fitted.numbers[1] - 0.25).abs() < 0.002,
             "{fitted:?}"

@@ -3,13 +3,12 @@
 //! A start on the tiny grid leads to a fit there, and that to one on the coarse grid.
 
 use super::{
-    candidate::{Candidate, Cause},
-    fit::{Trial, absolute},
-    made::Made,
-    number_text,
+    candidate::{Candidate, Mistake},
+    judge::{Judge, Judged},
+    level::Level,
     parameters::{self, Owner, Parameter},
-    score::Model,
-    search::{Found, Search, steps},
+    prediction::Prediction,
+    rendering::Rendering,
 };
 use crate::color::{Color, linear_to_srgb};
 
@@ -19,49 +18,60 @@ const STARTS: usize = 3;
 /// So many parameters of objects and so many others are fitted on the coarse grid.
 const FITTED: usize = 4;
 
-/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
-pub fn numbers(
-    search: &Search,
-    from: &Found,
-    [tiny, like]: [&Made; 2],
+/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least. `like` is what the
+/// candidate so far makes on the coarse grid.
+pub fn numeric_mistakes(
+    judge: &Judge,
+    from: &Judged,
+    like: &Rendering,
     suspects: &[usize],
 ) -> Vec<(f64, Candidate)> {
-    let candidate = &from.candidate;
+    let candidate = from.candidate();
+    let Some((tiny, tiny_like)) = judge.around(candidate) else {
+        return Vec::new();
+    };
     let is_suspect = |parameter: &Parameter| match parameter.owner {
         Owner::Object(object) => suspects.contains(&object),
         _ => true,
     };
     let all = parameters::fitted(&candidate.scene).into_iter();
-    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(candidate, parameter));
-    let shown = search.middle.model(&from.made);
-    let is_read = |parameter: &Parameter| parameter.is_color() && candidate.looks.is_empty();
-    let tried = all.map(|parameter| {
+    let is_named = |parameter: &Parameter| candidate.numeric().any(|(own, _)| own == parameter);
+    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(parameter));
+    let shown = judge.middle.predict(&from.rendering);
+    let started = all.filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
         let starts = match parameter.is_color() {
-            true => vec![colors(search, &numbers, &shown)],
+            true => vec![colors(&numbers, &shown)],
             false => {
-                let steps = steps(candidate, &parameter, &search.coarse);
+                let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
+                let steps = parameter.steps(&candidate.scene, pixels);
                 starts(&parameter, &numbers, &steps)
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
-            let shown = search.changed(tiny, &parameter, &start, &search.tiny)?;
-            Some((absolute(&shown.differences()), start))
+            let started = candidate.with(Mistake::Numbers(parameter.clone(), start))?;
+            Some((judge.left(&started, &tiny, &tiny_like)?, started))
         });
         let mut tried: Vec<_> = tried.collect();
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));
         tried.truncate(STARTS);
-        (parameter, tried)
+        Some((tried.first()?.0, (parameter, tried)))
     });
+    let fit = |parameter: &Parameter, start: &Candidate, like: (&Level, &Rendering), rounds| {
+        // Colours are read, but where something is done to them.
+        let is_read = parameter.is_color() && candidate.looks.is_empty();
+        let free = parameter.numbers(&candidate.scene).len();
+        let rounds = if is_read { [0, 0] } else { rounds };
+        let (candidate, fitted) = judge.fit(start, free, like, 0.5, rounds)?;
+        Some((fitted.left, candidate))
+    };
+    let tiny = (&tiny, &*tiny_like);
     // Those first that start best: work may end before all are fitted.
-    let started = tried.filter_map(|one| Some((one.1.first()?.0, one)));
     let on_tiny = least_first(started).filter_map(|(parameter, tried)| {
-        let rounds = if is_read(&parameter) { 0 } else { 4 };
-        let fitted = tried.into_iter().filter_map(|(_, start)| {
-            search.fit_one(tiny, &parameter, &search.tiny, start, [rounds, 0])
-        });
-        let best = fitted.min_by(|one, other| one.left.total_cmp(&other.left))?;
-        Some((best.left, (parameter, best.numbers)))
+        let fitted = tried.iter();
+        let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, tiny, [4, 0]));
+        let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        Some((left, (parameter, best)))
     });
     let (local, others): (Vec<_>, Vec<_>) =
         on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
@@ -70,13 +80,9 @@ pub fn numbers(
         fitted.truncate(FITTED);
         fitted
     });
-    let on_coarse = least_first(on_coarse).filter_map(|(parameter, start)| {
-        let rounds = if is_read(&parameter) { [0, 0] } else { [2, 1] };
-        let fitted = search.fit_one(like, &parameter, &search.coarse, start, rounds)?;
-        let named = number_text::numbers(search.scene, &parameter, fitted.numbers);
-        Some((fitted.left, candidate.with(named)?))
-    });
-    on_coarse.collect()
+    least_first(on_coarse)
+        .filter_map(|(parameter, start)| fit(&parameter, &start, (&judge.coarse, like), [2, 1]))
+        .collect()
 }
 
 /// Those first of which least is left.
@@ -87,20 +93,18 @@ fn least_first<T>(all: impl Iterator<Item = (f64, T)>) -> impl Iterator<Item = T
 }
 
 /// The colours that a picture has where these colours alone should be seen: the medians of their channels.
-fn colors(search: &Search, numbers: &[f64], model: &Model) -> Vec<f64> {
-    let seen = search.middle.seen(model.curve);
+fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
     let color = |own: &[f64]| {
         let light = Color {
             srgb: [own[0], own[1], own[2]],
         }
         .to_linear();
-        let cells = seen
-            .iter()
-            .zip(&model.moments.mean)
-            .zip(&model.moments.variance);
-        let alone = cells.filter(|((_, mean), variance)| **mean == light && **variance == [0.0; 3]);
-        let alone = alone.map(|((seen, _), _)| *seen);
-        let mut seen: Vec<[f64; 3]> = alone.filter(|seen| !seen[0].is_nan()).collect();
+        let moments = &shown.moments;
+        let is_alone = |at: &usize| moments.mean[*at] == light && moments.variance[*at] == [0.0; 3];
+        let seen = (0..shown.seen.len())
+            .filter(is_alone)
+            .map(|at| shown.seen[at]);
+        let mut seen: Vec<[f64; 3]> = seen.filter(|seen| !seen[0].is_nan()).collect();
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
@@ -110,13 +114,6 @@ fn colors(search: &Search, numbers: &[f64], model: &Model) -> Vec<f64> {
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
     numbers.chunks_exact(3).flat_map(color).collect()
-}
-
-fn is_named(candidate: &Candidate, parameter: &Parameter) -> bool {
-    candidate
-        .named
-        .iter()
-        .any(|named| matches!(&named.cause, Cause::Numbers(own, _) if own == parameter))
 }
 
 /// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.

@@ -1,0 +1,271 @@
+//! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times.
+//!
+//! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are; a middle one fits numbers and judges all of them. What shows
+//! only where colours meet is judged on the pixels.
+
+use super::{
+    candidate::{Candidate, Mistake},
+    judge::{Judge, Judged, price},
+    light::Curve,
+    mistakes::{OBJECT_ROWS, ROWS, Shows},
+    numeric_mistakes::numeric_mistakes,
+    objects::labels,
+    parameters::Owner,
+    patch::patch,
+    rendering::Rendering,
+};
+use crate::{
+    cancel::{self, Cancelled},
+    numbers::rounded,
+};
+
+/// So many mistakes are named at most.
+const MOST_MISTAKES: usize = 4;
+
+/// So many are fitted and judged at a time, of those that leave least on the coarse grid.
+const FINALISTS: usize = 3;
+
+/// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier ones from this.
+const ROUNDS: usize = 4;
+
+/// By how much of a cell numbers are varied on the middle grid.
+const STEP: f64 = 0.25;
+
+/// So many objects are looked at, those around which most is wrong.
+const SUSPECTS: usize = 12;
+
+/// A sample in the middle of a pixel makes as little noise as two random ones; more than this come of several.
+const ONE: f64 = 3.0;
+
+/// The mistakes that explain a picture, from what a program without mistakes would have made.
+pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
+    let right = Candidate::right(judge.scene);
+    let Some(mut best) = judge.judged(&right, &judge.middle, None) else {
+        return Ok(None);
+    };
+    // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
+    // alone.
+    let mut is_open = explains_all(judge, &best);
+    while best.candidate().mistakes.len() < MOST_MISTAKES
+        && (is_open || !judge.is_explained(best.candidate()))
+        && judge.work.may_go_on()
+        && let Some(next) = step(judge, &best, is_open)
+    {
+        best = next;
+        is_open = false;
+    }
+    let short = shortened(judge, &best);
+    let mut best = with_edges(judge, &short, None);
+    // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
+    if let Some(found) = &best
+        && let [Mistake::Numbers(parameter, _)] = found.candidate().mistakes.as_slice()
+        && parameter.owner == Owner::Camera
+    {
+        let other = with_edges(judge, &right, found.score.samples);
+        let other = other.filter(|other| judge.explains_all(other.candidate(), None));
+        let both = best.into_iter().chain(other);
+        best = both.min_by(|one, other| one.cost.total_cmp(&other.cost));
+    }
+    cancel::unless_set(judge.cancel, best)
+}
+
+fn explains_all(judge: &Judge, found: &Judged) -> bool {
+    judge.explains_all(found.candidate(), Some(&found.rendering))
+}
+
+/// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels. How many samples a pixel has may be known from
+/// another candidate that explains the picture.
+fn with_edges(judge: &Judge, candidate: &Candidate, samples: Option<f64>) -> Option<Judged> {
+    // Where areas are not explained yet, that comes first. What is found so far is judged, however much work that is.
+    let (is_open, null) = judge.work.without_limit(|| {
+        let is_open = !judge.explains_all(candidate, None);
+        (is_open, judge.judged(candidate, &judge.edges, None))
+    });
+    let null = null?;
+    // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
+    let may =
+        candidate.looks.is_empty() && candidate.curve == Curve::Right && judge.fine.jpeg.is_none();
+    let is_one = (samples.or(null.score.samples)).is_some_and(|samples| samples < ONE);
+    let rows = ROWS.iter().filter(|row| match row.shows {
+        Shows::InAreas => false,
+        Shows::AtEdges => may && !is_one,
+        Shows::Everywhere => may,
+    });
+    let best = rows
+        .take_while(|_| judge.work.may_go_on())
+        .filter_map(|row| candidate.with(Mistake::Row(row, None)))
+        .filter_map(|candidate| judge.judged(&candidate, &judge.edges, Some(&null.rendering)))
+        .map(|found| (judge.gain(&judge.edges, &null, &found), found))
+        .filter(|(gain, _)| *gain > 0.0)
+        .filter(|(_, found)| !is_open || judge.explains_all(found.candidate(), None))
+        .max_by(|one, other| one.0.total_cmp(&other.0));
+    Some(best.map_or(null, |(_, found)| found))
+}
+
+/// The best candidate with one more mistake, if it is better.
+fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
+    let coarse = judge.render(from.candidate(), &judge.coarse, None)?;
+    let suspects = suspects(judge, from);
+    let mut tried = rows(judge, from, &coarse, &suspects);
+    // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
+    let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
+    if let Some((_, row)) = row
+        && !is_open
+        && let Some(found) = likelier(judge, from, row)
+        && let Some(found) = refined(judge, found)
+        && found.cost < from.cost
+        && explains_all(judge, &found)
+    {
+        return Some(found);
+    }
+    // Half of the work that is left is left for judging those that were tried.
+    let are_all_numbers_tried = judge.work.within(0.5, || {
+        tried.extend(numeric_mistakes(judge, from, &coarse, &suspects));
+        judge.work.may_go_on()
+    });
+    tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+    tried.truncate(FINALISTS);
+    let unfitted = tried.iter().filter_map(|one| likelier(judge, from, &one.1));
+    let mut unfitted: Vec<Judged> = unfitted.collect();
+    unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    let mut judged: Vec<Judged> = Vec::new();
+    // What explains all is taken to be beaten only by what has fewer numbers: more of them come nearer before all are fitted to the end.
+    let mut fewest = usize::MAX;
+    for found in unfitted {
+        if found.candidate().fitted() < fewest
+            && let Some(found) = refined(judge, found)
+        {
+            if !is_open && explains_all(judge, &found) {
+                fewest = found.candidate().fitted();
+            }
+            judged.push(found);
+        }
+    }
+    judged.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+    // Where not all were tried, the best of them need not be the best of all; what explains all is.
+    let are_all_tried = judge.work.may_go_on() && are_all_numbers_tried;
+    let is_better = |best: &Judged| {
+        let is_likelier = match is_open {
+            true => judge.gain(&judge.middle, from, best) > 0.0,
+            false => best.cost < from.cost,
+        };
+        is_likelier
+            && (are_all_tried || explains_all(judge, best))
+            && judge.is_seen(best, from.candidate())
+    };
+    // The few that were judged are looked at in all pixels, however much work that is.
+    let better = judge
+        .work
+        .without_limit(|| judged.into_iter().find(is_better));
+    // Something too many would explain anything; it is thought of where nothing else explains more than before.
+    better.or_else(|| {
+        (!is_open && are_all_tried).then_some(())?;
+        let patched = from.candidate().with(patch(judge, from)?)?;
+        let found = judge.judged(&patched, &judge.middle, Some(&from.rendering))?;
+        (found.cost < from.cost).then_some(found)
+    })
+}
+
+/// A candidate judged; none if it is no likelier than what it is made from.
+fn likelier(judge: &Judge, from: &Judged, candidate: &Candidate) -> Option<Judged> {
+    let found = judge.judged(candidate, &judge.middle, Some(&from.rendering))?;
+    (found.score.likelihood > from.score.likelihood).then_some(found)
+}
+
+/// A candidate that was judged, with its numbers fitted to the middle grid, and judged again.
+fn refined(judge: &Judge, found: Judged) -> Option<Judged> {
+    let candidate = found.candidate();
+    let free = candidate.numbers().len();
+    if free == 0 {
+        return Some(found);
+    }
+    let middle = &judge.middle;
+    let (fitted, _) = judge.fit(
+        candidate,
+        free,
+        (middle, &found.rendering),
+        STEP,
+        [0, ROUNDS],
+    )?;
+    judge.judged(&fitted, middle, Some(&found.rendering))
+}
+
+/// The rows of the table, and how much each leaves on the coarse grid.
+fn rows(
+    judge: &Judge,
+    from: &Judged,
+    coarse: &Rendering,
+    suspects: &[usize],
+) -> Vec<(f64, Candidate)> {
+    let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
+    let rows = rows.map(|row| Mistake::Row(row, None));
+    let of_objects = suspects.iter().flat_map(|&object| {
+        let rows = OBJECT_ROWS.iter();
+        rows.map(move |row| Mistake::Row(row, Some(object)))
+    });
+    let candidates = rows.chain(of_objects);
+    let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
+    candidates
+        .filter_map(|candidate| {
+            let left = judge.left(&candidate, &judge.coarse, coarse)?;
+            Some((left, candidate))
+        })
+        .collect()
+}
+
+/// The objects that may be wrong, those first around which most is.
+fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
+    let grid = &judge.middle.grid;
+    let labels = labels(judge, from.candidate(), grid);
+    let mut wrong = vec![0.0; judge.scene.objects.len()];
+    for (at, off) in from.score.off.iter().enumerate() {
+        // An object that grew is wrong beside where it is seen.
+        let reach = [0, 2, grid.width() * 2];
+        let near = reach
+            .iter()
+            .flat_map(|by| [at.checked_sub(*by), Some(at + by)])
+            .flatten();
+        let mut objects: Vec<_> = near.filter_map(|at| *labels.get(at)?).collect();
+        objects.sort_unstable();
+        objects.dedup();
+        objects
+            .into_iter()
+            .for_each(|object| wrong[object] += libm::log1p(*off));
+    }
+    let mut suspects: Vec<_> = (0..wrong.len())
+        .filter(|&object| wrong[object] > 0.0)
+        .collect();
+    suspects.sort_by(|&one, &other| wrong[other].total_cmp(&wrong[one]));
+    suspects.truncate(SUSPECTS);
+    suspects
+}
+
+/// A candidate whose numbers have as few digits as do.
+fn shortened(judge: &Judge, found: &Judged) -> Candidate {
+    let (candidate, middle) = (found.candidate(), &judge.middle);
+    let free = candidate.numbers().len();
+    let leveled = candidate.with_numbers(judge.scene, &candidate.leveled_numbers());
+    let Some(leveled) = leveled.filter(|_| free > 0) else {
+        return candidate.clone();
+    };
+    let Some((_, fitted)) = judge.fit(&leveled, free, (middle, &found.rendering), STEP, [0, 1])
+    else {
+        return leveled;
+    };
+    // A number that is short was not fitted: it may cost what that costs.
+    let most = found.cost + price(middle, free);
+    for digits in [8.0, 2.0] {
+        // What a vector's length may be off is no matter, so that no error is more than a part of a step.
+        let errors = fitted.errors.iter().zip(leveled.steps(1.0));
+        let errors = errors.map(|(error, step)| (digits * error).min(step.abs()));
+        let numbers = leveled.numbers().into_iter().zip(errors);
+        let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
+        if let Some(short) = leveled.with_numbers(judge.scene, &numbers)
+            && let Some(judged) = judge.judged(&short, middle, Some(&found.rendering))
+            && judged.cost <= most
+        {
+            return short;
+        }
+    }
+    leveled
+}

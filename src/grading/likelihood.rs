@@ -1,0 +1,179 @@
+//! How likely a picture is if a prediction of it is right.
+//!
+//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that of one sample within it and r² that of rounding to a step,
+//! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
+//! errors are taken to have Student's distribution with two degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
+//! 1989). Of two candidates that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
+//! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`).
+
+use std::collections::HashMap;
+
+use super::{
+    light::Curve,
+    prediction::{FLAT, Prediction},
+};
+
+/// Degrees of freedom of errors.
+const FREEDOM: f64 = 2.0;
+
+/// Fitting goes on for so many rounds: each leaves less than half of what is missing.
+const ROUNDS: usize = 8;
+
+/// Means are the same that differ by less, which is what rounding leaves of them.
+const SAME: f64 = 1e-9;
+
+/// How well a prediction fits.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// The logarithm of the likelihood.
+    pub likelihood: f64,
+    /// The number of independent samples in a pixel that make as much noise.
+    pub samples: Option<f64>,
+    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of its channels.
+    pub off: Vec<f64>,
+    /// The squared difference.
+    pub squares: f64,
+    /// The part of it that noise of so many samples makes.
+    pub noise: f64,
+    /// The share of a sample's variance that a pixel's error has: 1/n.
+    share: f64,
+}
+
+/// The error of a pixel, the variance of a sample in it, and that of rounding and of what is expected itself.
+struct Error {
+    difference: [f64; 3],
+    variance: [f64; 3],
+    rounding: [f64; 3],
+}
+
+impl Error {
+    fn of(prediction: &Prediction, at: usize) -> Self {
+        let variance = prediction.moments.variance[at];
+        // Nothing is known of a pixel that is empty.
+        let is_empty = prediction.seen[at][0].is_nan();
+        Self {
+            difference: prediction.difference(at),
+            variance: variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one }),
+            rounding: rounding(prediction, at),
+        }
+    }
+
+    /// The sum of the squares in standard deviations, if an error has this share of a sample's variance.
+    fn off(&self, share: f64) -> f64 {
+        let channel = |i: usize| {
+            self.difference[i] * self.difference[i] / (self.variance[i] * share + self.rounding[i])
+        };
+        (0..3).map(channel).sum()
+    }
+
+    /// The logarithm of the density, but for a number that all have.
+    fn density(&self, share: f64) -> f64 {
+        let volume: f64 = (0..3)
+            .map(|i| self.variance[i] * share + self.rounding[i])
+            .product();
+        -0.5 * libm::log(volume) - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.off(share) / FREEDOM)
+    }
+}
+
+/// The variances of rounding and of what is expected itself.
+fn rounding(prediction: &Prediction, at: usize) -> [f64; 3] {
+    let (steps, doubt) = (prediction.steps(at), prediction.moments.doubt(at));
+    [0, 1, 2].map(|i| steps[i] * steps[i] / 12.0 + doubt[i])
+}
+
+impl Prediction<'_> {
+    /// How likely what is seen is.
+    pub fn score(&self) -> Score {
+        let errors = (0..self.seen.len()).map(|at| Error::of(self, at));
+        let errors: Vec<Error> = errors.collect();
+        // 1/n, which is 1 at most.
+        let mut share: f64 = 1.0;
+        for _ in 0..ROUNDS {
+            let (mut above, mut below) = (0.0, 0.0);
+            for one in &errors {
+                let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(share));
+                for i in 0..3 {
+                    let total = one.variance[i] * share + one.rounding[i];
+                    let part = one.variance[i] / (total * total);
+                    above += part * (weight * one.difference[i] * one.difference[i] - total);
+                    below += part * one.variance[i];
+                }
+            }
+            if below > 0.0 {
+                share = (share + above / below).clamp(1e-6, 1.0);
+            }
+        }
+        // Densities are told of the picture's own light.
+        let stretch = |light: &f64| {
+            let own = Curve::Right.step(self.curve.seen(*light));
+            libm::log(own / self.curve.step(*light))
+        };
+        let mut likelihood = match self.curve {
+            Curve::Right => 0.0,
+            _ => -self.seen.iter().flatten().map(stretch).sum::<f64>(),
+        };
+        let (mut squares, mut expected) = (0.0, 0.0);
+        // Of pixels of several colours: the variances of a sample, and the squared differences beyond rounding.
+        let (mut of_samples, mut beyond) = (0.0, 0.0);
+        for one in &errors {
+            likelihood += one.density(share);
+            for i in 0..3 {
+                let square = one.difference[i] * one.difference[i];
+                squares += square;
+                expected += one.variance[i] * share + one.rounding[i];
+                if one.variance[i] > 0.0 {
+                    of_samples += one.variance[i];
+                    beyond += square - one.rounding[i];
+                }
+            }
+        }
+        // What is left of less than a sample in a hundred thousand is rounding.
+        let is_known = beyond > 1e-5 * of_samples;
+        Score {
+            likelihood,
+            samples: is_known.then(|| (of_samples / beyond).max(1.0)),
+            off: errors.iter().map(|one| one.off(share)).collect(),
+            squares,
+            noise: expected.min(squares),
+            share,
+        }
+    }
+
+    /// How much likelier a picture is by the means of another prediction than by those of this null model, of which this is the score, if errors have the
+    /// variances of the null model. A candidate with variances of its own gains by those alone where few samples happen to show one colour. An error of so many
+    /// standard deviations has the probability 1/(1 + deviations²) at most, whatever its distribution (Cantelli's inequality), and just that one if it has two
+    /// values, as one sample has.
+    ///
+    /// Pixels in which the null model has the same mean of several colours count as one: along an edge that is parallel to the pixels any sampling but a random
+    /// one errs by the same in all of them.
+    pub fn gain(&self, score: &Score, other: &Self) -> f64 {
+        let mut mixed: HashMap<[i64; 3], (f64, f64)> = HashMap::new();
+        let mut gain = 0.0;
+        for (at, light) in self.seen.iter().enumerate() {
+            let before = self.difference(at);
+            let after = match other.curve {
+                Curve::Right => other.difference(at),
+                curve => [0, 1, 2].map(|i| light[i] - curve.seen(other.moments.mean[at][i])),
+            };
+            if before == after || light[0].is_nan() {
+                continue;
+            }
+            let (variance, rounding) = (self.moments.variance[at], rounding(self, at));
+            let off = |difference: [f64; 3]| -> f64 {
+                let square = |i: usize| difference[i] * difference[i];
+                let channel = |i: usize| square(i) / (variance[i] * score.share + rounding[i]);
+                (0..3).map(channel).fold(0.0, f64::max)
+            };
+            let more = libm::log1p(off(before)) - libm::log1p(off(after));
+            if self.is_flat(at) {
+                gain += more;
+            } else {
+                let mean = self.moments.mean[at];
+                let key = mean.map(|light| (light / SAME).round() as i64);
+                let (sum, count) = mixed.entry(key).or_default();
+                (*sum, *count) = (*sum + more, *count + 1.0);
+            }
+        }
+        gain + mixed.values().map(|(sum, count)| sum / count).sum::<f64>()
+    }
+}

@@ -1,0 +1,102 @@
+//! Means and variances of what pixels show.
+
+use super::light::Curve;
+use crate::{area::Area, color::Color, exact::ExactPixel};
+
+/// What cells show.
+#[derive(Clone, Debug, Default)]
+pub struct Moments {
+    /// The mean of each, in linear light.
+    pub mean: Vec<[f64; 3]>,
+    /// The variance of one sample in it.
+    pub variance: Vec<[f64; 3]>,
+    /// The variances of the means themselves; empty if they are exact.
+    pub doubt: Vec<[f64; 3]>,
+}
+
+impl Moments {
+    /// None yet of so many cells.
+    pub fn zero(cells: usize) -> Self {
+        Self {
+            mean: vec![[0.0; 3]; cells],
+            variance: vec![[0.0; 3]; cells],
+            doubt: Vec::new(),
+        }
+    }
+
+    /// Those of exact pixels.
+    pub fn exact(pixels: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Self {
+        let (mean, variance) = pixels.unzip();
+        Self {
+            mean,
+            variance,
+            doubt: Vec::new(),
+        }
+    }
+
+    /// Replaces the exact ones of an area of a part, whose cells these are.
+    pub fn put(&mut self, part: Area, area: Area, own: &Self) {
+        for (from, (x, y)) in area.iter().enumerate() {
+            let at = part.index(x, y);
+            (self.mean[at], self.variance[at]) = (own.mean[from], own.variance[from]);
+        }
+    }
+
+    /// The same of the cells of these indices.
+    pub fn select(&self, indices: &[usize]) -> Self {
+        let select = |all: &[[f64; 3]]| match all {
+            [] => Vec::new(),
+            all => indices.iter().map(|&at| all[at]).collect(),
+        };
+        Self {
+            mean: select(&self.mean),
+            variance: select(&self.variance),
+            doubt: select(&self.doubt),
+        }
+    }
+
+    /// How far each mean may be off itself.
+    pub fn doubt(&self, at: usize) -> [f64; 3] {
+        self.doubt.get(at).copied().unwrap_or_default()
+    }
+
+    /// Makes the means less certain.
+    pub fn add_doubt(&mut self, more: &[[f64; 3]]) {
+        self.doubt.resize(self.mean.len(), [0.0; 3]);
+        for (doubt, more) in self.doubt.iter_mut().zip(more) {
+            *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
+        }
+    }
+}
+
+/// The least and the greatest of a cell and those so far around it, channel by channel, in rows of a width.
+pub fn range(values: &[[f64; 3]], width: usize, at: usize, around: usize) -> [[f64; 3]; 2] {
+    let (x, y) = (at % width, at / width);
+    let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for y in y.saturating_sub(around)..(y + around + 1).min(values.len() / width) {
+        let row = &values[y * width..][..width];
+        for one in &row[x.saturating_sub(around)..(x + around + 1).min(width)] {
+            for i in 0..3 {
+                (least[i], most[i]) = (least[i].min(one[i]), most[i].max(one[i]));
+            }
+        }
+    }
+    [least, most]
+}
+
+/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel, decoded by a curve, and its square.
+pub fn numbers(averaged: Curve) -> impl Fn(Color) -> [f64; 6] {
+    move |color| {
+        let [r, g, b] = color.to_linear().map(|light| averaged.light(light));
+        [r, g, b, r * r, g * g, b * b]
+    }
+}
+
+/// The mean and the variance of an exact pixel.
+pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
+    let [r, g, b, rr, gg, bb] = pixel.mean;
+    let doubt = pixel.bound * pixel.bound;
+    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
+    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
+    ([r, g, b], variances)
+}

@@ -1,0 +1,107 @@
+//! What is wrong in a picture for certain, however it was sampled, and what can be seen.
+
+use super::{moments::range, prediction::Prediction};
+
+/// How much a difference may be, in standard deviations, where that is known of what is random in it: of a million normal errors one is greater.
+pub const DEVIATIONS: f64 = 5.0;
+
+/// In steps: half of one is rounding, and half of that another way to decode.
+pub const WRONG: f64 = 0.75;
+
+/// The pixels that no sampling of a candidate explains.
+#[derive(Debug, Default)]
+pub struct Strays {
+    /// The pixels of one colour that show another, by more than an edge brings into them that is half a pixel off.
+    pub pixels: Vec<usize>,
+    /// The pixels of several colours, their squared difference, and that which is expected of one sample in each.
+    edges: Vec<(usize, f64, f64)>,
+}
+
+impl Strays {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.are_empty(1, |_| Some(0)) == [true]
+    }
+
+    /// Whether there are none in each of some groups of pixels.
+    pub fn are_empty(&self, groups: usize, group: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
+        let mut is_right = vec![true; groups];
+        for group in self.pixels.iter().filter_map(|at| group(*at)) {
+            is_right[group] = false;
+        }
+        let mut sums = vec![(0.0, 0.0); groups];
+        for (at, square, variance) in &self.edges {
+            if let Some(group) = group(*at) {
+                let (squares, expected) = &mut sums[group];
+                (*squares, *expected) = (*squares + square, *expected + variance);
+            }
+        }
+        // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be no more than three times the sum, and its variance no more
+        // than that.
+        let is_noise = |(squares, expected): (f64, f64)| {
+            squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
+        };
+        let pairs = is_right.into_iter().zip(sums);
+        pairs
+            .map(|(is_right, sums)| is_right && is_noise(sums))
+            .collect()
+    }
+}
+
+impl Prediction<'_> {
+    /// What is wrong for certain.
+    pub fn strays(&self) -> Strays {
+        let mut strays = Strays::default();
+        for at in 0..self.seen.len() {
+            let (difference, allowed) = (self.difference(at), self.allowed(at));
+            if self.is_flat(at) {
+                let beyond = |i: usize| difference[i].abs() - allowed[i];
+                if (0..3).any(|i| beyond(i) > 0.0) {
+                    let reach = self.reach(at);
+                    if (0..3).any(|i| beyond(i) > reach[i]) {
+                        strays.pixels.push(at);
+                    }
+                }
+            } else {
+                let square = |i: usize| difference[i] * difference[i] - allowed[i] * allowed[i];
+                let squares = (0..3).map(|i| square(i).max(0.0)).sum();
+                let expected = self.moments.variance[at].iter().sum();
+                strays.edges.push((at, squares, expected));
+            }
+        }
+        strays
+    }
+
+    /// Whether this and another prediction differ by something that can be seen, where a pixel shows so many samples: in a pixel by more than edges that move by
+    /// half a pixel. A few samples move them themselves: a regular grid of n by up to half of 1/√n, so that a pixel with a corner changes by up to three quarters
+    /// with one.
+    pub fn is_seen_beside(&self, other: &Self, samples: f64) -> bool {
+        let more = 1.0 + 0.5 / samples.sqrt();
+        (0..self.seen.len()).any(|at| {
+            let both = [self, other];
+            if both[0].moments.mean[at] == both[1].moments.mean[at] && self.curve == other.curve {
+                return false;
+            }
+            let shown = both.map(|one| one.moments.mean[at].map(|light| one.curve.seen(light)));
+            let reaches = both.map(|one| {
+                let (reach, allowed) = (one.reach(at), one.allowed(at));
+                [0, 1, 2].map(|i| more * reach[i] + allowed[i])
+            });
+            (0..3).any(|i| (shown[0][i] - shown[1][i]).abs() > reaches[0][i].max(reaches[1][i]))
+        })
+    }
+
+    /// How much the light of a pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a
+    /// sample in one of them, which half of each of two colours make half of their difference.
+    fn reach(&self, at: usize) -> [f64; 3] {
+        let [least, most] = range(&self.moments.mean, self.width, at, 1);
+        let [_, variance] = range(&self.moments.variance, self.width, at, 1);
+        [0, 1, 2].map(|i| f64::max((most[i] - least[i]) / 2.0, variance[i].sqrt()))
+    }
+
+    /// What a pixel may differ by for its rounding and for what is not known of it.
+    fn allowed(&self, at: usize) -> [f64; 3] {
+        let (steps, doubt) = (self.steps(at), self.moments.doubt(at));
+        [0, 1, 2].map(|i| WRONG * steps[i] + DEVIATIONS * doubt[i].sqrt())
+    }
+}

@@ -1,0 +1,85 @@
+//! How a mistake is told: a word for programs, what it is, with its numbers, and the way out.
+
+use super::{candidate::Mistake, parameters::Owner};
+use crate::{
+    color::{Color, linear_to_srgb},
+    numbers::{short, significant},
+    scene::Scene,
+};
+
+impl Mistake {
+    /// A word for programs.
+    pub fn id(&self) -> &'static str {
+        match self {
+            Self::Row(row, _) => row.id,
+            Self::Numbers(parameter, _) => match parameter.fields[..] {
+                [field] => field,
+                _ => "eye_and_lookat",
+            },
+            Self::Patch(..) => "object_extra",
+        }
+    }
+
+    /// The way out.
+    pub fn help(&self, scene: &Scene) -> String {
+        match self {
+            Self::Row(row, _) => row.help.to_owned(),
+            Self::Numbers(parameter, _) => match parameter.arguments(scene).join(" and ") {
+                none if none.is_empty() => "compare it with the scene".to_owned(),
+                set => format!("the scene says {set}"),
+            },
+            Self::Patch(..) => "the scene has nothing of the kind there".to_owned(),
+        }
+    }
+
+    /// What it is.
+    pub fn message(&self, scene: &Scene) -> String {
+        let (parameter, numbers) = match self {
+            Self::Row(row, None) => return row.message.to_owned(),
+            Self::Row(row, Some(object)) => {
+                return format!("{} {}", Owner::Object(*object).name(scene), row.message);
+            }
+            Self::Patch(light, [least, most]) => {
+                let color = Color {
+                    srgb: light.map(|light| 255.0 * linear_to_srgb(light)),
+                };
+                let [x, y] = [0, 1].map(|i| (least[i] + most[i]) / 2.0);
+                return format!(
+                    "there is something too many, of the colour {color}, around the pixel ({x:.0}, {y:.0})"
+                );
+            }
+            Self::Numbers(parameter, numbers) => (parameter, numbers),
+        };
+        let name = parameter.owner.name(scene);
+        let (before, after) = (parameter.numbers(scene), parameter.put(scene, numbers));
+        let is = after.map_or_else(Vec::new, |after| parameter.values(&after));
+        let ([field], [is], [should]) =
+            (&parameter.fields[..], &is[..], &parameter.values(scene)[..])
+        else {
+            let places: Vec<_> = is.iter().map(ToString::to_string).collect();
+            return format!(
+                "{name} stands and looks elsewhere: at {}",
+                places.join(" towards ")
+            );
+        };
+        let kind = match *field {
+            "color" | "colors" | "background" => "wrong colour",
+            "center" | "centroid" => {
+                let by = numbers[1] - before[1];
+                let is_same = [0, 2].iter().all(|&i| numbers[i] == before[i]);
+                if is_same && by != 0.0 {
+                    let way = if by > 0.0 { "high" } else { "low" };
+                    return format!("{name} is {} too {way}", short(significant(by.abs(), 3)));
+                }
+                "wrong place"
+            }
+            "radius" | "size" | "sides" | "square" => "wrong size",
+            _ => "wrong value",
+        };
+        let verb = match *field {
+            "sides" | "colors" => "are",
+            _ => "is",
+        };
+        format!("{name} has a {kind}: its {field} {verb} {is} instead of {should}")
+    }
+}

@@ -1,0 +1,95 @@
+//! A picture by which grading is judged, told by its title: the scene, the size, how many samples a pixel has and where they lie, and the mistakes. 256 samples
+//! stand for the exact mean.
+
+use image::RgbImage;
+use serde_json::Value;
+
+use super::{
+    mistakes::{
+        Mistake, OF_THE_BOARD, OF_THE_CAMERA, OF_THE_OBJECTS, OF_THE_PICTURE, OTHERS, scene,
+    },
+    textbook::{Program, SAMPLINGS},
+};
+
+/// A picture, and what is wrong with it.
+pub struct Case {
+    pub title: String,
+    /// The right program, and its scene's text.
+    right: Program,
+    pub text: String,
+    pub mistakes: Vec<&'static Mistake>,
+}
+
+impl Case {
+    /// The one that has a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or `street 96x64 1 Random: right`.
+    pub fn of(title: &str) -> Self {
+        let (picture, names) = title.split_once(": ").unwrap();
+        let [name, size, samples, sampling] = picture.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{title}: a scene, a size, samples and where they lie")
+        };
+        let (width, height) = size.split_once('x').unwrap();
+        let (mut right, text) = scene(name);
+        right.size = [width, height].map(|side| side.parse().unwrap());
+        right.samples = samples.parse().unwrap();
+        let mut samplings = SAMPLINGS.into_iter();
+        let found = samplings.find(|one| format!("{one:?}") == sampling);
+        right.sampling = found.unwrap();
+        let groups = [
+            OF_THE_PICTURE,
+            OF_THE_CAMERA,
+            OF_THE_BOARD,
+            OF_THE_OBJECTS,
+            OTHERS,
+        ];
+        let named = |name: &str| {
+            let found = groups
+                .iter()
+                .copied()
+                .flatten()
+                .find(|one| one.title() == name);
+            found.unwrap_or_else(|| panic!("{title}: {name} is no mistake"))
+        };
+        let names = names.split(" + ").filter(|name| *name != "right");
+        Self {
+            title: title.to_owned(),
+            right,
+            text: text.replace("WIDTH", width).replace("HEIGHT", height),
+            mistakes: names.map(named).collect(),
+        }
+    }
+
+    /// The picture.
+    pub fn picture(&self) -> RgbImage {
+        let mut program = self.right.clone();
+        self.mistakes
+            .iter()
+            .for_each(|one| (one.make)(&mut program));
+        program.render()
+    }
+
+    /// Whether an answer of `diff --format json` names all mistakes and no others.
+    pub fn is_told(&self, answer: &Value) -> bool {
+        let said = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
+        match self.mistakes.is_empty() {
+            true => answer["verdict"] == "right" || answer["verdict"] == "noise",
+            false => {
+                let mut mistakes = self.mistakes.iter();
+                said.len() == self.mistakes.len() && mistakes.all(|one| is_said(one, said))
+            }
+        }
+    }
+}
+
+/// Whether a mistake is among those that were said.
+fn is_said(mistake: &Mistake, said: &[Value]) -> bool {
+    mistake.name.split('|').any(|name| {
+        let (id, words) = name.split_once(' ').unwrap_or((name, ""));
+        said.iter().any(|said| {
+            let sets = said["set"].as_array().map_or(&[][..], Vec::as_slice);
+            let mut targets = sets.iter().filter_map(|set| set.as_str()?.split_once('='));
+            let message = said["message"].as_str().unwrap_or_default();
+            targets.any(|(target, _)| target == name)
+                || (said["id"] == id && message.contains(words))
+        })
+    })
+}
