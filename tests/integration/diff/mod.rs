@@ -229,8 +229,11 @@ fn what_cannot_be_compared_is_trouble() {
     folder.write("empty.EXR", "");
     folder.write("bad.scn", "sphere {}");
     folder.write("a.jpg", [0xff, 0xd8, 0xff, 0xe0, 0, 1]);
-    let nan = |_, _| (0.0_f32, f32::NAN, 0.0_f32);
-    exr::prelude::write_rgb_file(folder.path("nan.exr"), 2, 2, nan).unwrap();
+    let mut nan = include_bytes!("../../film/half_green.exr").to_vec();
+    let halves = [0, 0x38, 0, 0x38];
+    let green = nan.windows(4).position(|bytes| *bytes == halves).unwrap();
+    nan[green + 1] = 0x7e;
+    folder.write("nan.exr", nan);
     compare(
         &folder,
         "

@@ -5,9 +5,8 @@ mod command;
 mod mistakes;
 mod textbook;
 
-use std::{io::Cursor, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
-use image::ImageFormat;
 use pinhole::{
     area::Area,
     film,
@@ -16,11 +15,15 @@ use pinhole::{
     scene,
     source::{Source, Sources},
 };
+use png::{BitDepth, ColorType};
 use rayon::prelude::*;
 use serde_json::Value;
 
 use self::case::Case;
-use crate::effort::{Effort, sampled_and_exhaustive};
+use crate::{
+    effort::{Effort, sampled_and_exhaustive},
+    images,
+};
 
 /// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a class makes.
 const PICTURES: &str = include_str!("pictures.txt");
@@ -41,10 +44,10 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
 
 /// What is said of a picture that is judged otherwise than right.
 fn wrongly_judged(case: &Case) -> Option<String> {
-    let mut file = Cursor::new(Vec::new());
     let picture = case.picture();
-    picture.write_to(&mut file, ImageFormat::Png).unwrap();
-    let answer = answer(&case.text, &[], file.get_ref());
+    let size = picture.dimensions().into();
+    let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
+    let answer = answer(&case.text, &[], &file);
     if !case.is_told(&answer) {
         return Some(format!("{}: {}", case.title, answer["line"]));
     }
@@ -59,7 +62,7 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     if sets.is_empty() || sets.iter().any(Vec::is_empty) {
         return None;
     }
-    let told = self::answer(&case.text, &sets.concat(), file.get_ref());
+    let told = self::answer(&case.text, &sets.concat(), &file);
     let is_right = told["verdict"] == "right" || told["verdict"] == "noise";
     (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
