@@ -1,4 +1,4 @@
-//! How many threads there are: for a render, and for what is done in parallel without being asked, which is to prepare many objects.
+//! How many threads work is done on, and whether they are started for it: what is a part of other work is done on the threads of that.
 
 use std::{
     num::NonZero,

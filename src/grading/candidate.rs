@@ -9,7 +9,7 @@ use super::{
     parameters::Parameter,
     textbook::Behaviour,
 };
-use crate::scene::Scene;
+use crate::scene::{Part, Scene};
 
 /// A mistake of a program.
 #[derive(Clone, Debug)]
@@ -79,18 +79,21 @@ impl Candidate {
         }
     }
 
-    /// The same with one more mistake; none if that cannot be, or changes nothing.
+    /// The same with one more mistake; none if that cannot be, or if it is a row that changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
             Mistake::Row(row, object) => {
                 (row.change)(&mut candidate, object.unwrap_or_default());
+                let camera = Part::Camera(candidate.scene.camera);
+                let shape = object.map(|object| Part::Shape(candidate.scene.objects[object].shape));
+                let is_possible = camera.is_possible() && shape.is_none_or(|it| it.is_possible());
                 let is_same = candidate.traces_as(self)
                     && candidate.behaviour == self.behaviour
                     && candidate.curve == self.curve
                     && candidate.layout == self.layout
                     && candidate.looks.len() == self.looks.len();
-                (!is_same).then_some(())?;
+                (is_possible && !is_same).then_some(())?;
             }
             Mistake::Numbers(parameter, numbers) => {
                 candidate.scene = parameter.put(&candidate.scene, numbers)?

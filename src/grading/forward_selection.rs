@@ -29,13 +29,13 @@ const FINALISTS: usize = 3;
 const ROUNDS: usize = 4;
 
 /// By how much of a cell numbers are varied on the middle grid.
-const STEP: f64 = 0.25;
+const CELL_STEP: f64 = 0.25;
 
 /// So many objects are looked at, those around which most is wrong.
 const SUSPECTS: usize = 12;
 
 /// A sample in the middle of a pixel makes as little noise as two random ones; more than this come of several.
-const ONE: f64 = 3.0;
+const MOST_TAKEN_FOR_ONE: f64 = 3.0;
 
 /// The mistakes that explain a picture, from what a program without mistakes would have made.
 pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
@@ -85,7 +85,8 @@ fn with_edges(judge: &Judge, candidate: &Candidate, samples: Option<f64>) -> Opt
     // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
     let may =
         candidate.looks.is_empty() && candidate.curve == Curve::Right && judge.fine.jpeg.is_none();
-    let is_one = (samples.or(null.score.samples)).is_some_and(|samples| samples < ONE);
+    let is_one =
+        (samples.or(null.score.samples)).is_some_and(|samples| samples < MOST_TAKEN_FOR_ONE);
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges => may && !is_one,
@@ -184,7 +185,7 @@ fn refined(judge: &Judge, found: Judged) -> Option<Judged> {
         candidate,
         free,
         (middle, &found.rendering),
-        STEP,
+        CELL_STEP,
         [0, ROUNDS],
     )?;
     judge.judged(&fitted, middle, Some(&found.rendering))
@@ -248,8 +249,13 @@ fn shortened(judge: &Judge, found: &Judged) -> Candidate {
     let Some(leveled) = leveled.filter(|_| free > 0) else {
         return candidate.clone();
     };
-    let Some((_, fitted)) = judge.fit(&leveled, free, (middle, &found.rendering), STEP, [0, 1])
-    else {
+    let Some((_, fitted)) = judge.fit(
+        &leveled,
+        free,
+        (middle, &found.rendering),
+        CELL_STEP,
+        [0, 1],
+    ) else {
         return leveled;
     };
     // A number that is short was not fitted: it may cost what that costs.

@@ -93,7 +93,9 @@ impl Grid {
             let focal = focal(&camera, &image);
             [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
             camera.lens = Lens::Distance(1.0);
-            camera.view_height = f64::from(image.height * self.factor) / focal;
+            // Within the range of numbers, however long or short the lens is.
+            let view_height = f64::from(image.height * self.factor) / focal;
+            camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }
         (camera, image)
     }

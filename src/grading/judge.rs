@@ -91,7 +91,7 @@ impl<'a> Judge<'a> {
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
-            edges: level(middle(part), u32::MAX, None),
+            edges: level(central(part), u32::MAX, None),
             last: RefCell::default(),
             work: Work::new(part.pixels(), reference.work, cancel),
             cancel,
@@ -228,7 +228,9 @@ impl<'a> Judge<'a> {
             let strays = self.strays(candidate, level, like);
             strays.is_some_and(|strays| strays.is_empty())
         };
-        let is_exact = candidate.behaviour == Behaviour::RIGHT && self.fine.jpeg.is_none();
+        let is_exact = candidate.behaviour == Behaviour::RIGHT
+            && !candidate.layout.is_shifted()
+            && self.fine.jpeg.is_none();
         (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
     }
 
@@ -277,7 +279,7 @@ pub fn price(level: &Level, fitted: usize) -> f64 {
 }
 
 /// The middle of a part of a picture, of its proportions and of so many pixels at most.
-fn middle(part: Area) -> Area {
+fn central(part: Area) -> Area {
     let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64)
         .sqrt()
         .min(1.0);

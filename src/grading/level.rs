@@ -1,4 +1,4 @@
-//! A picture and candidates on a grid: what it shows in the cells, and what candidates do.
+//! The picture that is judged, at one resolution: what it shows in the cells of a grid, and what candidates should show there.
 
 use std::{
     cell::{OnceCell, RefCell},

@@ -6,7 +6,7 @@
 //! 1989). Of two candidates that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
 //! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`).
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::{
     light::Curve,
@@ -147,7 +147,7 @@ impl Prediction<'_> {
     /// Pixels in which the null model has the same mean of several colours count as one: along an edge that is parallel to the pixels any sampling but a random
     /// one errs by the same in all of them.
     pub fn gain(&self, score: &Score, other: &Self) -> f64 {
-        let mut mixed: HashMap<[i64; 3], (f64, f64)> = HashMap::new();
+        let mut mixed: BTreeMap<[i64; 3], (f64, f64)> = BTreeMap::new();
         let mut gain = 0.0;
         for (at, light) in self.seen.iter().enumerate() {
             let before = self.difference(at);

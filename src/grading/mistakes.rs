@@ -37,7 +37,7 @@ pub enum Shows {
     InAreas,
     /// Where colours meet, and nowhere else: it moves nothing by a pixel.
     AtEdges,
-    /// In both.
+    /// In both: so little that it is told by edges, or where it explains what is left.
     Everywhere,
 }
 

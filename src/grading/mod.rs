@@ -210,8 +210,12 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 /// The verdict on a picture with mistakes.
 fn wrong(judge: &Judge, found: &Judged) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // The squared difference on the same grid for all, less what noise leaves of it in the end.
-    let judged = |candidate: &Candidate| judge.judged(candidate, &judge.middle, None);
+    // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
+    let level = match last.layout.is_shifted() {
+        true => &judge.edges,
+        false => &judge.middle,
+    };
+    let judged = |candidate: &Candidate| judge.judged(candidate, level, None);
     let noise = judged(last).map_or(0.0, |last| last.score.noise);
     let beyond = |candidate: &Candidate| {
         judged(candidate).map_or(0.0, |found| (found.score.squares - noise).max(0.0))

@@ -84,7 +84,10 @@ impl Prediction<'_> {
                         // Its border is mixed with what is beside it.
                         let rows = [at.checked_sub(width), Some(at), Some(at + width)];
                         let cells = rows.into_iter().flatten();
-                        let cells = cells.flat_map(|at| at.saturating_sub(1)..at + 2);
+                        let cells = cells.flat_map(|at| {
+                            let column = at % width;
+                            at - column.min(1)..=at + usize::from(column + 1 < width)
+                        });
                         for at in cells.filter(|&at| at < seen.len()) {
                             (mean[at], variance[at]) = (seen[at], [0.0; 3]);
                         }
@@ -115,8 +118,9 @@ impl Prediction<'_> {
         }
         let is_flat = self.is_flat(at);
         let steps = self.steps(at);
+        let encoded = |light| linear_to_srgb(self.curve.seen(light));
         [0, 1, 2].map(|i| {
-            let by = (linear_to_srgb(seen[i]) - linear_to_srgb(mean[i])) / STEP;
+            let by = (encoded(seen[i]) - encoded(mean[i])) / STEP;
             // A colour alone is cut off or not, by the last bit of its number; mixtures lose half a step.
             let expected = match is_flat {
                 true => by.clamp(2.0 * CUT_OFF, 0.0),

@@ -3,7 +3,7 @@
 //! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not depend on the rectangle that is asked for, and
 //! no clock is needed, which a web worker's Rust does not have. A frame that is not wanted any more is dropped between two slices.
 
-use std::{collections::HashMap, vec};
+use std::collections::HashMap;
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use lsp_server::RequestId;
@@ -46,8 +46,10 @@ struct Frame {
     sampling: Sampling,
     /// Takes no memory until there are pixels in it.
     film: Film<[u8; 3]>,
-    /// What is left to be made.
-    slices: vec::IntoIter<Area>,
+    /// The side of a slice.
+    side: u32,
+    /// How many slices are made, row by row.
+    made: u32,
 }
 
 impl Frames {
@@ -145,8 +147,6 @@ impl Frame {
             );
             return Err(Refusal::failed(message));
         }
-        // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
-        let slices: Vec<Area> = whole.tiles(1 << ((SLICE / work).ilog2() / 2)).collect();
         Ok(Self {
             id,
             uri,
@@ -154,19 +154,35 @@ impl Frame {
             samples,
             sampling,
             film: Film::new(width, height).map_err(Refusal::failed)?,
-            slices: slices.into_iter(),
+            // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
+            side: 1 << ((SLICE / work).ilog2() / 2),
+            made: 0,
+        })
+    }
+
+    /// What is to be made next; nothing if nothing is left.
+    fn slice(&self) -> Option<Area> {
+        let (width, height, side) = (self.film.width(), self.film.height(), self.side);
+        let columns = width.div_ceil(side);
+        let (x, y) = (self.made % columns * side, self.made / columns * side);
+        (y < height).then(|| Area {
+            x,
+            y,
+            width: side.min(width - x),
+            height: side.min(height - y),
         })
     }
 
     /// Makes the next slice. Returns the answer if none is left.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
-        if let Some(part) = self.slices.next() {
+        if let Some(part) = self.slice() {
             let (_, world) = version.world(self.scale);
             let made = render_as_asked(world, &self.sampling, part, &Control::default());
             let made = made.map_err(Refusal::failed)?;
             self.film.put(part, made.film().pixels());
+            self.made += 1;
         }
-        if self.slices.len() > 0 {
+        if self.slice().is_some() {
             return Ok(None);
         }
         let mut png = Vec::new();

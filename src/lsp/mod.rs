@@ -18,3 +18,4 @@ mod text_requests;
 
 pub use params::{Answer, Refusal, response};
 pub use server::Server;
+pub(crate) use server::unharmed;

@@ -158,7 +158,8 @@ impl Server {
             let params = &request.params;
             match (version, about) {
                 (Some(version), "frame") => {
-                    match self.frames.push(id.clone(), uri, params, version) {
+                    let push = || self.frames.push(id.clone(), uri, params, version);
+                    match unharmed(push) {
                         Ok(superseded) => said.extend(superseded.into_iter().map(cancelled)),
                         Err(refusal) => said.push(response(id, Err(refusal))),
                     }
@@ -334,7 +335,7 @@ fn uri(request: &Request) -> Option<Uri> {
 }
 
 /// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.
-fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+pub(crate) fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))

@@ -37,6 +37,13 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T> Latest<T> {
+    /// The next value, if there is one.
+    pub fn try_take(&self) -> Option<T> {
+        let mut state = self.lock();
+        self.stale.store(state.is_over, Ordering::SeqCst);
+        state.next.take()
+    }
+
     /// Waits for the next value; `None` means that there will be no more.
     pub fn take(&self) -> Option<T> {
         self.take_while(Duration::MAX, || {})

@@ -7,7 +7,7 @@ use std::{
     io,
     net::TcpStream,
     sync::{
-        Arc, Mutex,
+        Arc, Mutex, TryLockError,
         atomic::{AtomicBool, Ordering},
     },
     thread::{self, JoinHandle},
@@ -17,7 +17,7 @@ use std::{
 use lsp_server::{Message, Notification, Request};
 use serde_json::{Value, json};
 use tungstenite::{
-    Error, Message as Frame, Utf8Bytes, WebSocket,
+    Error, Message as SocketMessage, Utf8Bytes, WebSocket,
     protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
 };
 
@@ -90,11 +90,13 @@ impl Conversation<'_> {
                 self.say(vec![answer])?;
             }
             match self.read() {
-                Ok(Some(Frame::Text(text))) => self.hear(&text)?,
-                Ok(Some(Frame::Binary(_))) => return self.close(CloseCode::Unsupported),
-                Ok(Some(Frame::Close(_))) => break,
+                Ok(Some(SocketMessage::Text(text))) => self.hear(&text)?,
+                Ok(Some(SocketMessage::Binary(_))) => return self.close(CloseCode::Unsupported),
+                Ok(Some(SocketMessage::Close(_))) => break,
                 // The socket answers pings by itself.
-                Ok(Some(Frame::Ping(_) | Frame::Pong(_) | Frame::Frame(_))) => {}
+                Ok(Some(
+                    SocketMessage::Ping(_) | SocketMessage::Pong(_) | SocketMessage::Frame(_),
+                )) => {}
                 Ok(None) => {
                     let messages = self.server.advance();
                     self.say(messages)?;
@@ -109,7 +111,7 @@ impl Conversation<'_> {
     }
 
     /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for.
-    fn read(&mut self) -> Result<Option<Frame>, Error> {
+    fn read(&mut self) -> Result<Option<SocketMessage>, Error> {
         self.socket
             .get_ref()
             .set_nonblocking(self.server.is_busy())?;
@@ -133,12 +135,16 @@ impl Conversation<'_> {
 
     fn say(&mut self, messages: Vec<Message>) -> Result<(), Error> {
         let mut texts = messages.iter().map(messages::written);
-        texts.try_for_each(|text| self.socket.send(Frame::text(text)))
+        texts.try_for_each(|text| self.socket.send(SocketMessage::text(text)))
     }
 
-    /// Tells the page about the file, if it is another than the page knows.
+    /// Tells the page about the file, if it is another than the page knows; a little later, while another page has it.
     fn tell_file(&mut self) -> Result<(), Error> {
-        let mut file = lock(self.file);
+        let mut file = match self.file.try_lock() {
+            Ok(file) => file,
+            Err(TryLockError::Poisoned(file)) => file.into_inner(),
+            Err(TryLockError::WouldBlock) => return Ok(()),
+        };
         let version = file.look();
         if version == self.known {
             return Ok(());
@@ -172,7 +178,7 @@ impl Conversation<'_> {
                 self.say(messages)
             }
             Err(Malformed::Answered(response)) => {
-                self.socket.send(Frame::text(response.to_string()))
+                self.socket.send(SocketMessage::text(response.to_string()))
             }
             Err(Malformed::Unanswered(_)) => Ok(()),
         }

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::{
     area::Area,
     film::{self, Film, Recipe},
-    lsp::{Answer, Refusal, response},
+    lsp::{Answer, Refusal, response, unharmed},
     render::{self, Control, RenderError},
     sampling::Sampling,
     scene::{self, Scene},
@@ -32,7 +32,7 @@ pub fn is_asked_for(request: &Request) -> bool {
 /// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
 pub fn answer(request: Request, cancel: &AtomicBool) -> Message {
     let Request { id, method, params } = request;
-    response(id, file(&method, &params, cancel))
+    response(id, unharmed(|| file(&method, &params, cancel)))
 }
 
 fn file(method: &str, params: &Value, cancel: &AtomicBool) -> Answer {

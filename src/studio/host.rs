@@ -15,11 +15,11 @@ use super::{
     scene_file::{SceneFile, lock},
 };
 
-/// So many connections are served at once: a page has one, and while it loads one for each of its three files. Each has a thread, and nobody has so many pages.
-const MOST: usize = 64;
+/// So many connections are served at once: a page has one, and while it loads one for each of its three files. Each has a thread, and a page threads for its pictures; nobody has so many pages.
+const MOST_CONNECTIONS: usize = 64;
 
 /// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at once, unless it is stopped.
-const PATIENCE: Duration = Duration::from_secs(10);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// How long it waits until it tries again to accept a connection: less than anybody notices.
 const RETRY: Duration = Duration::from_millis(20);
@@ -65,14 +65,14 @@ impl Host {
             .name("studio".to_owned())
             .spawn(move || accepting.accept())?;
         wait();
-        // Whoever would save something waits from now on, until the process ends.
+        // Whoever would save something waits from now on until the process ends, and nobody looks at the file.
         mem::forget(lock(&host.file));
         Ok(())
     }
 
     fn accept(self: Arc<Self>) {
         // Who has the host: whoever waits for the end, this loop, and each connection.
-        let most = MOST + 2;
+        let most = MOST_CONNECTIONS + 2;
         loop {
             let Ok((stream, _)) = self.listener.accept() else {
                 // As when no more files can be open: somebody will close one, and until then this loop must not keep a processor busy.
@@ -93,7 +93,7 @@ impl Host {
     /// Serves one connection.
     fn answer(&self, mut stream: TcpStream, is_full: bool) -> io::Result<()> {
         stream.set_nodelay(true)?;
-        stream.set_write_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
         if is_full {
             let refused = Response::text("503 Service Unavailable", "There are too many pages.");
             return refused.end(stream);

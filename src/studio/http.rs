@@ -13,7 +13,7 @@ const LONGEST_HEAD: usize = 16 << 10;
 const MOST_HEADERS: usize = 64;
 
 /// and comes within this time. On one machine it comes at once; browsers also open connections that they may need later, and these shall not be kept for long.
-const PATIENCE: Duration = Duration::from_secs(5);
+const HEAD_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// So long a connection is kept after the response, for the other end to take it: more than a machine needs for it.
 const FAREWELL: Duration = Duration::from_millis(200);
@@ -33,7 +33,7 @@ pub struct Request {
 impl Request {
     /// Reads a request's head; none where there is no right one in time.
     pub fn read(stream: &mut TcpStream) -> Option<Self> {
-        let end = Instant::now() + PATIENCE;
+        let end = Instant::now() + HEAD_TIMEOUT;
         let mut head = Vec::new();
         let mut piece = [0; 4096];
         loop {

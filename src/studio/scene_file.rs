@@ -3,10 +3,7 @@
 use std::{
     fs, io,
     path::{Path, PathBuf},
-    sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
 use crate::{
@@ -106,7 +103,7 @@ impl SceneFile {
     /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
     pub fn look(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
-            && watch.stale().swap(false, Ordering::SeqCst)
+            && watch.try_take().is_some()
         {
             let found = self.found(path);
             self.hold(found);

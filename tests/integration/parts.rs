@@ -8,7 +8,7 @@ use pinhole::{scene, source::SourceId, syntax};
 
 use crate::{
     format::all_scenes,
-    scenes::{example_text, sources},
+    scenes::sources,
     table::{lines, list},
 };
 
@@ -41,14 +41,6 @@ fn every_scene() {
     let in_parts = scenes.filter(|text| check(text, 1, &[])).count();
     // Those of the examples alone; the others are there for their mistakes.
     assert!(in_parts >= 20, "{in_parts}");
-}
-
-#[test]
-fn beginnings_of_a_scene_of_everything() {
-    let text = example_text("language_tour");
-    for (end, _) in text.char_indices().step_by(7) {
-        check(&text[..end], 1, &[]);
-    }
 }
 
 /// What is one mistake at a brace, or two across a part's end.

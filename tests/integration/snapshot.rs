@@ -26,7 +26,9 @@ pub fn assert_file(path: &Path, content: &str) {
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    for name in names(&folder) {
+    let names = names(&folder);
+    assert!(!names.is_empty(), "{}", folder.display());
+    for name in names {
         let path = folder.join(name);
         let mut real = String::new();
         let text = fs::read_to_string(&path).expect("a text");

@@ -115,9 +115,6 @@ async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);
   const decoder = new ImageDecoder({ ...how, data });
-  const { image } = await decoder.decode();
-  const bitmap = await createImageBitmap(image);
-  image.close();
-  decoder.close();
-  return bitmap;
+  const { image } = await decoder.decode().finally(() => decoder.close());
+  return createImageBitmap(image).finally(() => image.close());
 }

@@ -1,5 +1,5 @@
 //! The command line as one types it: `tests/cli` has what a shell is told, `$`, and below it what comes of it: what is printed, `<`, what is told
-//! to people, `!`, and the status if it is not 0, `=`. A transcript has a folder of its own, with the scene in `a.scn`. `#` begins a remark.
+//! to people, `!`, and the status if it is not 0, `=`. A last line that does not end has a `\` behind it. A transcript has a folder of its own, with the scene in `a.scn`. `#` begins a remark.
 //!
 //! `PINHOLE_BLESS=1 cargo test` writes what comes of it anew.
 
@@ -20,10 +20,15 @@ fn held(transcript: &str) -> String {
             continue;
         };
         let said = folder.shell(command);
-        for (sign, text) in [('<', said.text()), ('!', &said.errors)] {
-            let lines = text
-                .lines()
-                .map(|line| format!("{sign} {line}").trim_end().to_owned() + "\n");
+        for (sign, text) in [("<", said.text()), ("!", &said.errors)] {
+            let lines = text.split_inclusive('\n').map(|line| {
+                let marked = match line.strip_suffix('\n') {
+                    Some("") => sign.to_owned(),
+                    Some(line) => format!("{sign} {line}"),
+                    None => format!("{sign} {line}\\"),
+                };
+                marked + "\n"
+            });
             real.extend(lines);
         }
         if said.status != 0 {
@@ -42,8 +47,10 @@ fn commands_do_what_stands_there() {
         "full_disk.txt" => cfg!(target_os = "linux"),
         _ => true,
     };
+    let names = names(&folder);
+    assert!(!names.is_empty());
     thread::scope(|scope| {
-        for name in names(&folder).into_iter().filter(is_there) {
+        for name in names.into_iter().filter(is_there) {
             let path = folder.join(name);
             scope.spawn(move || {
                 let transcript = fs::read_to_string(&path).expect("a transcript");
