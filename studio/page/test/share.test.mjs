@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { andFinished, FIGURE, host, launch, link, open, rendered, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, finished, host, launch, link, open, rendered, text, type } from "./helpers.mjs";
 
 test("a link holds the scene, and asks nobody else", async t => {
   const browser = await launch(t);
@@ -45,6 +45,7 @@ test("a damaged link is told", async t => {
   await page.goto("about:blank");
   await page.goto(`${new URL(started.address).origin}/#scene=!!`);
   await page.waitForFunction(() => /damaged/.test(document.querySelector("#said").textContent));
+  await finished(page);
   assert.equal(await text(page), FIGURE);
 });
 
