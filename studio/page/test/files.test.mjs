@@ -5,10 +5,21 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, host, launch, open, pixels, rendered, serve, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, host, launch, open, pixels, rendered, serve, text, type } from "./helpers.mjs";
 
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
+
+test("a browser without a decoder of its own shows the same picture", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await page.addInitScript(() => delete window.ImageDecoder);
+  await page.reload();
+  await finished(page);
+  await comparing(page);
+  assert.equal(await page.evaluate(() => "ImageDecoder" in window), false);
+  assert.equal(await pixels(page), await decoded(page, rendered(started.folder, FIGURE)));
+});
 
 test("saving in another editor changes the page", async t => {
   const started = await host(t);
