@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::{
     layout::Layout,
     light::{Curve, Look},
-    mistakes::Row,
     parameters::Parameter,
     textbook::Behaviour,
 };
@@ -20,6 +19,32 @@ pub enum Mistake {
     Numbers(Parameter, Vec<f64>),
     /// Something too many: pixels of a colour, in linear light, between the least and the greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
+}
+
+/// A row of the table of mistakes (`mistakes`).
+#[derive(Debug)]
+pub struct Row {
+    /// A word for programs.
+    pub id: &'static str,
+    /// Where it shows.
+    pub shows: Shows,
+    /// What it is; of one about an object, what follows its name.
+    pub message: &'static str,
+    /// The way out.
+    pub help: &'static str,
+    /// What it changes; the second argument is the object that it is about, if it is about one.
+    pub change: fn(&mut Candidate, usize),
+}
+
+/// Where a mistake shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// In areas of one colour.
+    InAreas,
+    /// Where colours meet, and nowhere else: it moves nothing by a pixel.
+    AtEdges,
+    /// In both: so little that it is told by edges, or where it explains what is left.
+    Everywhere,
 }
 
 impl Mistake {

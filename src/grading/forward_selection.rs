@@ -4,10 +4,10 @@
 //! only where colours meet is judged on the pixels.
 
 use super::{
-    candidate::{Candidate, Mistake},
+    candidate::{Candidate, Mistake, Shows},
     judge::{Judge, Judged, price},
     light::Curve,
-    mistakes::{OBJECT_ROWS, ROWS, Shows},
+    mistakes::{OBJECT_ROWS, ROWS},
     numeric_mistakes::numeric_mistakes,
     objects::labels,
     parameters::Owner,

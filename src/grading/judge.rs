@@ -9,13 +9,13 @@ use std::{
 
 use super::{
     Reference,
-    candidate::{Candidate, Mistake},
+    candidate::{Candidate, Mistake, Shows},
     grid::Grid,
     jpeg::Jpeg,
     level::Level,
     levenberg_marquardt::{Fitted, absolute, fit},
     likelihood::Score,
-    mistakes::{ROWS, Shows},
+    mistakes::ROWS,
     rendering::Rendering,
     strays::Strays,
     textbook::Behaviour,

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{
-    candidate::Candidate,
+    candidate::{
+        Candidate, Row,
+        Shows::{self, AtEdges, Everywhere, InAreas},
+    },
     light::{Curve, Look},
     textbook::{Behind, Squares, Visible},
 };
@@ -14,34 +17,6 @@ use crate::{
     math::Angle,
     scene::{Lens, Shape, View},
 };
-
-/// A row.
-#[derive(Debug)]
-pub struct Row {
-    /// A word for programs.
-    pub id: &'static str,
-    /// Where it shows.
-    pub shows: Shows,
-    /// What it is; of one about an object, what follows its name.
-    pub message: &'static str,
-    /// The way out.
-    pub help: &'static str,
-    /// What it changes; the second argument is the object that it is about, if it is about one.
-    pub change: fn(&mut Candidate, usize),
-}
-
-/// Where a mistake shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shows {
-    /// In areas of one colour.
-    InAreas,
-    /// Where colours meet, and nowhere else: it moves nothing by a pixel.
-    AtEdges,
-    /// In both: so little that it is told by edges, or where it explains what is left.
-    Everywhere,
-}
-
-use Shows::{AtEdges, Everywhere, InAreas};
 
 const ENCODE: &str = "encode each channel once, before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055";
 const AVERAGE: &str = "decode a scene's colours to linear light, average there, and encode once";
