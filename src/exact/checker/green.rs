@@ -221,7 +221,11 @@ impl Edge {
             false => Double::difference(far.floor[c].floor(), near.floor[c].floor()),
         };
         let rise = if endless { 1.0 } else { far.depth - near.depth };
-        let per_line = along.over(&across);
+        // Where no line is crossed there is no next one.
+        let per_line = match lines.is_zero() {
+            true => lines,
+            false => along.over(&across),
+        };
         Some(Self {
             sign: if by_b { 1.0 } else { -1.0 },
             potential: if by_b { 1.0 } else { 0.0 },
