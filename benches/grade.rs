@@ -18,7 +18,7 @@ use std::{
 };
 
 use case::Case;
-use mistakes::{Mistake, OF_THE_BOARD, OF_THE_CAMERA, OF_THE_OBJECTS, OF_THE_PICTURE, OTHERS};
+use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
@@ -77,16 +77,9 @@ fn main() {
 
 /// Sets of mistakes: none, each, and pairs and triples of different groups.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
-    let groups = [
-        OF_THE_PICTURE,
-        OF_THE_CAMERA,
-        OF_THE_BOARD,
-        OF_THE_OBJECTS,
-        OTHERS,
-    ];
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
-        let [picture, camera, board, ..] = groups.map(|group| &group[index % group.len()]);
+        let [picture, camera, board, ..] = GROUPS.map(|group| &group[index % group.len()]);
         let other = &OF_THE_OBJECTS[(index + 9) % OF_THE_OBJECTS.len()];
         match count {
             2 => [camera, board, other, picture]
@@ -97,7 +90,7 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     });
     match count {
         0 => vec![Vec::new()],
-        1 => groups.into_iter().flatten().map(|one| vec![one]).collect(),
+        1 => GROUPS.into_iter().flatten().map(|one| vec![one]).collect(),
         _ => sets.collect(),
     }
 }

@@ -5,9 +5,7 @@ use image::RgbImage;
 use serde_json::Value;
 
 use super::{
-    mistakes::{
-        Mistake, OF_THE_BOARD, OF_THE_CAMERA, OF_THE_OBJECTS, OF_THE_PICTURE, OTHERS, scene,
-    },
+    mistakes::{GROUPS, Mistake, scene},
     textbook::{Program, SAMPLINGS},
 };
 
@@ -34,19 +32,9 @@ impl Case {
         let mut samplings = SAMPLINGS.into_iter();
         let found = samplings.find(|one| format!("{one:?}") == sampling);
         right.sampling = found.unwrap();
-        let groups = [
-            OF_THE_PICTURE,
-            OF_THE_CAMERA,
-            OF_THE_BOARD,
-            OF_THE_OBJECTS,
-            OTHERS,
-        ];
         let named = |name: &str| {
-            let found = groups
-                .iter()
-                .copied()
-                .flatten()
-                .find(|one| one.title() == name);
+            let mut all = GROUPS.into_iter().flatten();
+            let found = all.find(|one| one.title() == name);
             found.unwrap_or_else(|| panic!("{title}: {name} is no mistake"))
         };
         let names = names.split(" + ").filter(|name| *name != "right");

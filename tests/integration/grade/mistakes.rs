@@ -24,8 +24,17 @@ const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
     Mistake { name, make }
 }
 
+/// All mistakes, in groups.
+pub const GROUPS: [&[Mistake]; 5] = [
+    OF_THE_PICTURE,
+    OF_THE_CAMERA,
+    OF_THE_BOARD,
+    OF_THE_OBJECTS,
+    OTHERS,
+];
+
 /// Of the whole picture.
-pub const OF_THE_PICTURE: &[Mistake] = &[
+const OF_THE_PICTURE: &[Mistake] = &[
     row("mirrored", |p| {
         p.afterwards = Some(imageops::flip_horizontal)
     }),
@@ -54,7 +63,7 @@ pub const OF_THE_PICTURE: &[Mistake] = &[
 ];
 
 /// Of the camera.
-pub const OF_THE_CAMERA: &[Mistake] = &[
+const OF_THE_CAMERA: &[Mistake] = &[
     row("roll_sign|camera.roll", |p| p.roll = -p.roll),
     row("roll_unit|camera.roll", |p| {
         p.roll = p.roll.to_degrees().round()
@@ -69,7 +78,7 @@ pub const OF_THE_CAMERA: &[Mistake] = &[
 ];
 
 /// Of the board.
-pub const OF_THE_BOARD: &[Mistake] = &[
+const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
     row("Floor.square", |p| board(p, |_, square, _| *square *= 2.0)),
@@ -126,7 +135,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
 ];
 
 /// Others, of which some show in few scenes.
-pub const OTHERS: &[Mistake] = &[
+const OTHERS: &[Mistake] = &[
     row("transposed", |p| {
         p.afterwards = Some(|picture| imageops::flip_horizontal(&imageops::rotate90(picture)))
     }),
