@@ -1,5 +1,7 @@
 //! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with the same one brings nine crates that have to be compiled.
 
+use std::{collections::HashMap, sync::LazyLock};
+
 use crate::color::Color;
 
 /// A name and its colour a line, in lower case and alphabetical order.
@@ -11,7 +13,8 @@ fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// The colour of a name, in upper or lower case.
 pub fn color(name: &str) -> Option<Color> {
-    let (_, digits) = rows().find(|(row, _)| row.eq_ignore_ascii_case(name))?;
+    static ROWS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| rows().collect());
+    let digits = ROWS.get(&*name.to_ascii_lowercase())?;
     let [_, bytes @ ..] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
     Some(Color::from_bytes(bytes))
 }
