@@ -11,8 +11,8 @@ use std::{
 use crate::{
     math::{Big, Double},
     tracer::{
-        Candidate, Conic, Curve, Held, LOOSE_LINE, Line, Patch, Precision, SubPixel, SubPixelFrame,
-        Surface, World, candidates,
+        Candidate, Conic, Curve, Held, LOOSE_LINE, Line, Object, Patch, Precision, SubPixel,
+        SubPixelFrame, Surface, World, candidates,
     },
 };
 
@@ -151,6 +151,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         cancel: &AtomicBool,
         mut take: impl FnMut(Origin) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        let is_board = |at: usize| matches!(*self.objects[at], Object::Checkerboard(_));
         for (i, a) in self.candidates.iter().enumerate() {
             if cancel.load(Ordering::Relaxed) {
                 return ControlFlow::Break(());
@@ -158,7 +159,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                if !apart {
+                // Boards are parallel: they meet at the horizon, which is the outline of both.
+                let are_parallel = is_board(i) && is_board(j);
+                if !apart && !are_parallel {
                     take(Origin::Pair(i, j))?;
                 }
             }
