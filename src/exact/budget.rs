@@ -1,4 +1,4 @@
-//! How long a pixel may take.
+//! How long a pixel may take, and how well it is to be known.
 //!
 //! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more counts as the mean of what may be
 //! there, with its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
@@ -18,17 +18,20 @@ const OBJECT: f64 = 5e4;
 pub(super) struct Budget<'a> {
     all: f64,
     left: Cell<f64>,
+    /// The bound that is asked for, in area: what is neglected is a part of it.
+    pub tolerance: f64,
     /// Set once nobody wants the picture any more.
     pub cancel: &'a AtomicBool,
 }
 
 impl<'a> Budget<'a> {
     /// That of a whole pixel, in which so many objects may be seen.
-    pub fn of_pixel(objects: usize, cancel: &'a AtomicBool) -> Self {
+    pub fn of_pixel(objects: usize, tolerance: f64, cancel: &'a AtomicBool) -> Self {
         let all = PIXEL + OBJECT * objects as f64;
         Self {
             all,
             left: Cell::new(all),
+            tolerance,
             cancel,
         }
     }

@@ -16,9 +16,6 @@ const NEAR_PARABOLA: f64 = 0.36;
 
 /// An arc that may cross more lines than this is halved. (Measured: with 48 boards of small squares behind spheres take up to half as long again.)
 const LINES: f64 = 12.0;
-/// A sliver so small, in square pixels, is neglected rather than halved once more: the slivers of n pieces are n³ times
-/// smaller each.
-const NEGLECTED: f64 = 2e-13;
 /// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for half an ellipse, less for a hyperbola; this is twice the most.
 const LEFT: f64 = 0.75;
 
@@ -105,7 +102,11 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    COEFFICIENTS.iter().rev().fold(0.0, |sum, c| sum * z + c)
+    // As |z| < 2^−bits, what so many terms leave out is less than a rounding.
+    let bits = (-1 - libm::ilogb(z)).max(1);
+    let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
+    let terms = COEFFICIENTS[..terms].iter().rev();
+    terms.fold(0.0, |sum, c| sum * z + c)
 }
 
 impl Homography {
@@ -113,24 +114,32 @@ impl Homography {
     ///
     /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one square, and what is left
     /// is a convex polygon. Where the lines are too many, toward the horizon, chords take the place of pieces so short that
-    /// their slivers may be neglected.
+    /// their slivers may be neglected: those of n pieces are n³ times smaller each, and n² times smaller together, which is what is asked for if one is no greater
+    /// than the power 3/2 of that by the root of the whole.
     pub(super) fn sliver(&self, arc: &Arc, budget: &Budget) -> Sum {
+        let area = arc.area();
         if let Some(sign) = self.one_square(arc) {
-            return within_a_square(arc, sign);
+            return within_a_square(area, sign);
         }
         let mut chords = Chords {
             points: vec![arc.start],
             sum: Sum::default(),
+            neglected: budget.tolerance * (budget.tolerance / area).sqrt(),
         };
-        self.cut(arc, &mut chords);
+        self.cut(arc, area, &mut chords);
         chords.sum.add(self.over(&chords.points, budget));
-        chords.sum.or_unknown(arc.area())
+        chords.sum.or_unknown(area)
     }
 
-    /// Adds the slivers of an arc, and the points at which it was cut.
-    fn cut(&self, arc: &Arc, chords: &mut Chords) {
+    /// Adds the slivers of an arc with an area, and the points at which it was cut.
+    fn cut(&self, arc: &Arc, area: f64, chords: &mut Chords) {
         if let Some(sign) = self.one_square(arc) {
-            chords.sum.add(within_a_square(arc, sign));
+            chords.sum.add(within_a_square(area, sign));
+            chords.points.push(arc.end);
+            return;
+        }
+        if area <= chords.neglected {
+            chords.sum.bound += area;
             chords.points.push(arc.end);
             return;
         }
@@ -140,18 +149,18 @@ impl Homography {
         {
             return self.cut_at_lines(arc, [a, b], chords);
         }
-        let area = arc.area();
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
+        let areas = halves.map(|half| half.area());
         // Not so where numbers that are too large or too small have left no arc of them.
-        let is_halved = halves[0].area() + halves[1].area() < LEFT * area;
-        if area > NEGLECTED && is_halved {
-            for half in &halves {
-                self.cut(half, chords);
-            }
+        let is_halved = areas[0] + areas[1] < LEFT * area;
+        if !is_halved {
+            chords.sum.bound += if area.is_nan() { 1.0 } else { area };
+            chords.points.push(arc.end);
             return;
         }
-        chords.sum.bound += if area.is_nan() { 1.0 } else { area };
-        chords.points.push(arc.end);
+        for (half, area) in halves.iter().zip(areas) {
+            self.cut(half, area, chords);
+        }
     }
 
     fn cut_at_lines(&self, arc: &Arc, lines: [(f64, f64); 2], chords: &mut Chords) {
@@ -190,7 +199,7 @@ impl Homography {
 
     /// The sliver of an arc within a square between whose lines it was cut, wherever those are to within roundings.
     fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
-        let mut sum = within_a_square(arc, sign);
+        let mut sum = within_a_square(arc.area(), sign);
         sum.bound += self.displaced(&[arc.start, arc.control, arc.end]);
         sum
     }
@@ -224,8 +233,8 @@ impl Homography {
     }
 }
 
-fn within_a_square(arc: &Arc, sign: f64) -> Sum {
-    let area = arc.area();
+/// Of a segment with an area that lies within a square of a sign.
+fn within_a_square(area: f64, sign: f64) -> Sum {
     Sum {
         value: sign * area,
         // A triangle's area has five operations. Its part has up to ten, of terms of which the difference is a quarter where the series ends.
@@ -237,6 +246,8 @@ fn within_a_square(arc: &Arc, sign: f64) -> Sum {
 struct Chords {
     points: Vec<DVec2>,
     sum: Sum,
+    /// A sliver no greater than this, in square pixels, is neglected.
+    neglected: f64,
 }
 
 /// The roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².

@@ -51,7 +51,7 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// A pixel whose bound is no greater than this, in area, is not cut into quarters: 1e-9 is asked for, roundings of sums included.
+/// A pixel whose bound is no greater than this, in area, is known well enough if nothing else is said: 1e-9 is asked for, roundings of sums included.
 const ENOUGH: f64 = 9e-10;
 /// A piece with more curves than this is quartered before anything is computed of it: n curves cross in some n² places, and at each of them all have to be
 /// looked at, while about half of them pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it takes with 24, and with 96 seven
@@ -91,6 +91,8 @@ pub struct Integrator<'a, const N: usize = 3> {
     quartering: Quartering<'a>,
     /// Of the palette.
     colors: Vec<[f64; N]>,
+    /// The bound that is asked for, in area.
+    tolerance: f64,
     /// Units of work that were spent on pixels, and how many may be.
     work: AtomicU64,
     most_work: u64,
@@ -141,9 +143,16 @@ impl<'a, const N: usize> Integrator<'a, N> {
             world,
             quartering: Quartering::new(world),
             colors: world.palette().iter().copied().map(numbers).collect(),
+            tolerance: ENOUGH,
             work: AtomicU64::new(0),
             most_work: u64::MAX,
         }
+    }
+
+    /// The same, for which it is enough that pixels are known to within so much.
+    pub fn known_to(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
     }
 
     /// The same, which gives up once it has spent so many units of work.
@@ -218,7 +227,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
     ) -> ExactPixel<N> {
-        let budget = Budget::of_pixel(candidates.len(), cancel);
+        let budget = Budget::of_pixel(candidates.len(), self.tolerance, cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
@@ -231,7 +240,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 State::Computed => quarterings < MOST_QUARTERINGS,
                 State::Final => false,
             };
-            if bound <= ENOUGH || !may_be_better || budget.is_spent() {
+            if bound <= self.tolerance || !may_be_better || budget.is_spent() {
                 together.add_part(&worst.shares, worst.area());
                 continue;
             }
@@ -272,7 +281,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         // A share is rounded once, and the mean of two.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
-        let Some((half, bound)) = half.filter(|(_, bound)| *bound <= ENOUGH) else {
+        let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
             return others.push(pixel);
         };
         let [first, second] = self.world.slots(pixel.candidate.object);

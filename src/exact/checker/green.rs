@@ -24,13 +24,13 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// The series is long enough when what it neglects is below this, in square pixels: a thousandth of what is asked for.
-const TRUNCATION: f64 = 1e-12;
+/// The series is long enough when what it neglects is below this part of what is asked for.
+const TRUNCATION: f64 = 1e-3;
 
-/// What may be neglected at an edge's lines, in square pixels: at one that ends, and at one that runs into the horizon. A pixel has
-/// two edges of either kind at most where both matter; half of what they neglect together, as these are sums of signs, is `exact`'s ENOUGH.
-const FINITE_TAIL: f64 = 1e-10;
-const ENDLESS_TAIL: f64 = 8e-10;
+/// What may be neglected at an edge's lines, as a part of what is asked for: at one that ends, and at one that runs into the horizon. A pixel has
+/// two edges of either kind at most where both matter, and half of what they neglect together counts, as these are sums of signs.
+const FINITE_TAIL: f64 = 1.0 / 9.0;
+const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// A polygon may neglect the part of that which its area is of the pixel's, but at least this part.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
 
@@ -61,7 +61,8 @@ pub(super) fn sum(
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
         .collect();
     let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
-    let (terms, truncation) = terms(board, nearest, &edges, area.abs());
+    let truncation = TRUNCATION * budget.tolerance;
+    let (terms, truncation) = terms(board, nearest, &edges, area.abs(), truncation);
     let mut sum = Sum {
         value: 0.0,
         bound: truncation + board.displaced(polygon),
@@ -88,12 +89,18 @@ pub(super) fn sum(
     sum
 }
 
-/// How many terms the series needs, and what it then neglects.
+/// How many terms the series needs for what it neglects to be below a limit, and what it then neglects.
 ///
 /// With |A_k| ≤ ½π^(1−k), what P neglects integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n times the area in the picture,
 /// and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along
 /// the edge and along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
-fn terms(board: &Homography, nearest: f64, edges: &[Option<Edge>], area: f64) -> (usize, f64) {
+fn terms(
+    board: &Homography,
+    nearest: f64,
+    edges: &[Option<Edge>],
+    area: f64,
+    limit: f64,
+) -> (usize, f64) {
     let slope = board.slope[0].abs().max(board.slope[1].abs());
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
@@ -108,7 +115,7 @@ fn terms(board: &Homography, nearest: f64, edges: &[Option<Edge>], area: f64) ->
     let mut power = step * step;
     let mut best = (2, neglected(2, power));
     for n in 3..=MAX_TERMS {
-        if best.1 <= TRUNCATION {
+        if best.1 <= limit {
             break;
         }
         power *= step;
@@ -277,12 +284,11 @@ impl Edge {
                 count: self.count,
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
-            let tolerance = share
-                * if self.end.is_some() {
-                    FINITE_TAIL
-                } else {
-                    ENDLESS_TAIL
-                };
+            let part = match self.end {
+                Some(_) => FINITE_TAIL,
+                None => ENDLESS_TAIL,
+            };
+            let tolerance = share * part * budget.tolerance;
             let jumps = tail::sum(
                 &crossings,
                 &series,

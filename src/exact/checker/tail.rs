@@ -23,8 +23,8 @@ use super::special::{Complex, integrals, phase, square, times, turned_times};
 use crate::math::{Double, Real};
 use std::f64::consts::PI;
 
-/// What is neglected of the modes, in square pixels: a thousandth of the bound that is asked for.
-const NEGLECTED: f64 = 1e-12;
+/// What is neglected of the modes, as a part of the bound that is asked for.
+const NEGLECTED: f64 = 1e-3;
 /// Where m changes by less than one part in so many, it is taken to be the same at all crossings; the bound adds 4/STEADY of the sum for that, which is 1e-6 of
 /// something that is itself small where crossings are many. (Measured: a quarter and four times as much change no bound.)
 const STEADY: f64 = 3e6;
@@ -295,7 +295,7 @@ fn level(
         amplitudes[k - 1] = amplitude * series.factors[k];
         amplitude *= u / PI;
     }
-    let neglected = NEGLECTED.max(LATER * tolerance);
+    let neglected = (NEGLECTED * budget.tolerance).max(LATER * tolerance);
     // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π² n^−3.
     let last = ((trivial / neglected).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = trivial / (4.0 * (last - 1.0) * (last - 1.0));
