@@ -90,7 +90,8 @@ impl<'a> Reference<'a> {
     /// It is cancelled, or too large.
     pub fn new(scene: &'a Scene, part: Area, control: &Control) -> Result<Self, RenderError> {
         let world = World::new_unless(scene, control.cancel)?;
-        let integrator = Integrator::of(&world, moments::numbers(Curve::Right));
+        let integrator =
+            Integrator::of(&world, moments::numbers(Curve::Right)).known_to(work::KNOWN);
         let all = Mutex::new(Moments::zero(part.pixels() as usize));
         let exact = render_numbers(&integrator, part, control, &|tile, pixels| {
             let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);

@@ -18,8 +18,11 @@ const PIXEL: f64 = 41.0;
 const WORLD_OBJECT: f64 = 20.0;
 const OBJECT: f64 = 6.0;
 const RAY: f64 = 0.3;
-const TEST: f64 = 0.06;
+const TEST: f64 = 0.1;
 const CELL: f64 = 2.0;
+
+/// To within so much of the light of white an exact picture is known: a three hundredth of the smallest step of sRGB.
+pub const KNOWN: f64 = 1e-6;
 
 /// The work that was spent, and how much may be.
 pub struct Work<'a> {
@@ -88,7 +91,9 @@ impl<'a> Work<'a> {
     /// The exact means and variances of what a part of a scene's picture shows; none if they take too much.
     pub fn exact_moments(&self, scene: &Scene, averaged: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
-        let integrator = Integrator::of(&world, numbers(averaged)).within(self.left() as u64);
+        let integrator = Integrator::of(&world, numbers(averaged))
+            .known_to(KNOWN)
+            .within(self.left() as u64);
         let pixels = integrator.pixels(part, self.cancel);
         let cells = part.pixels() as usize;
         self.spend(of_exact(integrator.work(), scene.objects.len(), cells));
