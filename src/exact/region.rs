@@ -39,7 +39,7 @@ pub struct Regions<'a> {
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
     /// What may still be computed of the pixel.
-    budget: &'a Budget<'a>,
+    pub budget: &'a Budget<'a>,
 }
 
 /// A checkerboard as a sub-pixel sees it.

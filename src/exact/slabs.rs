@@ -25,9 +25,6 @@ const TIE: f64 = 16.0 * f64::UNIT;
 /// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand roundings of a coordinate, and 10⁻¹³ of area.
 const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// So much area, in square pixels, may be doubtful in a slab before it is cut: half a rounding of the mean.
-const CRUMB: f64 = 1.0 / (1u64 << 54) as f64;
-
 /// Slabs narrower than this, in pixels, are not cut, nor any once `MANY` have been added to the first ones, counting those still queued: what is left in doubt
 /// then is in the bound. (Measured: a quarter and four times as much of either change bounds by a fiftieth and times by about a tenth at most.)
 const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
@@ -72,11 +69,14 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
+    // That of all slabs together is no more than what is asked for.
+    let crumb = regions.budget.tolerance / MANY as f64;
     let mut all = Slabs {
         lines,
         graphs,
         regions,
         slabs: 0,
+        crumb,
     };
     // The widest first: where there are too many, narrow ones are left.
     let many = MANY + cuts.len();
@@ -98,6 +98,8 @@ struct Slabs<'a> {
     graphs: Vec<Graph>,
     regions: Regions<'a>,
     slabs: usize,
+    /// So much area, in square pixels, may be doubtful in a slab before it is cut.
+    crumb: f64,
 }
 
 impl Slabs<'_> {
@@ -135,7 +137,7 @@ impl Slabs<'_> {
         let neighbors = inside.windows(2).map(|pair| (pair[0], pair[1]));
         for ((lower, a), (upper, b)) in below.chain(neighbors).chain(above) {
             let overlap = a.overlap(b, left, right).clamp(0.0, 1.0);
-            if overlap <= TIE || overlap * width <= CRUMB {
+            if overlap <= TIE || overlap * width <= self.crumb {
                 doubtful += overlap * width;
                 continue;
             }
