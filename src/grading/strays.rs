@@ -6,7 +6,7 @@ use super::{moments::range, prediction::Prediction};
 pub const DEVIATIONS: f64 = 5.0;
 
 /// In steps: half of one is rounding, and half of that another way to decode.
-pub const WRONG: f64 = 0.75;
+const WRONG: f64 = 0.75;
 
 /// The pixels that no sampling of a candidate explains.
 #[derive(Debug, Default)]
@@ -101,7 +101,7 @@ impl Prediction<'_> {
 
     /// What a pixel may differ by for its rounding and for what is not known of it.
     fn allowed(&self, at: usize) -> [f64; 3] {
-        let (steps, doubt) = (self.steps(at), self.moments.doubt(at));
+        let (steps, doubt) = (self.steps(at), self.moments.doubt[at]);
         [0, 1, 2].map(|i| WRONG * steps[i] + DEVIATIONS * doubt[i].sqrt())
     }
 }
