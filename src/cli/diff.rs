@@ -8,8 +8,8 @@ use std::{
 
 use pinhole::{
     diagnostic::visible,
-    film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Picture, SizesDiffer, Tolerance},
-    grading::{Jpeg, Kind, ObjectVerdict, Reference, Verdict},
+    film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
+    grading::{Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
     render::{Control, RenderError},
 };

@@ -10,8 +10,8 @@ use std::{
 
 use pinhole::{
     area::Area,
-    film::{self, Picture},
-    grading::{Jpeg, Reference},
+    film::{self, Jpeg, Picture},
+    grading::Reference,
     render::{Control, RenderError},
     scene::Scene,
 };

@@ -8,6 +8,7 @@ mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]
 mod embed;
 mod exr;
+mod jpeg;
 mod mean;
 mod memory;
 mod picture;
@@ -24,6 +25,7 @@ pub use self::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
     },
     exr::write_exr,
+    jpeg::{Jpeg, Table as JpegTable},
     mean::mean,
     memory::TooLarge,
     picture::{Coding, Picture, Rounding, Unreadable},

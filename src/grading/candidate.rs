@@ -87,7 +87,7 @@ impl Candidate {
         Self {
             scene: scene.clone(),
             is_drawn: vec![true; scene.objects.len()],
-            behaviour: Behaviour::RIGHT,
+            behaviour: Behaviour::default(),
             averaged: Curve::Right,
             curve: Curve::Right,
             layout: Layout::default(),

@@ -3,16 +3,18 @@
 //! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are; a middle one fits numbers and judges all of them. What shows
 //! only where colours meet is judged on the pixels.
 
+use std::sync::Arc;
+
 use super::{
     candidate::{Candidate, Mistake, Shows},
     judge::{Judge, Judged, price},
+    levenberg_marquardt::absolute,
     light::Curve,
     mistakes::{OBJECT_ROWS, ROWS},
     numeric_mistakes::numeric_mistakes,
     objects::labels,
     parameters::Owner,
     patch::patch,
-    rendering::Rendering,
 };
 use crate::{
     cancel::{self, Cancelled},
@@ -40,12 +42,12 @@ const MOST_TAKEN_FOR_ONE: f64 = 3.0;
 /// The mistakes that explain a picture, from what a program without mistakes would have made.
 pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
     let right = Candidate::right(judge.scene);
-    let Some(mut best) = judge.judged(&right, &judge.middle, None) else {
+    let Some(mut best) = judge.judged(&right, &judge.middle) else {
         return Ok(None);
     };
     // That nothing is wrong for certain does not say that nothing is wrong: what moves by a pixel where all pixels show several colours is found by the likelihood
     // alone.
-    let mut is_open = explains_all(judge, &best);
+    let mut is_open = judge.explains_all(best.candidate());
     while best.candidate().mistakes.len() < MOST_MISTAKES
         && (is_open || !judge.is_explained(best.candidate()))
         && judge.work.may_go_on()
@@ -62,15 +64,11 @@ pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
         && parameter.owner == Owner::Camera
     {
         let other = with_edges(judge, &right, found.score.samples);
-        let other = other.filter(|other| judge.explains_all(other.candidate(), None));
+        let other = other.filter(|other| judge.explains_all(other.candidate()));
         let both = best.into_iter().chain(other);
         best = both.min_by(|one, other| one.cost.total_cmp(&other.cost));
     }
     cancel::unless_set(judge.cancel, best)
-}
-
-fn explains_all(judge: &Judge, found: &Judged) -> bool {
-    judge.explains_all(found.candidate(), Some(&found.rendering))
 }
 
 /// A candidate, or the same with a row that shows only where colours meet, if that is better on the pixels. How many samples a pixel has may be known from
@@ -78,10 +76,11 @@ fn explains_all(judge: &Judge, found: &Judged) -> bool {
 fn with_edges(judge: &Judge, candidate: &Candidate, samples: Option<f64>) -> Option<Judged> {
     // Where areas are not explained yet, that comes first. What is found so far is judged, however much work that is.
     let (is_open, null) = judge.work.without_limit(|| {
-        let is_open = !judge.explains_all(candidate, None);
-        (is_open, judge.judged(candidate, &judge.edges, None))
+        let is_open = !judge.explains_all(candidate);
+        (is_open, judge.judged(candidate, &judge.edges))
     });
     let null = null?;
+    judge.edges.compare_with(Arc::clone(&null.rendering));
     // What is done to light, or to a JPEG, makes other noise at edges, of which too little is known to tell these. One sample is its own mean, wherever in a pixel it lies.
     let may =
         candidate.looks.is_empty() && candidate.curve == Curve::Right && judge.fine.jpeg.is_none();
@@ -95,19 +94,19 @@ fn with_edges(judge: &Judge, candidate: &Candidate, samples: Option<f64>) -> Opt
     let best = rows
         .take_while(|_| judge.work.may_go_on())
         .filter_map(|row| candidate.with(Mistake::Row(row, None)))
-        .filter_map(|candidate| judge.judged(&candidate, &judge.edges, Some(&null.rendering)))
+        .filter_map(|candidate| judge.judged(&candidate, &judge.edges))
         .map(|found| (judge.gain(&judge.edges, &null, &found), found))
         .filter(|(gain, _)| *gain > 0.0)
-        .filter(|(_, found)| !is_open || judge.explains_all(found.candidate(), None))
+        .filter(|(_, found)| !is_open || judge.explains_all(found.candidate()))
         .max_by(|one, other| one.0.total_cmp(&other.0));
     Some(best.map_or(null, |(_, found)| found))
 }
 
 /// The best candidate with one more mistake, if it is better.
 fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
-    let coarse = judge.render(from.candidate(), &judge.coarse, None)?;
+    judge.compare_with(from.candidate());
     let suspects = suspects(judge, from);
-    let mut tried = rows(judge, from, &coarse, &suspects);
+    let mut tried = rows(judge, from, &suspects);
     // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
     let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, row)) = row
@@ -115,13 +114,13 @@ fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
         && let Some(found) = likelier(judge, from, row)
         && let Some(found) = refined(judge, found)
         && found.cost < from.cost
-        && explains_all(judge, &found)
+        && judge.explains_all(found.candidate())
     {
         return Some(found);
     }
     // Half of the work that is left is left for judging those that were tried.
     let are_all_numbers_tried = judge.work.within(0.5, || {
-        tried.extend(numeric_mistakes(judge, from, &coarse, &suspects));
+        tried.extend(numeric_mistakes(judge, from, &suspects));
         judge.work.may_go_on()
     });
     tried.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -136,7 +135,7 @@ fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
         if found.candidate().fitted() < fewest
             && let Some(found) = refined(judge, found)
         {
-            if !is_open && explains_all(judge, &found) {
+            if !is_open && judge.explains_all(found.candidate()) {
                 fewest = found.candidate().fitted();
             }
             judged.push(found);
@@ -151,7 +150,7 @@ fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
             false => best.cost < from.cost,
         };
         is_likelier
-            && (are_all_tried || explains_all(judge, best))
+            && (are_all_tried || judge.explains_all(best.candidate()))
             && judge.is_seen(best, from.candidate())
     };
     // The few that were judged are looked at in all pixels, however much work that is.
@@ -162,14 +161,14 @@ fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
     better.or_else(|| {
         (!is_open && are_all_tried).then_some(())?;
         let patched = from.candidate().with(patch(judge, from)?)?;
-        let found = judge.judged(&patched, &judge.middle, Some(&from.rendering))?;
+        let found = judge.judged(&patched, &judge.middle)?;
         (found.cost < from.cost).then_some(found)
     })
 }
 
 /// A candidate judged; none if it is no likelier than what it is made from.
 fn likelier(judge: &Judge, from: &Judged, candidate: &Candidate) -> Option<Judged> {
-    let found = judge.judged(candidate, &judge.middle, Some(&from.rendering))?;
+    let found = judge.judged(candidate, &judge.middle)?;
     (found.score.likelihood > from.score.likelihood).then_some(found)
 }
 
@@ -181,23 +180,12 @@ fn refined(judge: &Judge, found: Judged) -> Option<Judged> {
         return Some(found);
     }
     let middle = &judge.middle;
-    let (fitted, _) = judge.fit(
-        candidate,
-        free,
-        (middle, &found.rendering),
-        CELL_STEP,
-        [0, ROUNDS],
-    )?;
-    judge.judged(&fitted, middle, Some(&found.rendering))
+    let (fitted, _) = judge.fit(candidate, free, middle, CELL_STEP, [0, ROUNDS])?;
+    judge.judged(&fitted, middle)
 }
 
 /// The rows of the table, and how much each leaves on the coarse grid.
-fn rows(
-    judge: &Judge,
-    from: &Judged,
-    coarse: &Rendering,
-    suspects: &[usize],
-) -> Vec<(f64, Candidate)> {
+fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
     let rows = rows.map(|row| Mistake::Row(row, None));
     let of_objects = suspects.iter().flat_map(|&object| {
@@ -208,8 +196,8 @@ fn rows(
     let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
     candidates
         .filter_map(|candidate| {
-            let left = judge.left(&candidate, &judge.coarse, coarse)?;
-            Some((left, candidate))
+            let differences = judge.differences(&candidate, &judge.coarse)?;
+            Some((absolute(&differences), candidate))
         })
         .collect()
 }
@@ -220,18 +208,9 @@ fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let labels = labels(judge, from.candidate(), grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
-        // An object that grew is wrong beside where it is seen.
-        let reach = [0, 2, grid.width() * 2];
-        let near = reach
-            .iter()
-            .flat_map(|by| [at.checked_sub(*by), Some(at + by)])
-            .flatten();
-        let mut objects: Vec<_> = near.filter_map(|at| *labels.get(at)?).collect();
-        objects.sort_unstable();
-        objects.dedup();
-        objects
-            .into_iter()
-            .for_each(|object| wrong[object] += libm::log1p(*off));
+        if let Some(object) = labels[at] {
+            wrong[object] += libm::log1p(*off);
+        }
     }
     let mut suspects: Vec<_> = (0..wrong.len())
         .filter(|&object| wrong[object] > 0.0)
@@ -249,29 +228,20 @@ fn shortened(judge: &Judge, found: &Judged) -> Candidate {
     let Some(leveled) = leveled.filter(|_| free > 0) else {
         return candidate.clone();
     };
-    let Some((_, fitted)) = judge.fit(
-        &leveled,
-        free,
-        (middle, &found.rendering),
-        CELL_STEP,
-        [0, 1],
-    ) else {
+    let Some((_, fitted)) = judge.fit(&leveled, free, middle, CELL_STEP, [0, 1]) else {
         return leveled;
     };
     // A number that is short was not fitted: it may cost what that costs.
     let most = found.cost + price(middle, free);
-    for digits in [8.0, 2.0] {
-        // What a vector's length may be off is no matter, so that no error is more than a part of a step.
-        let errors = fitted.errors.iter().zip(leveled.steps(1.0));
-        let errors = errors.map(|(error, step)| (digits * error).min(step.abs()));
-        let numbers = leveled.numbers().into_iter().zip(errors);
-        let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
-        if let Some(short) = leveled.with_numbers(judge.scene, &numbers)
-            && let Some(judged) = judge.judged(&short, middle, Some(&found.rendering))
-            && judged.cost <= most
-        {
-            return short;
-        }
-    }
-    leveled
+    // What a vector's length may be off is no matter, so that no error is more than a part of a step.
+    let errors = fitted.errors.iter().zip(leveled.steps(1.0));
+    let errors = errors.map(|(error, step)| (8.0 * error).min(step.abs()));
+    let numbers = leveled.numbers().into_iter().zip(errors);
+    let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
+    let short = leveled.with_numbers(judge.scene, &numbers);
+    let is_as_good = |short: &Candidate| {
+        let judged = judge.judged(short, middle);
+        judged.is_some_and(|judged| judged.cost <= most)
+    };
+    short.filter(is_as_good).unwrap_or(leveled)
 }

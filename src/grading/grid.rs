@@ -2,13 +2,11 @@
 //!
 //! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever makes pictures makes that of the cells.
 
-use std::ops::Range;
-
 use glam::DVec2;
 
-use super::axes::focal;
 use crate::{
     area::Area,
+    projection::Projection,
     scene::{Camera, Image, Lens, Scene},
 };
 
@@ -86,15 +84,24 @@ impl Grid {
         self.margin + (cell + 0.5) * f64::from(self.factor)
     }
 
+    /// The indices of a cell and of those so far around it.
+    pub fn around(&self, index: usize, reach: usize) -> impl Iterator<Item = usize> {
+        let (width, height) = (self.width(), self.cells.height as usize);
+        let near = |at: usize, most: usize| at.saturating_sub(reach)..(at + reach + 1).min(most);
+        let columns = near(index % width, width);
+        let rows = near(index / width, height);
+        rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+
     /// The view of a scene whose pixels the cells are, with one more column and row if that is wished, half of it on each side.
     pub fn view(&self, scene: &Scene, more: bool) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
         if self.factor > 1 || more {
-            let focal = focal(&camera, &image);
+            let pitch = Projection::quick(&camera, &image).pitch;
             [image.width, image.height] = self.size.map(|cells| cells + u32::from(more));
             camera.lens = Lens::Distance(1.0);
             // Within the range of numbers, however long or short the lens is.
-            let view_height = f64::from(image.height * self.factor) / focal;
+            let view_height = f64::from(image.height * self.factor) * pitch;
             camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }
         (camera, image)
@@ -103,37 +110,29 @@ impl Grid {
     /// The means of the part's pixels, told by column and row in it, but for those without a number.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
         let factor = f64::from(self.factor);
-        // From where to where a cell reaches, and the pixels that it has a share of.
-        let reach = |cell: u32, margin: f64, corner: f64| {
+        // The pixels that a cell has a share of, in columns or in rows, and how much of each.
+        let shares = |cell: u32, margin: f64, corner: f64| {
             let start = margin + f64::from(cell) * factor - corner;
             let end = start + factor;
-            (start, end, start.floor() as u32..end.ceil() as u32)
-        };
-        let share = |pixel: u32, (start, end, _): &(f64, f64, Range<u32>)| {
-            (f64::from(pixel) + 1.0).min(*end) - f64::from(pixel).max(*start)
+            let share = move |at: u32| (f64::from(at) + 1.0).min(end) - f64::from(at).max(start);
+            (start.floor() as u32..end.ceil() as u32).map(move |at| (at, share(at)))
         };
         let cell = |(x, y): (u32, u32)| {
-            let columns = reach(x, self.margin.x, self.corner.x);
-            let rows = reach(y, self.margin.y, self.corner.y);
+            // From the first on, so that what is one everywhere is not rounded.
+            let mut first = None;
             let (mut sum, mut total) = ([0.0; 3], 0.0);
-            // What is one everywhere is not rounded.
-            let mut one = None;
-            let mut is_one = true;
-            for row in rows.2.clone() {
-                for column in columns.2.clone() {
-                    let weight = share(row, &rows) * share(column, &columns);
+            for (row, height) in shares(y, self.margin.y, self.corner.y) {
+                for (column, width) in shares(x, self.margin.x, self.corner.x) {
                     let pixel = pixel(column, row);
                     if !pixel[0].is_nan() {
-                        is_one &= *one.get_or_insert(pixel) == pixel;
-                        sum = [0, 1, 2].map(|i| sum[i] + weight * pixel[i]);
-                        total += weight;
+                        let first = first.get_or_insert(pixel);
+                        sum = [0, 1, 2].map(|i| sum[i] + width * height * (pixel[i] - first[i]));
+                        total += width * height;
                     }
                 }
             }
-            match one.filter(|_| is_one) {
-                Some(one) => one,
-                None => sum.map(|sum| sum / total),
-            }
+            let first = first.unwrap_or([f64::NAN; 3]);
+            [0, 1, 2].map(|i| first[i] + sum[i] / total)
         };
         self.cells.iter().map(cell).collect()
     }

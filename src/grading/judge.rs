@@ -1,8 +1,6 @@
 //! A picture under judgement: its grids, its work, and how well candidates explain it.
 
 use std::{
-    cell::RefCell,
-    collections::VecDeque,
     iter,
     sync::{Arc, atomic::AtomicBool},
 };
@@ -11,17 +9,19 @@ use super::{
     Reference,
     candidate::{Candidate, Mistake, Shows},
     grid::Grid,
-    jpeg::Jpeg,
     level::Level,
-    levenberg_marquardt::{Fitted, absolute, fit},
+    levenberg_marquardt::{Fitted, fit},
     likelihood::Score,
     mistakes::ROWS,
+    prediction::Prediction,
     rendering::Rendering,
-    strays::Strays,
-    textbook::Behaviour,
     work::{self, Work},
 };
-use crate::{area::Area, film::Film, scene::Scene};
+use crate::{
+    area::Area,
+    film::{Film, Jpeg},
+    scene::Scene,
+};
 
 /// The longest sides of the grids, in cells.
 const TINY: u32 = 32;
@@ -31,24 +31,18 @@ const MIDDLE: u32 = 96;
 /// The samples in a cell of the tiny grid, on which starts are looked for.
 const SAMPLES: usize = 5;
 
-/// So many pictures of all pixels are kept, those that were made last: one candidate's, and one's that it is compared with.
-const LAST: usize = 2;
-
 /// Of so many pixels in the middle of a picture, those tell of edges.
 const PIXELS_OF_EDGES: u64 = 20_000;
 
 /// A picture that is compared with a scene.
 pub struct Judge<'a> {
     pub scene: &'a Scene,
-    reference: &'a Reference<'a>,
     tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
     /// The pixels in the middle of the picture.
     pub edges: Level<'a>,
-    /// What was made last of all pixels.
-    last: RefCell<VecDeque<Arc<Rendering>>>,
     pub work: Work<'a>,
     pub cancel: &'a AtomicBool,
 }
@@ -77,112 +71,65 @@ impl<'a> Judge<'a> {
         jpeg: Option<Jpeg>,
         cancel: &'a AtomicBool,
     ) -> Self {
-        let Reference { scene, part, .. } = reference;
-        let part = *part;
+        let Reference { scene, part, .. } = *reference;
         let level = |area: Area, longest, samples| {
             let grid = Grid::new(&scene.image, area, longest);
             let corner = [area.x - part.x, area.y - part.y];
             Level::new(grid, film, corner, samples, jpeg)
         };
-        Self {
+        let judge = Self {
             scene,
-            reference,
             tiny: level(part, TINY, Some(SAMPLES)),
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             edges: level(central(part), u32::MAX, None),
-            last: RefCell::default(),
             work: Work::new(part.pixels(), reference.work, cancel),
             cancel,
-        }
-    }
-
-    /// What a candidate makes on a level; none if it is cancelled, or takes too much work.
-    pub fn render(
-        &self,
-        candidate: &Candidate,
-        level: &Level,
-        like: Option<&Rendering>,
-    ) -> Option<Arc<Rendering>> {
-        let is_fine = level.grid == self.fine.grid && level.samples.is_none();
-        let mut known: Vec<Arc<Rendering>> = Vec::new();
-        if is_fine {
-            known.extend(self.last.borrow().iter().map(Arc::clone));
-            known.push(Arc::clone(&self.reference.right));
-        } else if level.samples.is_none() {
-            let right = Candidate::right(self.scene);
-            let reduced = [candidate, &right].map(|one| self.reduced(one, level));
-            known.extend(reduced.into_iter().flatten().map(Arc::new));
-        }
-        let known = known.iter().map(|one| &**one);
-        let likes: Vec<&Rendering> = like.into_iter().chain(known).collect();
-        let rendering = candidate.render(&level.grid, level.samples, &likes, &self.work)?;
-        let rendering = Arc::new(rendering);
-        let mut last = self.last.borrow_mut();
-        let is_known = |one: &Arc<Rendering>| {
-            one.candidate.traces_as(candidate) && one.candidate.behaviour == candidate.behaviour
         };
-        if is_fine && !last.iter().any(is_known) {
-            last.push_front(Arc::clone(&rendering));
-            last.truncate(LAST);
+        for level in [&judge.coarse, &judge.middle, &judge.fine, &judge.edges] {
+            level.compare_with(level.reduced(&reference.right));
         }
-        Some(rendering)
+        judge
     }
 
-    /// What a candidate makes on a level, from what was made of the same program of all pixels.
-    fn reduced(&self, candidate: &Candidate, level: &Level) -> Option<Rendering> {
-        let fine = self.fine.grid.cells;
-        let is_same =
-            |one: &&Arc<Rendering>| one.part == fine && one.candidate.traces_as(candidate);
-        let reduce = |one: &Rendering| Arc::new(level.reduced(&one.right, fine));
-        let right = &self.reference.right;
-        let moments = match is_same(&right) {
-            true => Arc::clone(level.right.get_or_init(|| reduce(right))),
-            false => reduce(self.last.borrow().iter().find(is_same)?),
-        };
-        Some(Rendering::new(candidate.clone(), level.grid.cells, moments))
+    /// Others will be compared with this candidate.
+    pub fn compare_with(&self, candidate: &Candidate) {
+        for level in [&self.coarse, &self.middle, &self.fine] {
+            if let Some(rendering) = level.render(candidate, &self.work) {
+                level.compare_with(rendering);
+            }
+        }
     }
 
-    /// The tiny level, and what a candidate makes there by samples, for others to be compared with it: where it is known what it makes exactly, all that is
-    /// compared is off by what its samples are off.
-    pub fn around(&self, candidate: &Candidate) -> Option<(Level<'a>, Arc<Rendering>)> {
+    /// The tiny level, where a candidate that others are compared with is off by what its samples are off: where it is known what it makes exactly, all that is
+    /// compared is off by that.
+    pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
-        let sampled = self.render(candidate, level, None)?;
-        let exact = match candidate.behaviour == Behaviour::RIGHT {
-            true => self.reduced(candidate, level),
-            false => None,
-        };
-        let exact = exact.filter(|exact| exact.part == sampled.part);
-        let exact = level.predict(exact.as_ref().unwrap_or(&sampled));
-        Some((level.with_error(&level.predict(&sampled), &exact), sampled))
+        let sampled = level.render(candidate, &self.work)?;
+        level.compare_with(Arc::clone(&sampled));
+        let mut exact = Arc::clone(&sampled);
+        if candidate.behaviour.is_right() {
+            exact = level.reduced(&self.fine.render(candidate, &self.work)?);
+        }
+        Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }
 
-    /// The absolute differences that a candidate leaves on a level; none if there was too much work before.
-    pub fn left(&self, candidate: &Candidate, level: &Level, like: &Rendering) -> Option<f64> {
-        let differences = self.differences(candidate, level, like)?;
-        Some(absolute(&differences))
+    /// What a level should show if a candidate is right; none if that is not known.
+    pub fn predicted<'b>(&self, candidate: &Candidate, level: &'b Level) -> Option<Prediction<'b>> {
+        let rendering = level.render(candidate, &self.work)?;
+        Some(level.predict(&rendering))
     }
 
-    fn differences(
-        &self,
-        candidate: &Candidate,
-        level: &Level,
-        like: &Rendering,
-    ) -> Option<Vec<f64>> {
+    /// By how much a level differs from what a candidate makes, channel by channel; none if there was too much work before.
+    pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.may_go_on().then_some(())?;
-        let rendering = self.render(candidate, level, Some(like))?;
-        Some(level.predict(&rendering).differences())
+        Some(self.predicted(candidate, level)?.differences())
     }
 
     /// Judges a candidate on a level.
-    pub fn judged(
-        &self,
-        candidate: &Candidate,
-        level: &Level,
-        like: Option<&Rendering>,
-    ) -> Option<Judged> {
-        let rendering = self.render(candidate, level, like)?;
+    pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
+        let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();
         let cost = price(level, candidate.fitted()) - score.likelihood;
         Some(Judged {
@@ -205,30 +152,19 @@ impl<'a> Judge<'a> {
         let rows = rows.take_while(|_| self.work.may_go_on());
         let mut all = iter::once(candidate.clone())
             .chain(rows.filter_map(|row| candidate.with(Mistake::Row(row, None))));
-        all.any(|candidate| self.explains_all(&candidate, None))
+        all.any(|candidate| self.explains_all(&candidate))
     }
 
-    /// What shows something else than a candidate for certain; none if it is not known.
-    pub fn strays(
-        &self,
-        candidate: &Candidate,
-        level: &Level,
-        like: Option<&Rendering>,
-    ) -> Option<Strays> {
-        let rendering = self.render(candidate, level, like)?;
-        self.work.spend(work::of_exact(0, 0, level.grid.count()));
-        Some(level.predict(&rendering).strays())
-    }
-
-    /// Whether it is known that nothing shows something else than a candidate for certain, of which may be known what it makes on the middle grid.
+    /// Whether it is known that nothing shows something else than a candidate for certain.
     ///
     /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its cells is so in a pixel, if what the cells show is exact.
-    pub fn explains_all(&self, candidate: &Candidate, like: Option<&Rendering>) -> bool {
+    pub fn explains_all(&self, candidate: &Candidate) -> bool {
         let has_none = |level: &Level| {
-            let strays = self.strays(candidate, level, like);
-            strays.is_some_and(|strays| strays.is_empty())
+            self.work.spend(work::of_exact(0, 0, level.grid.count()));
+            let predicted = self.predicted(candidate, level);
+            predicted.is_some_and(|predicted| predicted.strays().is_empty())
         };
-        let is_exact = candidate.behaviour == Behaviour::RIGHT
+        let is_exact = candidate.behaviour.is_right()
             && !candidate.layout.is_shifted()
             && self.fine.jpeg.is_none();
         (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
@@ -238,25 +174,21 @@ impl<'a> Judge<'a> {
     pub fn is_seen(&self, found: &Judged, beside: &Candidate) -> bool {
         let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
         let samples = found.score.samples.unwrap_or(f64::INFINITY) / count;
-        let predict = |candidate| {
-            let rendering = self.render(candidate, &self.fine, None)?;
-            self.work
-                .spend(work::of_exact(0, 0, self.fine.grid.count()));
-            Some(self.fine.predict(&rendering))
-        };
-        let (Some(one), Some(other)) = (predict(found.candidate()), predict(beside)) else {
+        self.work
+            .spend(work::of_exact(0, 0, 2 * self.fine.grid.count()));
+        let predicted = |candidate| self.predicted(candidate, &self.fine);
+        let (Some(one), Some(other)) = (predicted(found.candidate()), predicted(beside)) else {
             return false;
         };
         one.is_seen_beside(&other, samples.max(1.0))
     }
 
-    /// The last numbers of a candidate, so many, fitted on a level, where something like it was made; each is varied so as to change the picture by about so much
-    /// of a cell.
+    /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change the picture by about so much of a cell.
     pub fn fit(
         &self,
         candidate: &Candidate,
         free: usize,
-        (level, like): (&Level, &Rendering),
+        level: &Level,
         cells: f64,
         rounds: [usize; 2],
     ) -> Option<(Candidate, Fitted)> {
@@ -264,8 +196,9 @@ impl<'a> Judge<'a> {
         let (fixed, start) = start.split_at(start.len() - free);
         let steps = candidate.steps(cells * f64::from(level.grid.factor));
         let with = |free: &[f64]| candidate.with_numbers(self.scene, &[fixed, free].concat());
-        let deviations = || level.predict(like).deviations();
-        let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level, like);
+        let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level);
+        let start_on_level = level.render(candidate, &self.work)?;
+        let deviations = || level.predict(&start_on_level).deviations();
         let steps = &steps[fixed.len()..];
         let fitted = fit(start.to_vec(), steps, rounds, &deviations, &trial)?;
         Some((with(&fitted.numbers)?, fitted))

@@ -7,10 +7,10 @@ use std::{
 };
 
 use super::{
-    grid::Grid, jpeg::Jpeg, light::Curve, moments::Moments, prediction::Prediction,
-    rendering::Rendering,
+    candidate::Candidate, grid::Grid, jpeg::variances, light::Curve, moments::Moments,
+    prediction::Prediction, rendering::Rendering, work::Work,
 };
-use crate::{area::Area, film::Film};
+use crate::film::{Film, Jpeg};
 
 /// A grid over a part of a picture.
 pub struct Level<'a> {
@@ -21,11 +21,10 @@ pub struct Level<'a> {
     /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
     seen: [OnceCell<Vec<[f64; 3]>>; Curve::COUNT],
     /// How many samples a cell has; none if it is computed exactly.
-    pub samples: Option<usize>,
+    samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    coded: OnceCell<Vec<[f64; 3]>>,
-    /// What a right program makes on it.
-    pub right: OnceCell<Arc<Moments>>,
+    /// What was made on it: what most others are compared with, and the last.
+    known: [RefCell<Option<Arc<Rendering>>>; 2],
 }
 
 impl<'a> Level<'a> {
@@ -44,20 +43,43 @@ impl<'a> Level<'a> {
             seen: std::array::from_fn(|_| OnceCell::new()),
             samples,
             jpeg,
-            coded: OnceCell::new(),
-            right: OnceCell::new(),
+            known: Default::default(),
         }
     }
 
     /// The same, where all that is compared is off by what one prediction differs from an exact one.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
-        let level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
+        let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
+        level.known = self.known.clone();
         let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
         let seen = sampled.seen.iter().zip(means);
         let seen =
             seen.map(|(seen, (sampled, exact))| [0, 1, 2].map(|i| seen[i] + sampled[i] - exact[i]));
         level.seen[sampled.curve as usize].get_or_init(|| seen.collect());
         level
+    }
+
+    /// What a candidate makes on it; none if it is cancelled, or takes too much work.
+    pub fn render(&self, candidate: &Candidate, work: &Work) -> Option<Arc<Rendering>> {
+        let [base, last] = &self.known;
+        let known: Vec<_> = [base, last]
+            .iter()
+            .filter_map(|one| one.borrow().clone())
+            .collect();
+        let rendering = candidate.render(&self.grid, self.samples, &known, work)?;
+        let rendering = Arc::new(rendering);
+        let is_same = |one: &Arc<Rendering>| {
+            one.candidate.traces_as(candidate) && one.candidate.behaviour == candidate.behaviour
+        };
+        if !known.iter().any(is_same) {
+            last.replace(Some(Arc::clone(&rendering)));
+        }
+        Some(rendering)
+    }
+
+    /// Others will be compared with this.
+    pub fn compare_with(&self, rendering: Arc<Rendering>) {
+        self.known[0].replace(Some(rendering));
     }
 
     /// What the picture shows in the cells, as light that was encoded in a way.
@@ -80,7 +102,11 @@ impl<'a> Level<'a> {
     }
 
     /// What the cells show of something whose pixels are known, all of those of a part.
-    pub fn reduced(&self, pixels: &Moments, part: Area) -> Moments {
+    pub fn reduced(&self, rendering: &Arc<Rendering>) -> Arc<Rendering> {
+        let (pixels, part) = (&rendering.right, rendering.part);
+        if part == self.grid.cells {
+            return Arc::clone(rendering);
+        }
         let [left, top] = self.corner;
         let index = |x: u32, y: u32| ((top + y) * part.width + left + x) as usize;
         let mean = self.grid.reduce(|x, y| pixels.mean[index(x, y)]);
@@ -88,10 +114,16 @@ impl<'a> Level<'a> {
             let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
             [0, 1, 2].map(|i| mean[i] * mean[i] + variance[i])
         });
-        Moments::exact(mean.into_iter().zip(squares).map(|(mean, squares)| {
+        let moments = Moments::exact(mean.into_iter().zip(squares).map(|(mean, squares)| {
             let variance = [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0));
             (mean, variance)
-        }))
+        }));
+        let candidate = rendering.candidate.clone();
+        Arc::new(Rendering::new(
+            candidate,
+            self.grid.cells,
+            Arc::new(moments),
+        ))
     }
 
     /// What it should show if a candidate is right.
@@ -106,13 +138,8 @@ impl<'a> Level<'a> {
         };
         prediction.look(&candidate.looks, &self.grid);
         if let Some(jpeg) = self.jpeg {
-            let (moments, factor) = (&prediction.moments, self.grid.factor as usize);
-            let own = || jpeg.variances(moments, prediction.width, factor);
-            // On cells of several pixels it is about the same for all candidates.
-            let variances = match factor {
-                1 => own(),
-                _ => self.coded.get_or_init(own).clone(),
-            };
+            let factor = self.grid.factor as usize;
+            let variances = variances(&jpeg, &prediction.moments, prediction.width, factor);
             Arc::make_mut(&mut prediction.moments).add_doubt(&variances);
         }
         prediction

@@ -77,7 +77,7 @@ impl Error {
 
 /// The variances of rounding and of what is expected itself.
 fn rounding(prediction: &Prediction, at: usize) -> [f64; 3] {
-    let (steps, doubt) = (prediction.steps(at), prediction.moments.doubt(at));
+    let (steps, doubt) = (prediction.steps(at), prediction.moments.doubt[at]);
     [0, 1, 2].map(|i| steps[i] * steps[i] / 12.0 + doubt[i])
 }
 

@@ -10,7 +10,7 @@ use super::{
         Shows::{self, AtEdges, Everywhere, InAreas},
     },
     light::{Curve, Look},
-    textbook::{Behind, Squares, Visible},
+    textbook::{Squares, Visible},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -119,10 +119,10 @@ pub const ROWS: &[Row] = &[
     row("depth_ignored", InAreas, "of several objects that a ray hits the farthest one is seen, not the nearest", NEAREST,
         |c, _| show(c, Visible::Farthest)),
     row("behind_seen", InAreas, "what lies behind the eye is seen, as the floor in the sky: hits with t < 0 count", AHEAD,
-        |c, _| c.behaviour.behind = Behind::First),
+        |c, _| c.behaviour.visible = Visible::Behind),
     row("behind_seen", InAreas,
         "what lies behind the eye is seen, as the floor in the sky, where nothing before it is nearer: hits with t < 0 count", AHEAD,
-        |c, _| c.behaviour.behind = Behind::ByDistance),
+        |c, _| c.behaviour.visible = Visible::NearestBothWays),
     row("board_truncated", InAreas,
         "coordinates on the checkerboard are truncated towards 0, so the squares on both sides of an axis are one", SQUARES,
         |c, _| tell_squares(c, Squares::Truncated)),

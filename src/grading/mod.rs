@@ -7,13 +7,12 @@
 //! 2. A `candidate` is a program with mistakes: rows of the table in `mistakes`, numbers of the scene (`parameters`), or a `patch` that no object explains. They
 //!    change its scene, its `layout`, what it does to `light`, or how it behaves.
 //! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the tracer in `textbook` where it behaves as no
-//!    scene can say, both from the same `axes`. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
+//!    scene can say. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
 //! 4. A prediction says how likely what is seen is (`likelihood`), and what no sampling explains (`strays`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
 //!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
 
-mod axes;
 mod candidate;
 mod empty_pixels;
 mod forward_selection;
@@ -49,7 +48,7 @@ use crate::{
     cancel,
     color::srgb_to_linear,
     exact::Integrator,
-    film::{self, Comparison, Film, SizesDiffer, Tolerance},
+    film::{self, Comparison, Film, Jpeg, SizesDiffer, Tolerance},
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -65,7 +64,6 @@ use self::{
     strays::WRONG,
 };
 pub use self::{
-    jpeg::Jpeg,
     objects::ObjectVerdict,
     verdict::{Kind, NamedMistake, Verdict},
 };
@@ -153,15 +151,11 @@ impl<'a> Reference<'a> {
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let judge = Judge::new(self, &film, jpeg, cancel);
-        judged(&judge, &film, cancel)
+        let found = forward_selection::run(&judge)?;
+        // What was found is told, however much work that is.
+        let verdict = judge.work.without_limit(|| told(&judge, &film, found));
+        Ok(cancel::unless_set(cancel, verdict)?)
     }
-}
-
-fn judged(judge: &Judge, film: &Film, cancel: &AtomicBool) -> Result<Verdict, RenderError> {
-    let found = forward_selection::run(judge)?;
-    // What was found is told, however much work that is.
-    let verdict = judge.work.without_limit(|| told(judge, film, found));
-    Ok(cancel::unless_set(cancel, verdict)?)
 }
 
 fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
@@ -169,8 +163,8 @@ fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
     let right = Candidate::right(scene);
     let mut verdict = match found {
         Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found),
-        _ if judge.explains_all(&right, None) && !has_other_colors(film, scene, jpeg) => {
-            let judged = judge.judged(&right, &judge.fine, None);
+        _ if judge.explains_all(&right) && !has_other_colors(film, scene, jpeg) => {
+            let judged = judge.judged(&right, &judge.fine);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
                 ..Verdict::of(Kind::Noise, scene)
@@ -216,7 +210,7 @@ fn wrong(judge: &Judge, found: &Judged) -> Verdict {
         true => &judge.edges,
         false => &judge.middle,
     };
-    let judged = |candidate: &Candidate| judge.judged(candidate, level, None);
+    let judged = |candidate: &Candidate| judge.judged(candidate, level);
     let noise = judged(last).map_or(0.0, |last| last.score.noise);
     let beyond = |candidate: &Candidate| {
         judged(candidate).map_or(0.0, |found| (found.score.squares - noise).max(0.0))
@@ -249,7 +243,7 @@ fn wrong(judge: &Judge, found: &Judged) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!judge.explains_all(last, None)).then(|| (left / all).min(1.0));
+    let rest = (!judge.explains_all(last)).then(|| (left / all).min(1.0));
     let (objects, is_background_right) = objects::judged(judge, last);
     Verdict {
         samples: found.score.samples,

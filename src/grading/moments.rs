@@ -10,44 +10,39 @@ pub struct Moments {
     pub mean: Vec<[f64; 3]>,
     /// The variance of one sample in it.
     pub variance: Vec<[f64; 3]>,
-    /// The variances of the means themselves; empty if they are exact.
+    /// The variance of that mean itself: how far off it may be.
     pub doubt: Vec<[f64; 3]>,
 }
 
 impl Moments {
     /// None yet of so many cells.
     pub fn zero(cells: usize) -> Self {
-        Self {
-            mean: vec![[0.0; 3]; cells],
-            variance: vec![[0.0; 3]; cells],
-            doubt: Vec::new(),
-        }
+        Self::exact((0..cells).map(|_| Default::default()))
     }
 
     /// Those of exact pixels.
     pub fn exact(pixels: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Self {
-        let (mean, variance) = pixels.unzip();
+        let (mean, variance): (Vec<_>, Vec<_>) = pixels.unzip();
+        let doubt = vec![[0.0; 3]; mean.len()];
         Self {
             mean,
             variance,
-            doubt: Vec::new(),
+            doubt,
         }
     }
 
-    /// Replaces the exact ones of an area of a part, whose cells these are.
+    /// Replaces those of an area of a part, whose cells these are.
     pub fn put(&mut self, part: Area, area: Area, own: &Self) {
         for (from, (x, y)) in area.iter().enumerate() {
             let at = part.index(x, y);
             (self.mean[at], self.variance[at]) = (own.mean[from], own.variance[from]);
+            self.doubt[at] = own.doubt[from];
         }
     }
 
     /// The same of the cells of these indices.
     pub fn select(&self, indices: &[usize]) -> Self {
-        let select = |all: &[[f64; 3]]| match all {
-            [] => Vec::new(),
-            all => indices.iter().map(|&at| all[at]).collect(),
-        };
+        let select = |all: &[[f64; 3]]| indices.iter().map(|&at| all[at]).collect();
         Self {
             mean: select(&self.mean),
             variance: select(&self.variance),
@@ -55,14 +50,8 @@ impl Moments {
         }
     }
 
-    /// How far each mean may be off itself.
-    pub fn doubt(&self, at: usize) -> [f64; 3] {
-        self.doubt.get(at).copied().unwrap_or_default()
-    }
-
     /// Makes the means less certain.
     pub fn add_doubt(&mut self, more: &[[f64; 3]]) {
-        self.doubt.resize(self.mean.len(), [0.0; 3]);
         for (doubt, more) in self.doubt.iter_mut().zip(more) {
             *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
         }

@@ -6,28 +6,22 @@ use super::{
     candidate::{Candidate, Mistake},
     judge::{Judge, Judged},
     level::Level,
+    levenberg_marquardt::absolute,
     parameters::{self, Owner, Parameter},
     prediction::Prediction,
-    rendering::Rendering,
 };
 use crate::color::{Color, linear_to_srgb};
 
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
 
-/// So many parameters of objects and so many others are fitted on the coarse grid.
-const FITTED: usize = 4;
+/// So many parameters are fitted on the coarse grid.
+const FITTED: usize = 6;
 
-/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least. `like` is what the
-/// candidate so far makes on the coarse grid.
-pub fn numeric_mistakes(
-    judge: &Judge,
-    from: &Judged,
-    like: &Rendering,
-    suspects: &[usize],
-) -> Vec<(f64, Candidate)> {
+/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
+pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
-    let Some((tiny, tiny_like)) = judge.around(candidate) else {
+    let Some(tiny) = judge.tiny(candidate) else {
         return Vec::new();
     };
     let is_suspect = |parameter: &Parameter| match parameter.owner {
@@ -50,38 +44,31 @@ pub fn numeric_mistakes(
         };
         let tried = starts.into_iter().filter_map(|start| {
             let started = candidate.with(Mistake::Numbers(parameter.clone(), start))?;
-            Some((judge.left(&started, &tiny, &tiny_like)?, started))
+            Some((absolute(&judge.differences(&started, &tiny)?), started))
         });
         let mut tried: Vec<_> = tried.collect();
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));
         tried.truncate(STARTS);
         Some((tried.first()?.0, (parameter, tried)))
     });
-    let fit = |parameter: &Parameter, start: &Candidate, like: (&Level, &Rendering), rounds| {
+    let fit = |parameter: &Parameter, start: &Candidate, level: &Level, rounds| {
         // Colours are read, but where something is done to them.
         let is_read = parameter.is_color() && candidate.looks.is_empty();
         let free = parameter.numbers(&candidate.scene).len();
         let rounds = if is_read { [0, 0] } else { rounds };
-        let (candidate, fitted) = judge.fit(start, free, like, 0.5, rounds)?;
+        let (candidate, fitted) = judge.fit(start, free, level, 0.5, rounds)?;
         Some((fitted.left, candidate))
     };
-    let tiny = (&tiny, &*tiny_like);
     // Those first that start best: work may end before all are fitted.
     let on_tiny = least_first(started).filter_map(|(parameter, tried)| {
         let fitted = tried.iter();
-        let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, tiny, [4, 0]));
+        let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
         let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
         Some((left, (parameter, best)))
     });
-    let (local, others): (Vec<_>, Vec<_>) =
-        on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
-    let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
-        fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
-        fitted.truncate(FITTED);
-        fitted
-    });
-    least_first(on_coarse)
-        .filter_map(|(parameter, start)| fit(&parameter, &start, (&judge.coarse, like), [2, 1]))
+    least_first(on_tiny)
+        .take(FITTED)
+        .filter_map(|(parameter, start)| fit(&parameter, &start, &judge.coarse, [2, 1]))
         .collect()
 }
 

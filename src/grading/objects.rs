@@ -3,16 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    axes::Axes,
-    candidate::Candidate,
-    grid::Grid,
-    judge::Judge,
-    parameters::Owner,
-    textbook::{corners, vertices},
-    work,
+    candidate::Candidate, grid::Grid, judge::Judge, parameters::Owner, strays::Strays,
+    textbook::corners, work,
 };
 use crate::{
+    projection::Projection,
     scene::{Checkerboard, Scene, Shape},
+    textbook::vertices,
     tracer::World,
 };
 
@@ -20,7 +17,7 @@ use crate::{
 const HALF_PIXEL: f64 = 0.5;
 
 /// So far from an object that is wrong, in pixels, what else is wrong is its own.
-const BESIDE: u32 = 2;
+const BESIDE: usize = 2;
 
 /// An object.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,21 +61,14 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
         };
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
-    let strays = judge.strays(&candidate.shown_rightly(), &judge.fine, None);
-    let strays = strays.unwrap_or_default();
+    let right = judge.predicted(&candidate.shown_rightly(), &judge.fine);
+    let strays = right.map_or_else(Strays::default, |right| right.strays());
     let grid = &judge.fine.grid;
     let labels = labels(judge, candidate, grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
-    let cells = grid.cells;
-    let near = |at: u32, most: u32| at.saturating_sub(BESIDE)..(at + BESIDE + 1).min(most);
     let is_of_another = |at: usize| {
-        let (x, y) = (at as u32 % cells.width, at as u32 / cells.width);
-        near(y, cells.height).any(|y| {
-            near(x, cells.width).any(|x| {
-                let label = labels[(y * cells.width + x) as usize];
-                label.is_some_and(|object| is_moved[object])
-            })
-        })
+        let mut near = grid.around(at, BESIDE).filter_map(|near| labels[near]);
+        near.any(|object| is_moved[object])
     };
     // The background counts as one behind all objects.
     let group =
@@ -108,16 +98,16 @@ pub fn labels(judge: &Judge, candidate: &Candidate, grid: &Grid) -> Vec<Option<u
 
 /// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.
 fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
-    let axes = [from, to].map(|scene| Axes::new(&scene.camera, &scene.image));
-    let size = 2.0 * axes[0].middle;
+    let projections = [from, to].map(|scene| Projection::quick(&scene.camera, &scene.image));
+    let size = projections[0].size;
     let own = &from.objects[object].shape;
     let squares = match own {
-        Shape::Checkerboard(board) => squares(board, &axes[0]),
+        Shape::Checkerboard(board) => squares(board, &projections[0]),
         _ => Vec::new(),
     };
     let [before, after] = [own, &to.objects[object].shape].map(|shape| points(shape, &squares));
     let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
-        let (before, after) = (axes[0].place(before)?, axes[1].place(after));
+        let (before, after) = (projections[0].point(before)?, projections[1].point(after));
         let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
         // What is not before the eye any more is far off.
         let off = after.map_or(size.length(), |after| before.distance(after));
@@ -147,14 +137,14 @@ fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// What a board shows in a few places of the picture, in squares.
-fn squares(board: &Checkerboard, axes: &Axes) -> Vec<DVec3> {
+fn squares(board: &Checkerboard, projection: &Projection) -> Vec<DVec3> {
     let place = |at: i32| DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0;
     let crossing = |at| {
-        let ray = axes.ray(2.0 * axes.middle * place(at));
-        let t = (board.y - axes.eye.y) / ray.y;
+        let plane = DVec3::Y * board.y;
+        let point = projection.on_plane(projection.size * place(at), plane, DVec3::Y)?;
         // Beyond some hundred squares nothing of them is seen.
-        let is_seen = t > 0.0 && t < 100.0 * board.square;
-        is_seen.then(|| (axes.eye + t * ray) / board.square)
+        let is_seen = projection.depth(point) < 100.0 * board.square;
+        is_seen.then_some(point / board.square)
     };
     (0..25).filter_map(crossing).collect()
 }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::axes::Axes;
 use crate::{
     color::Color,
     math::Angle,
+    projection::Projection,
     scene::{Part, Scene, Shape, View},
     schema::{self, Field, Value},
 };
@@ -215,26 +215,23 @@ impl Parameter {
 
     /// By how much each number changes the picture by about so many pixels, or a colour by a few steps.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
-        let axes = Axes::new(&scene.camera, &scene.image);
+        let projection = Projection::quick(&scene.camera, &scene.image);
+        // How large a pixel is at a point, in metres.
+        let pixel_at =
+            |point: DVec3| (point - projection.eye).length().max(1e-9) * projection.pitch;
         let wide = f64::from(scene.image.width.max(scene.image.height));
         let pixel = match self.owner {
             Owner::Object(index) => match middle(&scene.objects[index].shape) {
-                Some(middle) => axes.pixel_at(middle),
+                Some(middle) => pixel_at(middle),
                 None => 0.0,
             },
             _ => match scene.camera.view {
-                View::Lookat(point) => axes.pixel_at(point),
+                View::Lookat(point) => pixel_at(point),
                 // That of the nearest object.
                 View::Direction(_) => {
                     let shapes = scene.objects.iter().map(|object| &object.shape);
-                    let middles = shapes.filter_map(middle);
-                    let pixels = middles.map(|middle| axes.pixel_at(middle));
-                    let nearest = pixels.fold(f64::INFINITY, f64::min);
-                    if nearest.is_finite() {
-                        nearest
-                    } else {
-                        1.0 / axes.focal
-                    }
+                    let pixels = shapes.filter_map(middle).map(pixel_at);
+                    pixels.reduce(f64::min).unwrap_or(projection.pitch)
                 }
             },
         };
@@ -242,7 +239,9 @@ impl Parameter {
             (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
             (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
-            ("direction", Value::Vector(direction)) => vec![direction.length() / axes.focal; 3],
+            ("direction", Value::Vector(direction)) => {
+                vec![direction.length() * projection.pitch; 3]
+            }
             (_, Value::Vector(_)) => vec![pixel; 3],
             ("fov" | "hfov", Value::Angle(angle)) => {
                 vec![2.0 / wide * angle.in_degrees()]
@@ -258,12 +257,6 @@ impl Parameter {
         steps.map(|step| by * step).collect()
     }
 
-    /// Whether it moves one object that has bounds.
-    pub fn is_local(&self, scene: &Scene) -> bool {
-        let is_bounded = |index: usize| middle(&scene.objects[index].shape).is_some();
-        matches!(self.owner, Owner::Object(index) if is_bounded(index))
-    }
-
     /// Whether it is a colour, which moves nothing.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
@@ -276,7 +269,7 @@ fn inward(channel: f64) -> f64 {
 }
 
 /// The middle of a shape that has one.
-pub fn middle(shape: &Shape) -> Option<DVec3> {
+fn middle(shape: &Shape) -> Option<DVec3> {
     match shape {
         Shape::Sphere(sphere) => Some(sphere.center),
         Shape::Triangle(triangle) => Some(triangle.outline.centroid()),

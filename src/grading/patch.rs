@@ -14,8 +14,7 @@ const SMALLEST: usize = 4;
 /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let grid = &judge.fine.grid;
-    let rendering = judge.render(from.candidate(), &judge.fine, None)?;
-    let shown = judge.fine.predict(&rendering);
+    let shown = judge.predicted(from.candidate(), &judge.fine)?;
     let (seen, strays) = (shown.seen, shown.strays().pixels);
     let pairs = seen.iter().zip(&shown.moments.mean);
     let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
@@ -27,16 +26,9 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         let mut piece = vec![start];
         let mut at = 0;
         while at < piece.len() {
-            let (width, height) = (grid.width(), grid.cells.height as usize);
-            let (x, y) = (piece[at] % width, piece[at] / width);
-            let beside = [
-                (x > 0).then(|| piece[at] - 1),
-                (x + 1 < width).then_some(piece[at] + 1),
-                (y > 0).then(|| piece[at] - width),
-                (y + 1 < height).then_some(piece[at] + width),
-            ];
-            for next in beside.into_iter().flatten() {
-                if is_left[next] && is_near(seen[next], seen[start]) {
+            for next in grid.around(piece[at], 1) {
+                let is_beside = [1, grid.width()].contains(&next.abs_diff(piece[at]));
+                if is_beside && is_left[next] && is_near(seen[next], seen[start]) {
                     is_left[next] = false;
                     piece.push(next);
                 }

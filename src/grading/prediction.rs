@@ -38,7 +38,7 @@ impl Prediction<'_> {
         if looks.is_empty() {
             return;
         }
-        let (seen, width) = (self.seen, self.width);
+        let seen = self.seen;
         let Moments { mean, variance, .. } = Arc::make_mut(&mut self.moments);
         for look in looks {
             match *look {
@@ -57,18 +57,14 @@ impl Prediction<'_> {
                     }
                 }
                 Look::Curve(curve) => {
-                    let mut last = [(f64::NAN, 0.0, 0.0); 3];
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {
-                            if mean[i] != last[i].0 {
-                                // The slope over what noise of a sample or a step may reach.
-                                let by = variance[i].sqrt().max(STEP) / 4.0;
-                                let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
-                                let slope = (curve(high) - curve(low)) / (high - low);
-                                last[i] = (mean[i], curve(mean[i]), slope);
-                            }
-                            variance[i] *= last[i].2 * last[i].2;
-                            mean[i] = last[i].1;
+                            // The slope over what noise of a sample or a step may reach.
+                            let by = variance[i].sqrt().max(STEP) / 4.0;
+                            let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
+                            let slope = (curve(high) - curve(low)) / (high - low);
+                            variance[i] *= slope * slope;
+                            mean[i] = curve(mean[i]);
                         }
                     }
                 }
@@ -82,14 +78,8 @@ impl Prediction<'_> {
                     };
                     for at in (0..seen.len()).filter(|&at| is_part(at)) {
                         // Its border is mixed with what is beside it.
-                        let rows = [at.checked_sub(width), Some(at), Some(at + width)];
-                        let cells = rows.into_iter().flatten();
-                        let cells = cells.flat_map(|at| {
-                            let column = at % width;
-                            at - column.min(1)..=at + usize::from(column + 1 < width)
-                        });
-                        for at in cells.filter(|&at| at < seen.len()) {
-                            (mean[at], variance[at]) = (seen[at], [0.0; 3]);
+                        for near in grid.around(at, 1) {
+                            (mean[near], variance[near]) = (seen[near], [0.0; 3]);
                         }
                     }
                 }
@@ -141,7 +131,7 @@ impl Prediction<'_> {
         let cells = 0..self.seen.len();
         let deviations = cells.flat_map(|at| {
             let [_, variance] = range(&self.moments.variance, self.width, at, 1);
-            let doubt = self.moments.doubt(at);
+            let doubt = self.moments.doubt[at];
             [0, 1, 2].map(|i| (variance[i] + doubt[i] + STEP * STEP).sqrt())
         });
         deviations.collect()

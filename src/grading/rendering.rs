@@ -6,14 +6,13 @@ use std::{cell::OnceCell, sync::Arc};
 use glam::DVec2;
 
 use super::{
-    axes::Axes,
     candidate::Candidate,
     grid::Grid,
     moments::Moments,
-    textbook::{Behaviour, Behind, Textbook, bounds},
+    textbook::{Behaviour, Textbook, bounds},
     work::Work,
 };
-use crate::{area::Area, scene::Scene};
+use crate::{area::Area, projection::Projection, scene::Scene};
 
 /// Samples in a cell of what no scene can say.
 const SAMPLES: usize = 34;
@@ -81,17 +80,20 @@ impl Candidate {
         &self,
         grid: &Grid,
         samples: Option<usize>,
-        likes: &[&Rendering],
+        known: &[Arc<Rendering>],
         work: &Work,
     ) -> Option<Rendering> {
         let part = self.layout.sources(grid.cells, grid.size());
-        let is_alike = |like: &&Rendering| {
-            let behaves = like.candidate.behaviour == self.behaviour;
-            like.part == part && (samples.is_none() || behaves)
+        let is_alike = |one: &&Arc<Rendering>| {
+            let behaves = one.candidate.behaviour == self.behaviour;
+            one.part == part && (samples.is_none() || behaves)
         };
-        let likes = likes.iter().copied().filter(is_alike);
-        let likes = likes.map(|like| (like, self.changed(&like.candidate, grid, part)));
-        let nearest = likes.min_by_key(|(_, changed)| changed.pixels());
+        let alike = known.iter().filter(is_alike);
+        let alike = alike.map(|one| (one, self.changed(&one.candidate, grid, part)));
+        let nearest = alike.min_by_key(|(one, changed)| {
+            let behaves_otherwise = one.candidate.behaviour != self.behaviour;
+            (changed.pixels(), behaves_otherwise)
+        });
         let scene = OnceCell::new();
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
@@ -103,33 +105,18 @@ impl Candidate {
             None => work.exact_moments(scene(), self.averaged, area),
             Some(samples) => sampled(self.behaviour, area, samples),
         };
-        let right = match nearest {
-            Some((like, area)) if area.pixels() == 0 => Arc::clone(&like.right),
-            Some((like, area)) if area != part => {
-                let mut moments = Moments::clone(&like.right);
-                moments.put(part, area, &traced(area)?);
-                Arc::new(moments)
-            }
-            _ => Arc::new(traced(part)?),
-        };
+        let right = nearest.map(|(one, area)| (&one.right, area));
+        let right = completed(right, part, traced)?;
         let mut behaved = None;
-        if samples.is_none() && self.behaviour != Behaviour::RIGHT {
-            let near = nearest.filter(|(like, _)| like.candidate.behaviour == self.behaviour);
-            let near = near.and_then(|(like, area)| Some((like.behaved.clone()?, area)));
-            let (mut all, area) = near.unwrap_or_else(|| (Arc::clone(&right), part));
-            if area.pixels() > 0 {
-                let [own, other] = [
-                    sampled(Behaviour::RIGHT, area, SAMPLES)?,
-                    sampled(self.behaviour, area, SAMPLES)?,
-                ];
-                put_samples(
-                    Arc::make_mut(&mut all),
-                    &right,
-                    [&own, &other],
-                    [area, part],
-                );
-            }
-            behaved = Some(all);
+        if samples.is_none() && !self.behaviour.is_right() {
+            let nearest = nearest.filter(|(one, _)| one.candidate.behaviour == self.behaviour);
+            let nearest = nearest.and_then(|(one, area)| Some((one.behaved.as_ref()?, area)));
+            behaved = Some(completed(nearest, part, |area| {
+                let own = sampled(Behaviour::default(), area, SAMPLES)?;
+                let other = sampled(self.behaviour, area, SAMPLES)?;
+                let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
+                Some(beside(right.select(&indices), &own, &other))
+            })?);
         }
         Some(Rendering {
             candidate: self.clone(),
@@ -151,13 +138,13 @@ impl Candidate {
         }
         let (one, two) = (&self.scene, &other.scene);
         // Objects are seen only where they are.
-        let is_in_place = self.behaviour.behind == Behind::Unseen && !self.behaviour.is_squeezed;
+        let is_in_place = !self.behaviour.sees_behind() && !self.behaviour.is_squeezed;
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.averaged != other.averaged {
             return part;
         }
         let (camera, image) = grid.view(one, self.layout.is_shifted());
-        let axes = Axes::new(&camera, &image);
+        let projection = Projection::quick(&camera, &image);
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for object in 0..one.objects.len() {
             let states =
@@ -166,7 +153,7 @@ impl Candidate {
                 continue;
             }
             for (_, shape) in states.iter().filter(|(is_drawn, _)| *is_drawn) {
-                let Some([low, high]) = bounds(shape, &axes) else {
+                let Some([low, high]) = bounds(shape, &projection) else {
                     return part;
                 };
                 (least, most) = (least.min(low), most.max(high));
@@ -185,26 +172,32 @@ impl Candidate {
     }
 }
 
-/// Puts what samples show of a program that behaves otherwise, and how far off these means may be, into an area of a part; where samples of a right one show the
-/// same, it is what that shows exactly.
-fn put_samples(
-    all: &mut Moments,
-    right: &Moments,
-    [own, other]: [&Moments; 2],
-    [area, part]: [Area; 2],
-) {
-    all.doubt.resize(all.mean.len(), [0.0; 3]);
-    for (from, (x, y)) in area.iter().enumerate() {
-        let at = part.index(x, y);
-        let is_alike =
-            own.mean[from] == other.mean[from] && own.variance[from] == other.variance[from];
-        (all.mean[at], all.variance[at], all.doubt[at]) = match is_alike {
-            true => (right.mean[at], right.variance[at], [0.0; 3]),
-            false => {
-                let variance = other.variance[from];
-                let doubt = variance.map(|one| one / SAMPLES as f64 + MISSED * MISSED);
-                (other.mean[from], variance, doubt)
-            }
-        };
+/// What is made in a part of the picture, of which all is known but an area.
+fn completed(
+    known: Option<(&Arc<Moments>, Area)>,
+    part: Area,
+    make: impl FnOnce(Area) -> Option<Moments>,
+) -> Option<Arc<Moments>> {
+    match known {
+        Some((known, area)) if area.pixels() == 0 => Some(Arc::clone(known)),
+        Some((known, area)) if area != part => {
+            let mut all = Moments::clone(known);
+            all.put(part, area, &make(area)?);
+            Some(Arc::new(all))
+        }
+        _ => Some(Arc::new(make(part)?)),
     }
+}
+
+/// What samples show of a program that behaves otherwise, and how far off these means may be; where samples of a right one show the same, it is what that shows
+/// exactly.
+fn beside(mut right: Moments, own: &Moments, other: &Moments) -> Moments {
+    for at in 0..other.mean.len() {
+        let variance = other.variance[at];
+        if own.mean[at] != other.mean[at] || own.variance[at] != variance {
+            (right.mean[at], right.variance[at]) = (other.mean[at], variance);
+            right.doubt[at] = variance.map(|one| one / SAMPLES as f64 + MISSED * MISSED);
+        }
+    }
+    right
 }

@@ -101,7 +101,7 @@ impl Prediction<'_> {
 
     /// What a pixel may differ by for its rounding and for what is not known of it.
     fn allowed(&self, at: usize) -> [f64; 3] {
-        let (steps, doubt) = (self.steps(at), self.moments.doubt(at));
+        let (steps, doubt) = (self.steps(at), self.moments.doubt[at]);
         [0, 1, 2].map(|i| WRONG * steps[i] + DEVIATIONS * doubt[i].sqrt())
     }
 }

@@ -6,17 +6,20 @@
 
 use glam::{BVec3, DVec2, DVec3};
 
-use super::{axes::Axes, light::Curve, moments::Moments};
+use super::{light::Curve, moments::Moments};
 use crate::{
     area::Area,
     color::Color,
-    scene::{Outline, Scene, Shape},
+    projection::Projection,
+    scene::{Checkerboard, Scene, Shape},
+    textbook::{by_vertices, crossings, vertices},
 };
 
 /// Which of the surfaces that a ray crosses is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Visible {
-    /// The nearest, as it should be.
+    /// The nearest before the eye, as it should be.
+    #[default]
     Nearest,
     /// That of the last object in the file.
     Last,
@@ -24,23 +27,17 @@ pub enum Visible {
     First,
     /// The farthest.
     Farthest,
-}
-
-/// Whether what lies behind the eye is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Behind {
-    /// As it should be.
-    Unseen,
-    /// It is nearer than all that lies before the eye.
-    First,
-    /// It is as far away as it is.
-    ByDistance,
+    /// The farthest behind the eye, or else the nearest.
+    Behind,
+    /// The nearest before the eye or behind it.
+    NearestBothWays,
 }
 
 /// Which squares of a checkerboard have the first colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Squares {
     /// As it should be: those where floor(x) + floor(z) is even.
+    #[default]
     Floored,
     /// Those where trunc(x) + trunc(z) is even.
     Truncated,
@@ -59,13 +56,11 @@ const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.96),
 ];
 
-/// How a program behaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a program behaves; one without mistakes by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Behaviour {
     /// Which surface is seen.
     pub visible: Visible,
-    /// Whether surfaces behind the eye are seen, too.
-    pub behind: Behind,
     /// How squares are told.
     pub squares: Squares,
     /// Whether the window is as wide as it is high, though the picture is not.
@@ -73,32 +68,29 @@ pub struct Behaviour {
 }
 
 impl Behaviour {
-    /// A program without mistakes.
-    pub const RIGHT: Self = Self {
-        visible: Visible::Nearest,
-        behind: Behind::Unseen,
-        squares: Squares::Floored,
-        is_squeezed: false,
-    };
+    /// Whether it is that of a program without mistakes.
+    pub fn is_right(self) -> bool {
+        self == Self::default()
+    }
+
+    /// Whether what lies behind the eye is seen, too.
+    pub fn sees_behind(self) -> bool {
+        matches!(self.visible, Visible::Behind | Visible::NearestBothWays)
+    }
 }
 
 impl Squares {
     /// Whether the square that a point lies in has the first colour.
     fn is_first(self, x: f64, z: f64) -> bool {
-        // Beyond what an i64 holds no square is told from another.
-        let odd = |x: f64| x as i64 & 1 == 1;
-        // `f64::floor` is a call where a processor need not have an instruction for it, and each ray that meets a board asks.
-        let floor = |x: f64| {
-            let whole = x as i64;
-            whole.wrapping_sub(i64::from(whole as f64 > x))
-        };
-        // A remainder of an odd negative number is −1.
-        let remainder = |x: f64| if odd(x) { x.signum() } else { 0.0 };
+        // `f64::floor` is a call where a processor need not have an instruction for it, and each ray that meets a board asks. Beyond what an i64 holds no square is
+        // told from another.
+        let trunc = |x: f64| x as i64;
+        let floor = |x: f64| trunc(x).wrapping_sub(i64::from(trunc(x) as f64 > x));
         match self {
-            Self::Floored => (floor(x) ^ floor(z)) & 1 == 0,
-            Self::Truncated => odd(x.trunc()) == odd(z.trunc()),
-            Self::SignedSum => remainder(x.floor() + z.floor()) != 1.0,
-            Self::SignedParts => remainder(x.floor()) == remainder(z.floor()),
+            Self::Floored => floor(x).wrapping_add(floor(z)) & 1 == 0,
+            Self::Truncated => trunc(x).wrapping_add(trunc(z)) & 1 == 0,
+            Self::SignedSum => floor(x).wrapping_add(floor(z)) % 2 != 1,
+            Self::SignedParts => floor(x) % 2 == floor(z) % 2,
         }
     }
 }
@@ -111,96 +103,47 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// A shape as seen from the eye.
-enum Prepared {
-    Sphere {
-        to: DVec3,
-        /// The square of the distance less that of the radius.
-        power: f64,
-    },
-    /// A plane n·p = h, and for each edge a normal in it and its value.
-    Triangle {
-        normal: DVec3,
-        height: f64,
-        edges: [(DVec3, f64); 3],
-    },
-    Box {
-        min: DVec3,
-        max: DVec3,
-    },
-    Board {
-        y: f64,
-        square: f64,
-    },
+/// An object prepared.
+struct Traced {
+    shape: Shape,
+    /// The rectangle of the picture that it lies in, or all of it.
+    bounds: [DVec2; 2],
+    /// What is averaged of its first and its second colour.
+    colors: [[f64; 3]; 2],
 }
 
 /// A scene prepared.
 pub struct Textbook {
-    axes: Axes,
+    projection: Projection,
     behaviour: Behaviour,
     near: f64,
     far: f64,
-    shapes: Vec<Prepared>,
-    /// The part of the picture that each lies in, where that is known.
-    bounds: Vec<[DVec2; 2]>,
-    /// What is averaged of each object's first and second colour, the background's last.
-    colors: Vec<[[f64; 3]; 2]>,
+    objects: Vec<Traced>,
+    /// What is averaged of the background.
+    background: [f64; 3],
 }
 
 impl Textbook {
     /// Prepares a scene, and what is averaged.
     pub fn new(scene: &Scene, behaviour: Behaviour, averaged: Curve) -> Self {
-        let eye = scene.camera.eye;
-        let shapes = scene.objects.iter().map(|object| match object.shape {
-            Shape::Sphere(sphere) => {
-                let to = sphere.center - eye;
-                Prepared::Sphere {
-                    to,
-                    power: to.length_squared() - sphere.radius * sphere.radius,
-                }
-            }
-            Shape::Triangle(triangle) => {
-                let points = vertices(&triangle.outline).map(|vertex| vertex - eye);
-                let normal = (points[1] - points[0]).cross(points[2] - points[0]);
-                let edges = [0, 1, 2].map(|i| {
-                    let inward = normal.cross(points[(i + 1) % 3] - points[i]);
-                    (inward, inward.dot(points[i]))
-                });
-                Prepared::Triangle {
-                    normal,
-                    height: normal.dot(points[0]),
-                    edges,
-                }
-            }
-            Shape::Box(cuboid) => Prepared::Box {
-                min: cuboid.min - eye,
-                max: cuboid.max - eye,
-            },
-            Shape::Checkerboard(board) => Prepared::Board {
-                y: board.y - eye.y,
-                square: board.square,
-            },
-        });
-        let shapes = shapes.collect();
-        let axes = Axes::new(&scene.camera, &scene.image);
+        let projection = Projection::quick(&scene.camera, &scene.image);
         let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
-        let objects = scene.objects.iter();
-        let bounds = objects.map(|object| bounds(&object.shape, &axes).unwrap_or(everywhere));
-        let bounds = bounds.collect();
-        let objects = scene.objects.iter();
-        let colors = objects.map(|object| object.shape.colors());
         let averaged = |color: Color| color.to_linear().map(|light| averaged.light(light));
-        let colors = colors
-            .chain([[scene.image.background; 2]])
-            .map(|two| two.map(averaged));
+        let objects = scene.objects.iter().map(|object| {
+            let shape = by_vertices(object.shape);
+            Traced {
+                shape,
+                bounds: bounds(&shape, &projection).unwrap_or(everywhere),
+                colors: shape.colors().map(averaged),
+            }
+        });
         Self {
-            axes,
+            projection,
             behaviour,
             near: scene.camera.near,
             far: scene.camera.far.unwrap_or(f64::INFINITY),
-            shapes,
-            bounds,
-            colors: colors.collect(),
+            objects: objects.collect(),
+            background: averaged(scene.image.background),
         }
     }
 
@@ -210,90 +153,86 @@ impl Textbook {
         let count = places.len() as f64;
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
-            // To ask the corners first is more work than a few samples are.
-            if places.len() > CORNERS.len() + 1 {
-                let first = self.color(corner + places[0]);
-                let is_flat = |probe: &DVec2| self.color(corner + *probe) == first;
-                // Squares of the size of half a cell show the same in all corners.
-                let mut probes = CORNERS.iter().chain(&places[1..8]);
-                if probes.all(is_flat) {
-                    return (first, [0.0; 3]);
-                }
+            // From the first on, so that what shows one colour has just that, and no variance.
+            let first = self.color(corner + places[0]);
+            // Squares of the size of half a cell show the same in all corners. To ask these first is more work than a few samples are.
+            let mut probes = CORNERS.iter().chain(places.iter().take(8));
+            let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
+            if places.len() > 8 && probes.all(is_first) {
+                return (first, [0.0; 3]);
             }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
-            for &place in &places {
+            for &place in &places[1..] {
                 let color = self.color(corner + place);
                 for i in 0..3 {
-                    sums[i] += color[i];
-                    squares[i] += color[i] * color[i];
+                    let more = color[i] - first[i];
+                    sums[i] += more;
+                    squares[i] += more * more;
                 }
             }
-            let mean = sums.map(|sum| sum / count);
-            let variance = [0, 1, 2].map(|i| (squares[i] / count - mean[i] * mean[i]).max(0.0));
-            (mean, variance)
+            let more = sums.map(|sum| sum / count);
+            let variance = [0, 1, 2].map(|i| (squares[i] / count - more[i] * more[i]).max(0.0));
+            ([0, 1, 2].map(|i| first[i] + more[i]), variance)
         };
         Moments::exact(part.iter().map(pixel))
     }
 
     fn color(&self, place: DVec2) -> [f64; 3] {
-        let size = 2.0 * self.axes.middle;
+        let size = self.projection.size;
         let moved = match self.behaviour.is_squeezed {
             true => {
-                let middle = self.axes.middle.x;
+                let middle = size.x / 2.0;
                 DVec2::new(middle + (place.x - middle) * size.y / size.x, place.y)
             }
             false => place,
         };
-        let (object, second) = self.seen(moved).unwrap_or((self.shapes.len(), false));
-        self.colors[object][usize::from(second)]
+        self.seen(moved).unwrap_or(self.background)
     }
 
-    /// The object that is seen at a place, and whether it is a board's second colour.
-    fn seen(&self, place: DVec2) -> Option<(usize, bool)> {
-        let ray = self.axes.ray(place);
-        let mut best: Option<(usize, f64, f64)> = None;
-        for (object, (shape, [least, most])) in self.shapes.iter().zip(&self.bounds).enumerate() {
+    /// The colour of the object that is seen at a place.
+    fn seen(&self, place: DVec2) -> Option<[f64; 3]> {
+        let (eye, ray) = (self.projection.eye, self.projection.ray(place));
+        let mut best: Option<(&Traced, f64, f64)> = None;
+        for (at, object) in self.objects.iter().enumerate() {
+            let [least, most] = object.bounds;
             if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
                 continue;
             }
-            let Some(t) = self.crossing(shape, ray) else {
+            let crossings = crossings(&object.shape, eye, ray, 0.0);
+            let Some(t) = crossings.and_then(|crossings| self.first(crossings)) else {
                 continue;
             };
             let order = match self.behaviour.visible {
-                Visible::Nearest => self.order(t),
-                Visible::First => object as f64,
-                Visible::Last => -(object as f64),
+                Visible::First => at as f64,
+                Visible::Last => -(at as f64),
                 Visible::Farthest => -t,
+                _ => self.order(t),
             };
             if best.is_none_or(|(_, _, least)| order < least) {
                 best = Some((object, t, order));
             }
         }
         let (object, t, _) = best?;
-        let second = match self.shapes[object] {
-            Prepared::Board { square, .. } => {
-                let point = self.axes.eye + t * ray;
-                !self
-                    .behaviour
-                    .squares
-                    .is_first(point.x / square, point.z / square)
+        let is_second = match object.shape {
+            Shape::Checkerboard(Checkerboard { square, .. }) => {
+                let point = (eye + t * ray) / square;
+                !self.behaviour.squares.is_first(point.x, point.z)
             }
             _ => false,
         };
-        Some((object, second))
+        Some(object.colors[usize::from(is_second)])
     }
 
     /// Whether a crossing counts.
     fn counts(&self, t: f64) -> bool {
         let is_ahead = t > self.near && t < self.far;
-        let is_behind = self.behaviour.behind != Behind::Unseen && t < 0.0;
-        is_ahead || (is_behind && -t < self.far)
+        is_ahead || (self.behaviour.sees_behind() && t < 0.0 && -t < self.far)
     }
 
     /// Of two crossings that of lesser order is seen.
     fn order(&self, t: f64) -> f64 {
-        match self.behaviour.behind {
-            Behind::ByDistance => t.abs(),
+        match self.behaviour.visible {
+            Visible::NearestBothWays => t.abs(),
             _ => t,
         }
     }
@@ -306,45 +245,10 @@ impl Textbook {
             [one, other] => one.or(other),
         }
     }
-
-    fn crossing(&self, shape: &Prepared, ray: DVec3) -> Option<f64> {
-        match *shape {
-            Prepared::Sphere { to, power } => {
-                let (a, b) = (ray.length_squared(), ray.dot(to));
-                let root = b * b - a * power;
-                if root <= 0.0 {
-                    return None;
-                }
-                let root = root.sqrt();
-                self.first([(b - root) / a, (b + root) / a])
-            }
-            Prepared::Triangle {
-                normal,
-                height,
-                edges,
-            } => {
-                let t = height / normal.dot(ray);
-                let is_inside = self.counts(t)
-                    && edges
-                        .iter()
-                        .all(|(inward, least)| inward.dot(t * ray) >= *least);
-                is_inside.then_some(t)
-            }
-            Prepared::Box { min, max } => {
-                let (one, other) = (min / ray, max / ray);
-                let (first, last) = (one.min(other).max_element(), one.max(other).min_element());
-                (first <= last).then(|| self.first([first, last]))?
-            }
-            Prepared::Board { y, .. } => {
-                let t = y / ray.y;
-                self.counts(t).then_some(t)
-            }
-        }
-    }
 }
 
 /// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind it.
-pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
+pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     let (min, max) = match shape {
         Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
         Shape::Box(cuboid) => (cuboid.min, cuboid.max),
@@ -354,41 +258,15 @@ pub fn bounds(shape: &Shape, axes: &Axes) -> Option<[DVec2; 2]> {
         }
         Shape::Checkerboard(_) => return None,
     };
-    let corners = corners(min, max).map(|corner| axes.projected(corner));
-    let is_before = corners[0].1 > 0.0;
-    let is_on_one_side = |(_, depth): &(_, f64)| *depth != 0.0 && is_before == (*depth > 0.0);
-    corners.iter().all(is_on_one_side).then_some(())?;
-    let places = || corners.into_iter().map(|(place, _)| place);
-    let least = places().fold(DVec2::INFINITY, DVec2::min);
-    let most = places().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let corners = corners(min, max);
+    let depths = corners.map(|corner| projection.depth(corner));
+    let is_on_one_side = |depth: &f64| *depth != 0.0 && (depths[0] > 0.0) == (*depth > 0.0);
+    depths.iter().all(is_on_one_side).then_some(())?;
+    let places = corners.map(|corner| projection.projected(corner));
+    let least = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    let most = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
     // Room for roundings.
     Some([least - 1e-6, most + 1e-6])
-}
-
-/// The vertices of a triangle: left and right base end, apex.
-pub fn vertices(outline: &Outline) -> [DVec3; 3] {
-    match outline {
-        Outline::Vertices(vertices) => *vertices,
-        Outline::Centered(triangle) => {
-            let n = triangle.normal.normalize_or(DVec3::Z);
-            let right = match n.x == 0.0 && n.z == 0.0 {
-                true => DVec3::NEG_Z.cross(n),
-                false => DVec3::Y.cross(n),
-            };
-            let right = right.normalize_or(DVec3::X);
-            let top = n.cross(right);
-            let spin = triangle.spin.in_radians();
-            let (sin, cos) = (libm::sin(spin), libm::cos(spin));
-            let (right, top) = (cos * right + sin * top, cos * top - sin * right);
-            let [a, b, c] = triangle.sides.to_array();
-            let x = (a * a - b * b + c * c) / (2.0 * c);
-            let height = (a * a - x * x).max(0.0).sqrt();
-            let [left, end, apex] = [(0.0, 0.0), (c, 0.0), (x, height)];
-            let middle = ((c + x) / 3.0, height / 3.0);
-            [left, end, apex]
-                .map(|(x, y)| triangle.centroid + (x - middle.0) * right + (y - middle.1) * top)
-        }
-    }
 }
 
 /// Places in a unit square: a Fibonacci lattice of at least so many, whose rows and columns have one each, so that edges along the grid do no harm.

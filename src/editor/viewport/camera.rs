@@ -4,13 +4,11 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::{
-    handles::{TOO_FAR, handles, unit, within_half_turn},
-    projection::Projection,
-};
+use super::handles::{TOO_FAR, handles, unit, within_half_turn};
 use crate::{
     math::{Angle, trig},
     probe::probe,
+    projection::Projection,
     scene::{Camera, Lens, Part, Scene, View},
 };
 

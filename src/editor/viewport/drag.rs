@@ -9,11 +9,11 @@ use super::{
     camera,
     edits::{Change, changes, edits},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles},
-    projection::Projection,
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
+    projection::Projection,
     scene::{self, Image, Part, Scene, Shape},
     source::{Source, SourceId, Sources},
     syntax::tree::Block,

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::projection::Projection;
 use crate::{
     math::{Angle, trig},
+    projection::Projection,
     scene::{CenteredTriangle, Cuboid, Outline, Part, Shape, Sphere, Triangle, operate},
     schema::Value,
     syntax::tree::Operator,

@@ -3,16 +3,16 @@
 //! In: a text and its scene, and points of the picture in pixels from its top left corner. Out: points, and edits of the text. Nothing here is told to anybody
 //! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
 //!
-//! `projection` leads from the world to the picture and back. `handles` knows where an object's handles are and how one moves the object, `camera`
+//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are and how one moves the object, `camera`
 //! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together.
 
 mod camera;
 mod drag;
 mod edits;
 mod handles;
+mod lines;
 mod overlays;
 mod pick;
-mod projection;
 
 use super::analysis::Analysis;
 use crate::{

@@ -4,11 +4,12 @@ use glam::{DVec2, DVec3};
 
 use super::{
     handles::{Handle, handles, outline_point},
-    projection::{Line, Projection},
+    lines::Line,
 };
 use crate::{
     inspect,
     math::{Angle, trig},
+    projection::Projection,
     scene::{Checkerboard, Cuboid, Object, Scene, Shape, Sphere},
     tracer::vertices,
 };

@@ -7,12 +7,13 @@ use super::{
     inputs::{Point, Random},
     oracle::{ALL_SIZES, N, Oracle, V, length},
     scenes::{color, scene},
-    textbook::{self, Textbook},
+    textbook::Textbook,
 };
 use crate::{
     color::Color,
     math::Real,
     scene::{Camera, Scene},
+    textbook,
     tracer::{Basis, World, ray},
 };
 

@@ -9,8 +9,8 @@ use std::sync::atomic::AtomicBool;
 
 use pinhole::{
     area::Area,
-    film,
-    grading::{self, Jpeg, Reference},
+    film::{self, Jpeg},
+    grading::{self, Reference},
     render::Control,
     scene,
     source::{Source, Sources},

@@ -1,12 +1,8 @@
-//! From points of the world to points of the picture, and back.
+//! Lines of the world as lines of the picture.
 
 use glam::{DVec2, DVec3};
 
-use crate::{
-    math::{Big, Real},
-    scene::{Camera, Image},
-    tracer::Basis,
-};
+use crate::projection::Projection;
 
 /// Lines are cut off where they come nearer to the plane of the eye than this part of their size: a point in it is infinitely far away in the picture.
 const NEAREST: f64 = 1e-6;
@@ -18,68 +14,7 @@ const REACH: f64 = 128.0;
 /// A line through some points of the picture.
 pub type Line = Vec<DVec2>;
 
-/// A camera in rounded numbers.
-#[derive(Clone, Copy, Debug)]
-pub struct Projection {
-    pub eye: DVec3,
-    /// The picture's right.
-    pub right: DVec3,
-    /// The picture's top.
-    pub top: DVec3,
-    /// The view direction, of length 1.
-    pub ahead: DVec3,
-    /// The side of a pixel at depth 1.
-    pub pitch: f64,
-    /// The picture's width and height in pixels.
-    pub size: DVec2,
-}
-
 impl Projection {
-    pub fn new(camera: &Camera, image: &Image) -> Self {
-        let basis = Basis::new(camera, image);
-        let rounded = |v: &[Big; 3]| DVec3::from(v.each_ref().map(Real::to_f64));
-        Self {
-            eye: camera.eye,
-            right: rounded(&basis.u),
-            top: rounded(&basis.v),
-            ahead: -rounded(&basis.w),
-            pitch: basis.pitch.to_f64(),
-            size: DVec2::new(f64::from(image.width), f64::from(image.height)),
-        }
-    }
-
-    /// How far ahead of the eye a point lies.
-    pub fn depth(&self, point: DVec3) -> f64 {
-        (point - self.eye).dot(self.ahead)
-    }
-
-    /// Where a point is seen; none if it is not in front of the eye.
-    pub fn point(&self, point: DVec3) -> Option<DVec2> {
-        let from_eye = point - self.eye;
-        let across = DVec2::new(from_eye.dot(self.right), -from_eye.dot(self.top));
-        let depth = self.depth(point);
-        let seen = across / (depth * self.pitch) + self.size / 2.0;
-        (depth > 0.0 && seen.is_finite()).then_some(seen)
-    }
-
-    /// The direction of the ray through a point of the picture, as long as it takes to a depth of 1.
-    pub fn ray(&self, point: DVec2) -> DVec3 {
-        let across = (point - self.size / 2.0) * self.pitch;
-        self.ahead + self.right * across.x - self.top * across.y
-    }
-
-    /// What lies at a depth on the ray through a point of the picture.
-    pub fn at_depth(&self, point: DVec2, depth: f64) -> DVec3 {
-        self.eye + self.ray(point) * depth
-    }
-
-    /// Where the ray through a point of the picture meets the plane through a point of the world; none if that is not in front of the eye.
-    pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
-        let ray = self.ray(at);
-        let depth = (through - self.eye).dot(normal) / ray.dot(normal);
-        (depth > 0.0 && depth.is_finite()).then(|| self.eye + ray * depth)
-    }
-
     /// What is seen of a line through some points: several lines where parts of it are not in front of the eye, or too far outside of the picture.
     pub fn line(&self, points: &[DVec3]) -> Vec<Line> {
         let far = points
