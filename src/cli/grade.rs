@@ -8,7 +8,7 @@ use std::{
     thread,
 };
 
-use pinhole::{
+use crate::{
     area::Area,
     film::{self, Picture},
     grading::{Jpeg, Reference},
