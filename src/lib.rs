@@ -27,9 +27,10 @@
 //! - [`film`] makes bytes of the means and files of the bytes.
 //! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of it: what went wrong; and [`report`]
-//!   about Pinhole itself: how right and how fast it is. The command line reads, calls these and prints.
+//!   about Pinhole itself: how right and how fast it is.
 //! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
 //!   to editors in the Language Server Protocol, `preview` tells when a file has changed, and `studio` serves a page that edits one.
+//! - The command line, `cli`, reads, calls all of these and prints; the binary does nothing else.
 
 pub mod area;
 pub mod cancel;
@@ -73,3 +74,6 @@ pub mod lsp;
 pub mod preview;
 #[cfg(feature = "lsp")]
 pub mod studio;
+
+#[cfg(feature = "cli")]
+pub mod cli;

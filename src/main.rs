@@ -1,9 +1,7 @@
 //! The binary: arguments in, exit status out.
 
-mod cli;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run()
+    pinhole::cli::run()
 }

@@ -2,13 +2,13 @@
 
 use std::{num::NonZero, path::PathBuf};
 
+use crate::{area::Area, scene::Method};
 use clap::{
     Parser, Subcommand, ValueEnum,
     builder::{PossibleValuesParser, TypedValueParser},
     value_parser,
 };
 use clap_complete::Shell;
-use pinhole::{area::Area, scene::Method};
 
 use super::help;
 

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use pinhole::{
+use crate::{
     diagnostic::{self, Diagnostic},
     film,
     scene::{self, Reading},

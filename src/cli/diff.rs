@@ -6,7 +6,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use pinhole::{
+use crate::{
     diagnostic::visible,
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
     grading::{Kind, ObjectVerdict, Reference, Verdict},

@@ -5,7 +5,7 @@
 
 use std::{borrow::Cow, fmt::Write};
 
-use pinhole::{
+use crate::{
     diagnostic::Style,
     explain::{self, GROUPS},
     scene::describe,

@@ -2,13 +2,13 @@
 
 use std::{fs, path::Path};
 
-use diffy::Line;
-use pinhole::{
+use crate::{
     diagnostic::{Report, visible},
     film,
     format::format,
     source::{Source, Sources},
 };
+use diffy::Line;
 
 use super::{
     Status, Trouble,

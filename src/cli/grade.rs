@@ -8,7 +8,7 @@ use std::{
     thread,
 };
 
-use pinhole::{
+use crate::{
     area::Area,
     film::{self, Jpeg, Picture},
     grading::Reference,

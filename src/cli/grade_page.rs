@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, io};
 
-use pinhole::{diagnostic::escaped, film::HEAT_LEGEND};
+use crate::{diagnostic::escaped, film::HEAT_LEGEND};
 
 use super::{
     graded::{Graded, Judged},

@@ -2,7 +2,7 @@
 
 use std::iter;
 
-use pinhole::{
+use crate::{
     diagnostic::visible,
     film::Comparison,
     grading::{Kind, Verdict},

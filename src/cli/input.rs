@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use pinhole::{
+use crate::{
     area::Area,
     diagnostic::Report,
     film::{Recipe, SIGNATURE, read_recipe},

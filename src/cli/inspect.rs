@@ -1,6 +1,6 @@
 //! `inspect`: what a scene means.
 
-use pinhole::inspect;
+use crate::inspect;
 
 use super::{
     Status, Trouble,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use pinhole::{area::Area, film::Picture, scene::Scene};
+use crate::{area::Area, film::Picture, scene::Scene};
 
 /// The part of a scene that a picture shows: the crop that it carries, or all of it.
 ///

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use pinhole::{
+use crate::{
     diagnostic::visible,
     lsp::{Server, stdio},
 };

@@ -44,8 +44,8 @@ use std::{
     process::ExitCode,
 };
 
+use crate::{diagnostic::visible, threads};
 use clap::Parser;
-use pinhole::{diagnostic::visible, threads};
 
 use self::{
     args::{Args, Command},

@@ -2,7 +2,7 @@
 
 use std::{fs::OpenOptions, io::Write};
 
-use pinhole::scene;
+use crate::scene;
 
 use super::{
     Status, Trouble,

@@ -5,7 +5,7 @@ use std::{
     io::{self, ErrorKind, IsTerminal, StdoutLock, Write},
 };
 
-use pinhole::diagnostic::{Drawing, Style, visible};
+use crate::diagnostic::{Drawing, Style, visible};
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;

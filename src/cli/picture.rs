@@ -6,7 +6,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use pinhole::{
+use crate::{
     area::Area,
     film::{self, Recipe},
     numbers,

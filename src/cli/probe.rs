@@ -1,7 +1,7 @@
 //! `probe`: one ray, surface by surface.
 
+use crate::probe;
 use glam::DVec2;
-use pinhole::probe;
 
 use super::{
     Status, Trouble,

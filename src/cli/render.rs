@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use pinhole::{area::Area, render::RenderError, tracer::World};
+use crate::{area::Area, render::RenderError, tracer::World};
 
 use super::{
     Status, Trouble,

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use pinhole::{
+use crate::{
     render::{Control, RenderError},
     report::numerics,
 };

@@ -9,7 +9,7 @@ use std::{
     io::{self, IsTerminal},
 };
 
-use pinhole::{area::Area, color::linear_to_srgb, film::Film};
+use crate::{area::Area, color::linear_to_srgb, film::Film};
 use terminal_size::{Height, Width, terminal_size_of};
 
 use super::{Trouble, output};

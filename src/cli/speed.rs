@@ -7,7 +7,7 @@ use std::{
     time::Duration,
 };
 
-use pinhole::{
+use crate::{
     film,
     render::{Control, RenderError},
     report::speed::{

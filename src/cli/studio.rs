@@ -6,7 +6,7 @@ use std::{
     sync::mpsc,
 };
 
-use pinhole::studio::{Host, SceneFile};
+use crate::studio::{Host, SceneFile};
 
 use super::{
     Status, Trouble,

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use pinhole::film::{self, Film, Tolerance};
+use crate::film::{self, Film, Tolerance};
 
 /// The longer side of a thumbnail, in pixels.
 const LONGEST: u32 = 320;

@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use pinhole::{
+use crate::{
     area::Area,
     film::SIGNATURE,
     preview, refine,

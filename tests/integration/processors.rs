@@ -1,12 +1,19 @@
 //! The same pictures on other processors, for which QEMU has to be there: `cargo test -- --ignored processors`, with `qemu-x86_64` on the path.
 //!
-//! Which vectors there are is asked at run time, so the program goes other ways on a processor that has none.
+//! Which vectors there are is asked at run time, so the same code goes other ways on a processor that has none.
 
-use std::process::Command;
+use std::{env, fs, io::Cursor, path::Path, process::Command};
 
-use pinhole::scene::Method;
+use pinhole::{
+    film::{write_exr, write_png},
+    render::Control,
+    scene::Method,
+};
 
-use crate::program::{Folder, words};
+use crate::{
+    program::Folder,
+    scenes::{example, rendered, whole, with_samples},
+};
 
 /// As QEMU calls them: one with the vectors that every processor of the kind has, two numbers wide, and one with four.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
@@ -19,31 +26,52 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
+/// Says where the test is to leave its pictures, and that it has no more to do.
+const FOLDER: &str = "PINHOLE_TEST_PICTURES";
+
+/// The test runs itself on the others, once each: QEMU translates most of what it runs anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
-    let folder = Folder::with([]);
-    let picture = |command: &mut Command| {
-        let output = command.output().expect("the program is on the path");
+    if let Some(folder) = env::var_os(FOLDER) {
+        return draw(Path::new(&folder));
+    }
+    let [here, there] = [Folder::with([]), Folder::with([])];
+    draw(&here.path("."));
+    let names = here.names();
+    assert_eq!(names.len(), 2 * SCENES.len() * (Method::SAMPLED.len() + 1));
+    for processor in PROCESSORS {
+        let mut elsewhere = Command::new("qemu-x86_64");
+        elsewhere
+            .args(["-cpu", processor])
+            .arg(env::current_exe().unwrap())
+            .args(["--ignored", "all_processors_make_the_same_pictures"])
+            .env(FOLDER, there.path("."));
+        let output = elsewhere.output().expect("QEMU is on the path");
         assert!(output.status.success(), "{output:?}");
-        folder.read("a.exr")
-    };
-    for scene in SCENES {
+        assert_eq!(there.names(), names);
+        for name in &names {
+            assert!(here.read(name) == there.read(name), "{name}, {processor}");
+            fs::remove_file(there.path(name)).unwrap();
+        }
+    }
+}
+
+/// Small pictures of all scenes by all methods, as files of both formats.
+fn draw(folder: &Path) {
+    for name in SCENES {
+        let scene = example(name, 32, 24);
         for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
-            let line = format!(
-                "render '{}/examples/{scene}.scn' -o a.exr --set image.width=32 --set image.height=24 --set sampler.method={}",
-                env!("CARGO_MANIFEST_DIR"),
-                method.name()
-            );
-            let here = picture(&mut folder.command(&line));
-            for processor in PROCESSORS {
-                let there = picture(
-                    Command::new("qemu-x86_64")
-                        .args(["-cpu", processor, env!("CARGO_BIN_EXE_pinhole")])
-                        .args(words(&line))
-                        .current_dir(folder.path(".")),
-                );
-                assert!(here == there, "{line}, {processor}");
+            let scene = with_samples(&scene, method, scene.sampler.count);
+            let whole = whole(&scene);
+            let film = rendered(&scene, whole, &Control::default()).into_film();
+            let mut exr = Cursor::new(Vec::new());
+            write_exr(&film, whole, whole, &mut exr).unwrap();
+            let mut png = Vec::new();
+            write_png(&film, None, &mut png).unwrap();
+            for (ending, bytes) in [("exr", exr.into_inner()), ("png", png)] {
+                let path = folder.join(format!("{name} {}.{ending}", method.name()));
+                fs::write(path, bytes).unwrap();
             }
         }
     }

@@ -219,7 +219,11 @@ fn random_slips_in_a_scene(effort: Effort) {
     let slips = b"|(|)|{|}|}}|[|]|,|.|;|:|=|+|*|-|#ff|2.5.5| 2| x| radus | radius| let |let x = 1 |let x = |sphere {|sphere A { |'|\"|/*|*/|//|\xc2\xa0|\xc3\xa9|\xff|\r|\n|\0";
     let slips: Vec<&[u8]> = slips.split(|&byte| byte == b'|').collect();
     let mut random = Random::new(2);
-    for _ in 0..effort.part_of(20_000) {
+    let texts = match effort {
+        Effort::Sample => 300,
+        Effort::Exhaustive => 8_000,
+    };
+    for _ in 0..texts {
         let mut up_to = |end: usize| (random.bits() % end as u64) as usize;
         let mut bytes = scenes[up_to(scenes.len())].clone().into_bytes();
         if up_to(4) == 0 {

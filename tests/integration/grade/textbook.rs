@@ -4,6 +4,8 @@
 //! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes. What a program may do wrong are
 //! its fields; the mistakes that a class makes stand in `mistakes`.
 
+use std::array;
+
 use glam::DVec3;
 use image::{Rgb, RgbImage};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
@@ -171,6 +173,10 @@ impl Program {
             true => self.view_height / f64::from(width),
             false => pixel,
         };
+        let light: [f64; 256] = array::from_fn(|byte| match byte as f64 / 255.0 {
+            part if self.averages_encoded => part,
+            part => self.decode(part),
+        });
         let mut random = SmallRng::seed_from_u64(1);
         let picture = RgbImage::from_fn(width, height, |column, row| {
             let mut sum = DVec3::ZERO;
@@ -179,11 +185,8 @@ impl Program {
                 let x = across * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
                 let y = pixel * (f64::from(height) / 2.0 - f64::from(row) - dy - self.offset);
                 let ray = (x * u + y * v - self.distance * w).normalize();
-                let color = self.trace(ray, -w).map(|byte| f64::from(byte) / 255.0);
-                sum += DVec3::from(match self.averages_encoded {
-                    true => color,
-                    false => color.map(|part| self.decode(part)),
-                });
+                let color = self.trace(ray, -w);
+                sum += DVec3::from(color.map(|byte| light[usize::from(byte)]));
             }
             let mean = (sum / f64::from(self.samples)).to_array();
             let bytes = mean.map(|part| {
