@@ -41,9 +41,13 @@ impl Projection {
         }
     }
 
-    /// By a textbook's formulas, for who needs thousands in a second.
+    /// By a textbook's formulas, for callers that need thousands in a second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = textbook::axes(camera);
+        // Lengths out of the range of numbers leave no axes of them.
+        if !(right + top).is_finite() {
+            return Self::new(camera, image);
+        }
         let size = size(image);
         let slope = |angle| 2.0 * libm::tan(radians(angle) / 2.0);
         Self {

@@ -1,10 +1,10 @@
 //! The formulas of a textbook in `f64`, as they are written down and typed in everywhere: a camera's axes, a triangle's vertices, and where a ray meets a shape.
 //!
 //! The basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals (Kay and Kajiya 1986), the triangle that of Möller and
-//! Trumbore (1997). All of it is right on paper, and nothing of it is the tracer's: `report` compares its decisions with the tracer's, and `grading` makes with it
+//! Trumbore (1997). All of it is right on paper, and nothing of it is how the tracer computes it: `report` compares its decisions with the tracer's, and `grading` makes with it
 //! what a class would make.
 
-use glam::{DVec2, DVec3};
+use glam::{BVec3, DVec2, DVec3};
 
 use crate::{
     math::Angle,
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, and the roll.
+/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, and the roll; along up, u is that of the language's level direction.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let backward = match camera.view {
         View::Lookat(at) => camera.eye - at,
@@ -65,6 +65,14 @@ fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
         let p = corner - mean;
         let (x, y) = (cos * p.x - sin * p.y, sin * p.x + cos * p.y);
         triangle.centroid + x * right + y * top
+    })
+}
+
+/// The corners of a box.
+pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
+    std::array::from_fn(|corner| {
+        let is_max = |bit: u32| corner >> bit & 1 == 1;
+        DVec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), max, min)
     })
 }
 

@@ -90,7 +90,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             },
             cancel,
         };
-        Reference::new(&scene, part, &control)
+        Reference::new(&scene, part, a.rounding, &control)
     });
     let reference = match reference {
         Ok(reference) => reference,

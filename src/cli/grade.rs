@@ -10,7 +10,7 @@ use std::{
 
 use crate::{
     area::Area,
-    film::{self, Jpeg, Picture},
+    film::{self, Jpeg, Picture, Rounding},
     grading::Reference,
     render::{Control, RenderError},
     scene::Scene,
@@ -99,7 +99,7 @@ fn graded(
             },
             cancel,
         };
-        Reference::new(scene, whole, &control)
+        Reference::new(scene, whole, Rounding::Byte, &control)
     });
     let reference = match reference {
         Ok(reference) => reference,
@@ -133,7 +133,7 @@ fn grade(
         Err(error) => return Ok(Err(error)),
     };
     let own;
-    let reference = if part == whole.part {
+    let reference = if whole.is_for(part, picture.rounding) {
         whole
     } else {
         let control = Control {
@@ -142,7 +142,7 @@ fn grade(
             progress: &|_| {},
             cancel,
         };
-        own = Reference::new(scene, part, &control)?;
+        own = Reference::new(scene, part, picture.rounding, &control)?;
         &own
     };
     let steps = picture.rounding.steps();

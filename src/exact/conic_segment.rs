@@ -2,7 +2,7 @@
 //!
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the integral of the board's sign over it, for which the arc is cut
 //! where it crosses the board's lines, so that each piece has its segment in one square and the chords bound a convex polygon. The bound adds what roundings
-//! displace and, where lines are too many to cut at, the area of what is left out.
+//! displace and the area of what is left out: of pieces that are small enough, so that toward the horizon there are not too many.
 
 use glam::DVec2;
 
@@ -113,9 +113,8 @@ impl Homography {
     /// The integral of s(a)·s(b) over the region between an arc and its chord, in square pixels.
     ///
     /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one square, and what is left
-    /// is a convex polygon. Where the lines are too many, toward the horizon, chords take the place of pieces so short that
-    /// their slivers may be neglected: those of n pieces are n³ times smaller each, and n² times smaller together, which is what is asked for if one is no greater
-    /// than the power 3/2 of that by the root of the whole.
+    /// is a convex polygon. Chords take the place of pieces so short that their slivers may be neglected: of an area A those of n pieces have A/n³ each and A/n²
+    /// together, which is the tolerance t if one has t^(3/2)/√A.
     pub(super) fn sliver(&self, arc: &Arc, budget: &Budget) -> Sum {
         let area = arc.area();
         if let Some(sign) = self.one_square(arc) {

@@ -2,7 +2,7 @@
 //!
 //! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
 //! its error. In ordinary views (a vertical field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within
-//! 1e±9 or 0) the bound is at most 1e-9; in others it is what it is, up to 1 for the mean colour. A pixel takes a
+//! 1e±9 or 0) the bound is at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour. A pixel takes a
 //! second at most, and a few milliseconds for each object in it (`budget`).
 //!
 //! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:

@@ -39,7 +39,7 @@ pub struct Regions<'a> {
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
     /// What may still be computed of the pixel.
-    pub budget: &'a Budget<'a>,
+    budget: &'a Budget<'a>,
 }
 
 /// A checkerboard as a sub-pixel sees it.
@@ -79,6 +79,11 @@ impl<'a> Regions<'a> {
             shares: Shares::default(),
             budget,
         }
+    }
+
+    /// The bound that is asked for, in area.
+    pub fn tolerance(&self) -> f64 {
+        self.budget.tolerance
     }
 
     /// Whether nothing more should be computed.

@@ -69,8 +69,8 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
-    // That of all slabs together is no more than what is asked for.
-    let crumb = regions.budget.tolerance / MANY as f64;
+    // As many slabs as may be added leave no more in doubt together than what is asked for, if each leaves one pair.
+    let crumb = regions.tolerance() / MANY as f64;
     let mut all = Slabs {
         lines,
         graphs,
@@ -98,7 +98,7 @@ struct Slabs<'a> {
     graphs: Vec<Graph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// So much area, in square pixels, may be doubtful in a slab before it is cut.
+    /// So much area, in square pixels, may be doubtful between two neighbours before their slab is cut.
     crumb: f64,
 }
 

@@ -1,6 +1,6 @@
 //! How strongly a JPEG file is compressed.
 //!
-//! The tables of luma and of chroma are the first and the second, as programs write them.
+//! In: a file. Out: its tables of luma and of chroma: the first two, as programs write them, or the only one for both.
 
 /// How a file is coded (ITU-T T.81).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Jpeg {
 }
 
 /// A table of steps, to whose multiples a block's coefficients are rounded; the first is that of its mean.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table {
     /// The square of the first step.
     pub first: f64,
@@ -24,7 +24,7 @@ impl Jpeg {
     /// How a file is coded, if it is a JPEG.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let mut rest = bytes.strip_prefix(b"\xff\xd8")?;
-        let mut tables = [Table::default(); 4];
+        let mut tables = [None; 4];
         loop {
             let [0xff, marker, high, low, ..] = *rest else {
                 return None;
@@ -39,7 +39,9 @@ impl Jpeg {
                 0xdb => read_tables(segment, &mut tables)?,
                 // What follows is the picture.
                 0xda => {
-                    let [luma, chroma, ..] = tables;
+                    let mut tables = tables.into_iter().flatten();
+                    let luma = tables.next()?;
+                    let chroma = tables.next().unwrap_or(luma);
                     return Some(Self { luma, chroma });
                 }
                 _ => {}
@@ -49,7 +51,7 @@ impl Jpeg {
     }
 }
 
-fn read_tables(mut segment: &[u8], tables: &mut [Table; 4]) -> Option<()> {
+fn read_tables(mut segment: &[u8], tables: &mut [Option<Table>; 4]) -> Option<()> {
     while let Some((&head, rest)) = segment.split_first() {
         let size = if head >> 4 == 0 { 1 } else { 2 };
         let steps = rest.get(..64 * size)?.chunks_exact(size);
@@ -60,10 +62,10 @@ fn read_tables(mut segment: &[u8], tables: &mut [Table; 4]) -> Option<()> {
             f64::from(step) * f64::from(step)
         });
         let squares: Vec<f64> = squares.collect();
-        *tables.get_mut(usize::from(head & 15))? = Table {
+        *tables.get_mut(usize::from(head & 15))? = Some(Table {
             first: squares[0],
             mean: squares.iter().sum::<f64>() / 64.0,
-        };
+        });
         segment = &rest[64 * size..];
     }
     Some(())

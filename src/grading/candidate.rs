@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{
+    faulty_tracer::Behaviour,
     layout::Layout,
     light::{Curve, Look},
     parameters::Parameter,
-    textbook::Behaviour,
 };
 use crate::scene::{Part, Scene};
 

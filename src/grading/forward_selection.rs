@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use std::collections::BTreeSet;
+
 use super::{
     candidate::{Candidate, Mistake, Shows},
     judge::{Judge, Judged, price},
@@ -205,12 +207,13 @@ fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate
 /// The objects that may be wrong, those first around which most is.
 fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let grid = &judge.middle.grid;
-    let labels = labels(judge, from.candidate(), grid);
+    let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.off.iter().enumerate() {
-        if let Some(object) = labels[at] {
-            wrong[object] += libm::log1p(*off);
-        }
+        // An object that grew is wrong beside where it is seen.
+        let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
+        near.into_iter()
+            .for_each(|object| wrong[object] += libm::log1p(*off));
     }
     let mut suspects: Vec<_> = (0..wrong.len())
         .filter(|&object| wrong[object] > 0.0)

@@ -4,7 +4,8 @@
 //!
 //! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of chroma, to multiples of the steps in its tables. The transform keeps
 //! squares, so the mean variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's square each. A block of one colour has one
-//! coefficient. Chroma may be kept for each second column and row alone, so that colours mix with those up to two pixels away.
+//! coefficient. Chroma is taken to be kept for each second column and row alone, as it is in most files, so that colours mix with those up to two pixels
+//! away.
 
 use super::{
     light::STEP,

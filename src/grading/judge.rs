@@ -102,15 +102,16 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The tiny level, where a candidate that others are compared with is off by what its samples are off: where it is known what it makes exactly, all that is
-    /// compared is off by that.
+    /// The tiny level around a candidate that others are compared with. Where it is known what this makes exactly, the error of its samples is added to what is
+    /// seen, so that it cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
         level.compare_with(Arc::clone(&sampled));
         let mut exact = Arc::clone(&sampled);
-        if candidate.behaviour.is_right() {
-            exact = level.reduced(&self.fine.render(candidate, &self.work)?);
+        let fine = self.fine.render(candidate, &self.work)?;
+        if candidate.behaviour.is_right() && fine.part == self.fine.grid.cells {
+            exact = level.reduced(&fine);
         }
         Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }

@@ -23,8 +23,10 @@ pub struct Level<'a> {
     /// How many samples a cell has; none if it is computed exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    /// What was made on it: what most others are compared with, and the last.
-    known: [RefCell<Option<Arc<Rendering>>>; 2],
+    /// What others are compared with, to make anew only where they differ.
+    base: RefCell<Option<Arc<Rendering>>>,
+    /// What was made last.
+    last: RefCell<Option<Arc<Rendering>>>,
 }
 
 impl<'a> Level<'a> {
@@ -43,14 +45,15 @@ impl<'a> Level<'a> {
             seen: std::array::from_fn(|_| OnceCell::new()),
             samples,
             jpeg,
-            known: Default::default(),
+            base: RefCell::default(),
+            last: RefCell::default(),
         }
     }
 
     /// The same, where all that is compared is off by what one prediction differs from an exact one.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
-        level.known = self.known.clone();
+        level.base = self.base.clone();
         let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
         let seen = sampled.seen.iter().zip(means);
         let seen =
@@ -61,25 +64,25 @@ impl<'a> Level<'a> {
 
     /// What a candidate makes on it; none if it is cancelled, or takes too much work.
     pub fn render(&self, candidate: &Candidate, work: &Work) -> Option<Arc<Rendering>> {
-        let [base, last] = &self.known;
-        let known: Vec<_> = [base, last]
-            .iter()
-            .filter_map(|one| one.borrow().clone())
-            .collect();
+        let known = [&self.base, &self.last];
+        let known = known.map(|one| one.borrow().clone());
+        let known: Vec<_> = known.into_iter().flatten().collect();
         let rendering = candidate.render(&self.grid, self.samples, &known, work)?;
         let rendering = Arc::new(rendering);
         let is_same = |one: &Arc<Rendering>| {
-            one.candidate.traces_as(candidate) && one.candidate.behaviour == candidate.behaviour
+            one.part == rendering.part
+                && one.candidate.traces_as(candidate)
+                && one.candidate.behaviour == candidate.behaviour
         };
         if !known.iter().any(is_same) {
-            last.replace(Some(Arc::clone(&rendering)));
+            self.last.replace(Some(Arc::clone(&rendering)));
         }
         Some(rendering)
     }
 
     /// Others will be compared with this.
     pub fn compare_with(&self, rendering: Arc<Rendering>) {
-        self.known[0].replace(Some(rendering));
+        self.base.replace(Some(rendering));
     }
 
     /// What the picture shows in the cells, as light that was encoded in a way.
@@ -91,10 +94,10 @@ impl<'a> Level<'a> {
                 return self.grid.reduce(pixel);
             }
             // Most pixels have one of a few bytes.
-            let known: RefCell<HashMap<u64, f64>> = RefCell::default();
+            let lights: RefCell<HashMap<u64, f64>> = RefCell::default();
             let light = |seen: f64| {
-                let mut known = known.borrow_mut();
-                let light = known.entry(seen.to_bits());
+                let mut lights = lights.borrow_mut();
+                let light = lights.entry(seen.to_bits());
                 *light.or_insert_with(|| curve.light(seen))
             };
             self.grid.reduce(|x, y| pixel(x, y).map(light))

@@ -9,8 +9,8 @@ use super::{
         Candidate, Row,
         Shows::{self, AtEdges, Everywhere, InAreas},
     },
+    faulty_tracer::{Squares, Visible},
     light::{Curve, Look},
-    textbook::{Squares, Visible},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -119,10 +119,10 @@ pub const ROWS: &[Row] = &[
     row("depth_ignored", InAreas, "of several objects that a ray hits the farthest one is seen, not the nearest", NEAREST,
         |c, _| show(c, Visible::Farthest)),
     row("behind_seen", InAreas, "what lies behind the eye is seen, as the floor in the sky: hits with t < 0 count", AHEAD,
-        |c, _| c.behaviour.visible = Visible::Behind),
+        |c, _| see(c, Visible::Behind)),
     row("behind_seen", InAreas,
         "what lies behind the eye is seen, as the floor in the sky, where nothing before it is nearer: hits with t < 0 count", AHEAD,
-        |c, _| c.behaviour.visible = Visible::NearestBothWays),
+        |c, _| see(c, Visible::NearestBothWays)),
     row("board_truncated", InAreas,
         "coordinates on the checkerboard are truncated towards 0, so the squares on both sides of an axis are one", SQUARES,
         |c, _| tell_squares(c, Squares::Truncated)),
@@ -200,6 +200,13 @@ fn average(c: &mut Candidate, curve: Curve) {
 
 fn show(c: &mut Candidate, visible: Visible) {
     if c.scene.objects.len() > 1 {
+        see(c, visible);
+    }
+}
+
+/// Another surface is seen than the nearest: one mistake of this kind leaves no room for another.
+fn see(c: &mut Candidate, visible: Visible) {
+    if c.behaviour.visible == Visible::Nearest {
         c.behaviour.visible = visible;
     }
 }

@@ -6,8 +6,8 @@
 //! 1. A `Reference` is the exact picture, and the variance of a sample in each pixel (`moments`): made once for a class. `empty_pixels` are taken out of a picture.
 //! 2. A `candidate` is a program with mistakes: rows of the table in `mistakes`, numbers of the scene (`parameters`), or a `patch` that no object explains. They
 //!    change its scene, its `layout`, what it does to `light`, or how it behaves.
-//! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the tracer in `textbook` where it behaves as no
-//!    scene can say. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
+//! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the `faulty_tracer` where it behaves as no
+//!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
 //! 4. A prediction says how likely what is seen is (`likelihood`), and what no sampling explains (`strays`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
 //!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
@@ -15,6 +15,7 @@
 
 mod candidate;
 mod empty_pixels;
+mod faulty_tracer;
 mod forward_selection;
 mod grid;
 mod jpeg;
@@ -33,7 +34,6 @@ mod patch;
 mod prediction;
 mod rendering;
 mod strays;
-mod textbook;
 mod verdict;
 mod wording;
 mod work;
@@ -48,7 +48,7 @@ use crate::{
     cancel,
     color::srgb_to_linear,
     exact::Integrator,
-    film::{self, Comparison, Film, Jpeg, SizesDiffer, Tolerance},
+    film::{self, Comparison, Film, Jpeg, Rounding, SizesDiffer, Tolerance},
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -76,20 +76,30 @@ pub struct Reference<'a> {
     pub part: Area,
     scene: &'a Scene,
     right: Arc<Rendering>,
+    /// How pictures are rounded that it can judge.
+    rounding: Rounding,
     /// The work of making it.
     work: f64,
 }
 
 impl<'a> Reference<'a> {
-    /// Makes the exact picture of a part of a scene's.
+    /// Makes the exact picture of a part of a scene's, as well as pictures that are rounded so are to be judged by it.
     ///
     /// # Errors
     ///
     /// It is cancelled, or too large.
-    pub fn new(scene: &'a Scene, part: Area, control: &Control) -> Result<Self, RenderError> {
+    pub fn new(
+        scene: &'a Scene,
+        part: Area,
+        rounding: Rounding,
+        control: &Control,
+    ) -> Result<Self, RenderError> {
         let world = World::new_unless(scene, control.cancel)?;
-        let integrator =
-            Integrator::of(&world, moments::numbers(Curve::Right)).known_to(work::KNOWN);
+        let integrator = Integrator::of(&world, moments::numbers(Curve::Right));
+        let integrator = match rounding {
+            Rounding::Byte => integrator.known_to(work::KNOWN),
+            _ => integrator,
+        };
         let all = Mutex::new(Moments::zero(part.pixels() as usize));
         let exact = render_numbers(&integrator, part, control, &|tile, pixels| {
             let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
@@ -103,6 +113,7 @@ impl<'a> Reference<'a> {
             exact,
             scene,
             part,
+            rounding,
             right: Arc::new(Rendering::new(
                 Candidate::right(scene),
                 part,
@@ -110,6 +121,11 @@ impl<'a> Reference<'a> {
             )),
             work,
         })
+    }
+
+    /// Whether it can judge a picture of a part that is rounded so.
+    pub fn is_for(&self, part: Area, rounding: Rounding) -> bool {
+        self.part == part && self.rounding == rounding
     }
 
     /// How far a picture is from the exact one.

@@ -1,4 +1,4 @@
-//! Fits the numbers of a scene to a picture: those with which it comes nearest.
+//! Finds which numbers of a scene, changed, explain a picture best.
 //!
 //! A start on the tiny grid leads to a fit there, and that to one on the coarse grid.
 
@@ -15,10 +15,10 @@ use crate::color::{Color, linear_to_srgb};
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
 
-/// So many parameters are fitted on the coarse grid.
-const FITTED: usize = 6;
+/// So many parameters of objects and so many others are fitted on the coarse grid.
+const FITTED: usize = 4;
 
-/// The numbers of the scene, each with what comes nearest on the coarse grid, those first of which a start on the tiny grid leaves least.
+/// Some numbers of the scene, each with what comes nearest on the coarse grid: those that leave least on the tiny one.
 pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
     let Some(tiny) = judge.tiny(candidate) else {
@@ -66,8 +66,14 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
         let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
         Some((left, (parameter, best)))
     });
-    least_first(on_tiny)
-        .take(FITTED)
+    let (local, others): (Vec<_>, Vec<_>) =
+        on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
+    let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
+        fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
+        fitted.truncate(FITTED);
+        fitted
+    });
+    least_first(on_coarse)
         .filter_map(|(parameter, start)| fit(&parameter, &start, &judge.coarse, [2, 1]))
         .collect()
 }

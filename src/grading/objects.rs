@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 
 use super::{
-    candidate::Candidate, grid::Grid, judge::Judge, parameters::Owner, strays::Strays,
-    textbook::corners, work,
+    candidate::Candidate, grid::Grid, judge::Judge, layout::Layout, parameters::Owner,
+    strays::Strays, work,
 };
 use crate::{
     projection::Projection,
     scene::{Checkerboard, Scene, Shape},
-    textbook::vertices,
+    textbook::{corners, vertices},
     tracer::World,
 };
 
@@ -64,7 +64,7 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     let right = judge.predicted(&candidate.shown_rightly(), &judge.fine);
     let strays = right.map_or_else(Strays::default, |right| right.strays());
     let grid = &judge.fine.grid;
-    let labels = labels(judge, candidate, grid);
+    let labels = labels(judge, candidate, Layout::default(), grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let is_of_another = |at: usize| {
         let mut near = grid.around(at, BESIDE).filter_map(|near| labels[near]);
@@ -82,8 +82,13 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     (objects, is_background_right)
 }
 
-/// The object that a right program shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
-pub fn labels(judge: &Judge, candidate: &Candidate, grid: &Grid) -> Vec<Option<usize>> {
+/// The object that a program without other mistakes than a layout shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
+pub fn labels(
+    judge: &Judge,
+    candidate: &Candidate,
+    layout: Layout,
+    grid: &Grid,
+) -> Vec<Option<usize>> {
     let is_drawn = &candidate.is_drawn;
     let scene = candidate.shown_rightly().drawn(grid);
     let Ok(world) = World::new_unless(&scene, judge.cancel) else {
@@ -92,7 +97,10 @@ pub fn labels(judge: &Judge, candidate: &Candidate, grid: &Grid) -> Vec<Option<u
     let work = work::of_exact(0, is_drawn.len(), grid.count());
     judge.work.spend(work);
     let drawn: Vec<usize> = (0..is_drawn.len()).filter(|&i| is_drawn[i]).collect();
-    let label = |(x, y)| world.object_at(x, y).map(|object| drawn[object]);
+    let label = |cell| {
+        let (x, y) = layout.source(cell, grid.size());
+        world.object_at(x, y).map(|object| drawn[object])
+    };
     grid.cells.iter().map(label).collect()
 }
 

@@ -1,4 +1,4 @@
-//! What a candidate makes in the cells of a grid, before it is laid out and its light is changed: exactly, or sampled by the textbook's tracer, on the tiny grid
+//! What a candidate makes in the cells of a grid, before it is laid out and its light is changed: exactly, or sampled by the faulty tracer, on the tiny grid
 //! and for behaviour that no scene can say.
 
 use std::{cell::OnceCell, sync::Arc};
@@ -7,9 +7,9 @@ use glam::DVec2;
 
 use super::{
     candidate::Candidate,
+    faulty_tracer::{Behaviour, FaultyTracer, bounds},
     grid::Grid,
     moments::Moments,
-    textbook::{Behaviour, Textbook, bounds},
     work::Work,
 };
 use crate::{area::Area, projection::Projection, scene::Scene};
@@ -17,7 +17,7 @@ use crate::{area::Area, projection::Projection, scene::Scene};
 /// Samples in a cell of what no scene can say.
 const SAMPLES: usize = 34;
 
-/// The share of a cell that may be missed where the textbook takes it for one of a single colour.
+/// The share of a cell that may be missed where the faulty tracer takes it for one of a single colour.
 const MISSED: f64 = 1e-3;
 
 /// What a candidate makes.
@@ -98,8 +98,8 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
-            let textbook = Textbook::new(scene(), behaviour, self.averaged);
-            Some(textbook.moments(area, samples))
+            let tracer = FaultyTracer::new(scene(), behaviour, self.averaged);
+            Some(tracer.moments(area, samples))
         };
         let traced = |area| match samples {
             None => work.exact_moments(scene(), self.averaged, area),
@@ -115,7 +115,11 @@ impl Candidate {
                 let own = sampled(Behaviour::default(), area, SAMPLES)?;
                 let other = sampled(self.behaviour, area, SAMPLES)?;
                 let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
-                Some(beside(right.select(&indices), &own, &other))
+                Some(replaced_where_they_differ(
+                    right.select(&indices),
+                    &own,
+                    &other,
+                ))
             })?);
         }
         Some(Rendering {
@@ -191,7 +195,7 @@ fn completed(
 
 /// What samples show of a program that behaves otherwise, and how far off these means may be; where samples of a right one show the same, it is what that shows
 /// exactly.
-fn beside(mut right: Moments, own: &Moments, other: &Moments) -> Moments {
+fn replaced_where_they_differ(mut right: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];
         if own.mean[at] != other.mean[at] || own.variance[at] != variance {

@@ -21,7 +21,7 @@ const RAY: f64 = 0.3;
 const TEST: f64 = 0.1;
 const CELL: f64 = 2.0;
 
-/// To within so much of the light of white an exact picture is known: a three hundredth of the smallest step of sRGB.
+/// To within so much of the light of white an exact picture is known that judges bytes: a three hundredth of the smallest step of sRGB.
 pub const KNOWN: f64 = 1e-6;
 
 /// The work that was spent, and how much may be.

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use pinhole::{
     area::Area,
-    film::{self, Jpeg},
+    film::{self, Film, Jpeg, Rounding},
     grading::{self, Reference},
     render::Control,
     scene,
@@ -82,9 +82,49 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
         progress: &|_| {},
         cancel: &cancel,
     };
-    let reference = Reference::new(&scene, part, &control).unwrap();
-    let film = film::read_picture(file).unwrap().film;
-    let comparison = reference.compare(&film, 0.5).unwrap();
-    let verdict = reference.judge(&film, Jpeg::of(file), &comparison, &cancel);
+    let picture = film::read_picture(file).unwrap();
+    let reference = Reference::new(&scene, part, picture.rounding, &control).unwrap();
+    let comparison = reference.compare(&picture.film, 0.5).unwrap();
+    let verdict = reference.judge(&picture.film, Jpeg::of(file), &comparison, &cancel);
     Value::Object(verdict.unwrap().to_json())
+}
+
+/// Of a mirrored picture a part beside the middle shows what lies on the other side of it.
+#[test]
+fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
+    let scene = |sets: &[&str]| {
+        let text = include_str!("../../../examples/figure_9_9.scn");
+        let mut sources = Sources::new(Source::from_text("a.scn", text));
+        let size = ["image.width=96", "image.height=54"];
+        size.iter()
+            .chain(sets)
+            .for_each(|set| sources.push_set(set));
+        scene::read(&sources).scene.unwrap()
+    };
+    let cancel = AtomicBool::new(false);
+    let control = Control {
+        threads: None,
+        progress: &|_| {},
+        cancel: &cancel,
+    };
+    let reference = |scene, part| Reference::new(scene, part, Rounding::Byte, &control).unwrap();
+    let wrong = scene(&["Ball.radius=1.3"]);
+    let whole = reference(&wrong, Area::whole(96, 54)).exact.film;
+    let part = Area {
+        x: 12,
+        y: 2,
+        width: 64,
+        height: 50,
+    };
+    let mut film = Film::new(part.width, part.height).unwrap();
+    for (pixel, (x, y)) in film.pixels_mut().iter_mut().zip(part.iter()) {
+        *pixel = whole.pixel(95 - x, y);
+    }
+    let right = scene(&[]);
+    let reference = reference(&right, part);
+    let comparison = reference.compare(&film, 0.5).unwrap();
+    let verdict = reference.judge(&film, None, &comparison, &cancel).unwrap();
+    let mut ids: Vec<_> = verdict.mistakes.iter().map(|one| one.id).collect();
+    ids.sort_unstable();
+    assert_eq!(ids, ["mirrored", "radius"], "{}", verdict.line());
 }

@@ -1,10 +1,10 @@
-//! A ray tracer as in a textbook, in plain `f64`, with the mistakes of a program as switches.
+//! A ray tracer by the formulas of a `textbook`, with the mistakes of a program as switches.
 //!
 //! In: a scene, the switches, a part of its picture, and how many samples. Out: for each pixel of the part the mean and the variance of what one sample in it
 //! sees, from so many at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
-use glam::{BVec3, DVec2, DVec3};
+use glam::DVec2;
 
 use super::{light::Curve, moments::Moments};
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
     color::Color,
     projection::Projection,
     scene::{Checkerboard, Scene, Shape},
-    textbook::{by_vertices, crossings, vertices},
+    textbook::{by_vertices, corners, crossings, vertices},
 };
 
 /// Which of the surfaces that a ray crosses is seen.
@@ -95,14 +95,6 @@ impl Squares {
     }
 }
 
-/// The corners of a box.
-pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
-    std::array::from_fn(|corner| {
-        let is_max = |bit: u32| corner >> bit & 1 == 1;
-        DVec3::select(BVec3::new(is_max(0), is_max(1), is_max(2)), max, min)
-    })
-}
-
 /// An object prepared.
 struct Traced {
     shape: Shape,
@@ -113,7 +105,7 @@ struct Traced {
 }
 
 /// A scene prepared.
-pub struct Textbook {
+pub struct FaultyTracer {
     projection: Projection,
     behaviour: Behaviour,
     near: f64,
@@ -123,7 +115,7 @@ pub struct Textbook {
     background: [f64; 3],
 }
 
-impl Textbook {
+impl FaultyTracer {
     /// Prepares a scene, and what is averaged.
     pub fn new(scene: &Scene, behaviour: Behaviour, averaged: Curve) -> Self {
         let projection = Projection::quick(&scene.camera, &scene.image);
@@ -263,6 +255,7 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     let is_on_one_side = |depth: &f64| *depth != 0.0 && (depths[0] > 0.0) == (*depth > 0.0);
     depths.iter().all(is_on_one_side).then_some(())?;
     let places = corners.map(|corner| projection.projected(corner));
+    places.iter().all(|place| place.is_finite()).then_some(())?;
     let least = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let most = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
     // Room for roundings.
