@@ -1,6 +1,6 @@
 //! Picture files of any program become films.
 //!
-//! In: the bytes of a picture in any format that `image` reads here, or in OpenEXR. Out: linear means, how far the file's rounding
+//! In: the bytes of a picture in PNG, in OpenEXR, or in any format that `image` reads here. Out: linear means, how far the file's rounding
 //! may have moved them, and what else its coding does to colours.
 //!
 //! Whole numbers count as sRGB, whatever a `gAMA` or a colour profile says: that is how the pictures of a scene are meant, and what
@@ -8,7 +8,8 @@
 
 use std::{error::Error, io::Cursor};
 
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use png::{BitDepth, ColorType, DecodingError, Transformations};
 
 use super::{
     exr, memory,
@@ -17,6 +18,9 @@ use super::{
     png::read_recipe,
 };
 use crate::color::srgb_to_linear;
+
+/// What a decoder may take, in bytes: as much as `image` allows by default.
+const UNPACKING: usize = 512 << 20;
 
 /// Whether a file begins as a picture does, of a format that is read here or not.
 pub fn is_picture(bytes: &[u8]) -> bool {
@@ -37,6 +41,7 @@ fn format(bytes: &[u8]) -> Option<ImageFormat> {
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes)?,
+        Some(ImageFormat::Png) => read_png(bytes)?,
         Some(format) if format.reading_enabled() => read(bytes, format)?,
         other => return Err(Unreadable::Format(other)),
     };
@@ -51,9 +56,7 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
 
 fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
     let unreadable = |error| unreadable(&error, format);
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    // What a decoder may take: 512 MiB.
-    reader.limits(Limits::default());
+    let reader = ImageReader::with_format(Cursor::new(bytes), format);
     let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     check_pixels(width.into(), height.into())?;
@@ -76,10 +79,7 @@ fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
         // A byte k is the word 257 k, the same part of the whole.
         _ => {
-            let part = |word: u16| f64::from(word) / f64::from(u16::MAX);
-            let light: Vec<_> = (0..=u16::MAX)
-                .map(|word| srgb_to_linear(part(word)))
-                .collect();
+            let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
             fill(&mut film, &image.into_rgba16(), light, part);
         }
@@ -96,24 +96,71 @@ fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
         coding: match format {
             _ if is_lossy => Coding::Lossy,
             ImageFormat::Gif => Coding::Palette,
-            ImageFormat::Png if says_other_curve(bytes) => Coding::OtherCurve,
             _ => Coding::Exact,
+        },
+        crop: None,
+    })
+}
+
+fn read_png(bytes: &[u8]) -> Result<Picture, Unreadable> {
+    let unreadable = |error| match error {
+        DecodingError::LimitsExceeded => Unreadable::Unpacking,
+        error => Unreadable::Damaged {
+            format: name(ImageFormat::Png),
+            cause: error.to_string(),
+        },
+    };
+    let limits = png::Limits { bytes: UNPACKING };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    // Bytes or words of gray or colours, with an opacity.
+    decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
+    let header = decoder.read_header_info().map_err(unreadable)?;
+    let (width, height) = (header.width, header.height);
+    check_pixels(width.into(), height.into())?;
+    let mut reader = decoder.read_info().map_err(unreadable)?;
+    let (color, depth) = reader.output_color_type();
+    let (rounding, length) = match depth {
+        BitDepth::Sixteen => (Rounding::Word, 2),
+        _ => (Rounding::Byte, 1),
+    };
+    let places = match color {
+        ColorType::GrayscaleAlpha => [0, 0, 0, 1],
+        _ => [0, 1, 2, 3],
+    };
+    let channels = color.samples();
+    let whole = channels * length + size_of::<[f64; 3]>();
+    memory::check(width, height, whole as u64)?;
+    let mut film = Film::new(width, height)?;
+    let mut samples = vec![0; film.pixels().len() * channels * length];
+    reader.next_frame(&mut samples).map_err(unreadable)?;
+    let light = light_of_words();
+    let word = |index: usize| match rounding {
+        Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
+        // A byte k is the word 257 k, the same part of the whole.
+        _ => 257 * u16::from(samples[index]),
+    };
+    for (index, pixel) in film.pixels_mut().iter_mut().enumerate() {
+        let [r, g, b, a] = places.map(|place| word(channels * index + place));
+        *pixel = [r, g, b].map(|word| light[usize::from(word)] * part(a));
+    }
+    Ok(Picture {
+        film,
+        rounding,
+        coding: match says_other_curve(reader.info()) {
+            true => Coding::OtherCurve,
+            false => Coding::Exact,
         },
         crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
     })
 }
 
 /// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP` both.
-fn says_other_curve(bytes: &[u8]) -> bool {
-    let reader = png::Decoder::new(Cursor::new(bytes)).read_info();
-    reader.is_ok_and(|reader| {
-        let info = reader.info();
-        match (&info.icc_profile, info.srgb, info.gama_chunk) {
-            (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
-            (None, None, Some(gamma)) => (gamma.into_value() - 1.0 / 2.2).abs() > 0.01,
-            _ => false,
-        }
-    })
+fn says_other_curve(info: &png::Info) -> bool {
+    match (&info.icc_profile, info.srgb, info.gama_chunk) {
+        (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
+        (None, None, Some(gamma)) => (gamma.into_value() - 1.0 / 2.2).abs() > 0.01,
+        _ => false,
+    }
 }
 
 /// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from sRGB's; none if there is none.
@@ -138,6 +185,17 @@ fn is_other_profile(profile: &[u8]) -> Option<bool> {
         _ => return None,
     };
     Some((light - srgb_to_linear(0.5)).abs() > 0.01)
+}
+
+/// The part of the whole that a word is.
+fn part(word: u16) -> f64 {
+    f64::from(word) / f64::from(u16::MAX)
+}
+
+/// The light of each word of sRGB.
+fn light_of_words() -> Vec<f64> {
+    let words = 0..=u16::MAX;
+    words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
 /// Fills a film with samples of red, green, blue and opacity.
