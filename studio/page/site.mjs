@@ -20,7 +20,7 @@ const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio
 // Where size comes first, hardly anything is inlined; that much of it makes frames about twice as fast, and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=15"];
 run("cargo", "rustc", "--locked", "--profile", "site", "--target", wasm, "--package", "pinhole-studio-engine", "--", ...inlining);
-run("cargo", "run", "--locked", "--quiet", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
+run("cargo", "run", "--locked", "--quiet", "--config", "profile.dev.debug=false", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
 rmSync(site, { recursive: true, force: true });
 run("node", "build.mjs", "static", site);
 copyFileSync(path.join(engine, "pinhole_bg.wasm"), path.join(site, "pinhole_bg.wasm"));
