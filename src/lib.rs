@@ -20,7 +20,7 @@
 //!   alike. [`explain`] has a page for each kind of mistake.
 //! - The facts of the language, its blocks, fields and names: [`schema`]. [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
 //!   resolved.
-//! - [`textbook`] has the formulas that everybody writes, to compare with. [`tracer`] knows what is seen at a point of the picture, without a wrong
+//! - [`textbook`] has the formulas that everybody writes, in `f64`. [`tracer`] knows what is seen at a point of the picture, without a wrong
 //!   decision; its documentation says how. [`projection`] leads to points of the picture and back in rounded numbers.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - Who has no more use for a result sets a flag, and all of these are given up soon after it: [`cancel`].

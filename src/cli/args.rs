@@ -2,7 +2,6 @@
 
 use std::{num::NonZero, path::PathBuf};
 
-use crate::{area::Area, scene::Method};
 use clap::{
     Parser, Subcommand, ValueEnum,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -11,6 +10,7 @@ use clap::{
 use clap_complete::Shell;
 
 use super::help;
+use crate::{area::Area, scene::Method};
 
 /// Renders small declarative scene files through a virtual pinhole camera
 #[derive(Debug, Parser)]

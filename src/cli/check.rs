@@ -2,13 +2,6 @@
 
 use std::{fs, path::Path};
 
-use crate::{
-    diagnostic::{self, Diagnostic},
-    film,
-    scene::{self, Reading},
-    source::Source,
-};
-
 use super::{
     Status, Trouble,
     args::{CheckArgs, Format},
@@ -16,6 +9,12 @@ use super::{
     input::{Input, check_standard, is_standard, shown},
     interrupt::Interrupt,
     output,
+};
+use crate::{
+    diagnostic::{self, Diagnostic},
+    film,
+    scene::{self, Reading},
+    source::Source,
 };
 
 /// The diagnostics of a file that a program is told.

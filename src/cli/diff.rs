@@ -6,13 +6,6 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use crate::{
-    diagnostic::visible,
-    film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
-    grading::{Kind, ObjectVerdict, Reference, Verdict},
-    numbers::{grouped, short, significant},
-    render::{Control, RenderError},
-};
 use serde_json::{Map, Value, json};
 
 use super::{
@@ -22,6 +15,13 @@ use super::{
     interrupt::Interrupt,
     judge::{self, quoted},
     output, progress,
+};
+use crate::{
+    diagnostic::visible,
+    film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
+    grading::{Kind, ObjectVerdict, Reference, Verdict},
+    numbers::{grouped, short, significant},
+    render::{Control, RenderError},
 };
 
 /// Compares.

@@ -5,14 +5,13 @@
 
 use std::{borrow::Cow, fmt::Write};
 
+use super::{Status, Trouble, args::ExplainArgs, output};
 use crate::{
     diagnostic::Style,
     explain::{self, GROUPS},
     scene::describe,
     suggest,
 };
-
-use super::{Status, Trouble, args::ExplainArgs, output};
 
 /// Longer lines are hard to read, however wide the terminal is.
 const WIDEST: usize = 90;

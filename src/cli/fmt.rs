@@ -2,12 +2,6 @@
 
 use std::{fs, path::Path};
 
-use crate::{
-    diagnostic::{Report, visible},
-    film,
-    format::format,
-    source::{Source, Sources},
-};
 use diffy::Line;
 
 use super::{
@@ -17,6 +11,12 @@ use super::{
     input::{Input, check_standard, is_standard, shown},
     interrupt::Interrupt,
     output,
+};
+use crate::{
+    diagnostic::{Report, visible},
+    film,
+    format::format,
+    source::{Source, Sources},
 };
 
 /// Lays out each scene in turn, or says what would change. The status is the gravest one.

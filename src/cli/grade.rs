@@ -8,13 +8,6 @@ use std::{
     thread,
 };
 
-use crate::{
-    area::Area,
-    film::{self, Jpeg, Picture, Rounding},
-    grading::Reference,
-    render::{Control, RenderError},
-    scene::Scene,
-};
 use rayon::{ThreadPoolBuilder, prelude::*};
 use serde_json::json;
 
@@ -28,6 +21,13 @@ use super::{
     interrupt::Interrupt,
     judge, output, progress,
     thumbnails::Thumbnails,
+};
+use crate::{
+    area::Area,
+    film::{self, Jpeg, Picture, Rounding},
+    grading::Reference,
+    render::{Control, RenderError},
+    scene::Scene,
 };
 
 /// Judges them.

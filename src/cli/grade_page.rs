@@ -2,13 +2,12 @@
 
 use std::{fmt::Write, io};
 
-use crate::{diagnostic::escaped, film::HEAT_LEGEND};
-
 use super::{
     graded::{Graded, Judged},
     judge::quoted,
     thumbnails::Thumbnails,
 };
+use crate::{diagnostic::escaped, film::HEAT_LEGEND};
 
 const STYLE: &str = include_str!("grade_page.css");
 const SCRIPT: &str = include_str!("grade_page.js");

@@ -2,15 +2,15 @@
 
 use std::iter;
 
+use serde_json::{Map, Value, json};
+
+use super::{Status, judge::quoted, thumbnails::Thumbnails};
 use crate::{
     diagnostic::visible,
     film::Comparison,
     grading::{Kind, Verdict},
     numbers::short,
 };
-use serde_json::{Map, Value, json};
-
-use super::{Status, judge::quoted, thumbnails::Thumbnails};
 
 /// A picture that was judged, or why it could not be.
 pub struct Graded {

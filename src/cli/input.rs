@@ -6,6 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use super::{Trouble, args::Overrides, output};
 use crate::{
     area::Area,
     diagnostic::Report,
@@ -13,8 +14,6 @@ use crate::{
     scene::{self, Reading},
     source::{Source, Sources},
 };
-
-use super::{Trouble, args::Overrides, output};
 
 /// A scene file with more bytes than this is not read: it is not one.
 const SCENE_LIMIT: u64 = 256 << 20;

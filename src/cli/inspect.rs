@@ -1,13 +1,12 @@
 //! `inspect`: what a scene means.
 
-use crate::inspect;
-
 use super::{
     Status, Trouble,
     args::{Format, InspectArgs},
     input::Input,
     output,
 };
+use crate::inspect;
 
 /// Prints what a scene means.
 pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {

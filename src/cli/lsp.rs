@@ -2,12 +2,11 @@
 
 use std::io;
 
+use super::{Status, Trouble, output};
 use crate::{
     diagnostic::visible,
     lsp::{Server, stdio},
 };
-
-use super::{Status, Trouble, output};
 
 /// Talks to an editor until it ends.
 pub fn run() -> Result<Status, Trouble> {

@@ -44,13 +44,13 @@ use std::{
     process::ExitCode,
 };
 
-use crate::{diagnostic::visible, threads};
 use clap::Parser;
 
 use self::{
     args::{Args, Command},
     interrupt::Interrupt,
 };
+use crate::{diagnostic::visible, threads};
 
 /// Runs the command that the arguments name.
 pub fn run() -> ExitCode {

@@ -2,14 +2,13 @@
 
 use std::{fs::OpenOptions, io::Write};
 
-use crate::scene;
-
 use super::{
     Status, Trouble,
     args::NewArgs,
     input::{is_standard, shown},
     output,
 };
+use crate::scene;
 
 /// Writes the scene, unless the file is there already.
 pub fn run(args: &NewArgs) -> Result<Status, Trouble> {

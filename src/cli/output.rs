@@ -5,10 +5,10 @@ use std::{
     io::{self, ErrorKind, IsTerminal, StdoutLock, Write},
 };
 
-use crate::diagnostic::{Drawing, Style, visible};
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;
+use crate::diagnostic::{Drawing, Style, visible};
 
 /// Writes to standard output.
 pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {

@@ -6,6 +6,11 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
+use super::{
+    Trouble,
+    input::{self, shown},
+    output, progress,
+};
 use crate::{
     area::Area,
     film::{self, Recipe},
@@ -14,12 +19,6 @@ use crate::{
     sampling::Sampling,
     scene::Scene,
     tracer::World,
-};
-
-use super::{
-    Trouble,
-    input::{self, shown},
-    output, progress,
 };
 
 /// A picture, as what is kept of it.

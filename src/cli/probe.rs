@@ -1,6 +1,5 @@
 //! `probe`: one ray, surface by surface.
 
-use crate::probe;
 use glam::DVec2;
 
 use super::{
@@ -9,6 +8,7 @@ use super::{
     input::Input,
     output,
 };
+use crate::probe;
 
 /// Prints what the ray through a point of the picture meets.
 pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {

@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use crate::{area::Area, render::RenderError, tracer::World};
-
 use super::{
     Status, Trouble,
     args::RenderArgs,
@@ -12,6 +10,7 @@ use super::{
     output,
     picture::{Output, picture},
 };
+use crate::{area::Area, render::RenderError, tracer::World};
 
 /// Renders a scene.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {

@@ -2,16 +2,15 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::{
-    render::{Control, RenderError},
-    report::numerics,
-};
-
 use super::{
     Status, Trouble,
     args::{Format, ReportArgs},
     interrupt::Interrupt,
     output, progress,
+};
+use crate::{
+    render::{Control, RenderError},
+    report::numerics,
 };
 
 /// How many inputs each hard case gets unless it is said.

@@ -9,10 +9,10 @@ use std::{
     io::{self, IsTerminal},
 };
 
-use crate::{area::Area, color::linear_to_srgb, film::Film};
 use terminal_size::{Height, Width, terminal_size_of};
 
 use super::{Trouble, output};
+use crate::{area::Area, color::linear_to_srgb, film::Film};
 
 /// What people see on standard error.
 pub struct Screen {

@@ -7,14 +7,6 @@ use std::{
     time::Duration,
 };
 
-use crate::{
-    film,
-    render::{Control, RenderError},
-    report::speed::{
-        self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
-    },
-    scene::{Method, Scene},
-};
 use serde_json::json;
 
 use super::{
@@ -23,6 +15,14 @@ use super::{
     input::{Input, check_standard, is_same_file, is_standard, shown},
     interrupt::Interrupt,
     output, progress,
+};
+use crate::{
+    film,
+    render::{Control, RenderError},
+    report::speed::{
+        self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
+    },
+    scene::{Method, Scene},
 };
 
 /// The progress bar has so many steps.

@@ -6,8 +6,6 @@ use std::{
     sync::mpsc,
 };
 
-use crate::studio::{Host, SceneFile};
-
 use super::{
     Status, Trouble,
     args::StudioArgs,
@@ -15,6 +13,7 @@ use super::{
     interrupt::Interrupt,
     output, watch,
 };
+use crate::studio::{Host, SceneFile};
 
 /// Serves the page until Ctrl-C.
 pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {

@@ -12,15 +12,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{
-    area::Area,
-    film::SIGNATURE,
-    preview, refine,
-    render::{Control, RenderError},
-    scene::{self, Scene},
-    tracer::World,
-};
-
 use super::{
     Status, Trouble,
     args::WatchArgs,
@@ -29,6 +20,14 @@ use super::{
     output,
     picture::{Keep, Output, Picture, picture},
     show::Screen,
+};
+use crate::{
+    area::Area,
+    film::SIGNATURE,
+    preview, refine,
+    render::{Control, RenderError},
+    scene::{self, Scene},
+    tracer::World,
 };
 
 /// Renders at the start and after every save, until Ctrl-C.

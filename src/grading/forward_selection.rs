@@ -35,7 +35,7 @@ const ROUNDS: usize = 4;
 /// By how much of a cell numbers are varied on the middle grid.
 const CELL_STEP: f64 = 0.25;
 
-/// So many objects are looked at, those around which most is wrong.
+/// So many objects are looked at, those in and beside which most is wrong.
 const SUSPECTS: usize = 12;
 
 /// A sample in the middle of a pixel makes as little noise as two random ones; more than this come of several.
@@ -204,7 +204,7 @@ fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate
         .collect()
 }
 
-/// The objects that may be wrong, those first around which most is.
+/// The objects that may be wrong, those first in and beside which most is.
 fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let grid = &judge.middle.grid;
     let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
