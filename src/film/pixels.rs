@@ -49,8 +49,11 @@ impl Pixel for [u8; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        let ends = [-bound, bound].map(|off| encoder.pixel(light.map(|light| light + off)));
-        ends[0] == ends[1]
+        let ends = || [-bound, bound].map(|off| encoder.pixel(light.map(|light| light + off)));
+        bound == 0.0 || {
+            let [low, high] = ends();
+            low == high
+        }
     }
 
     fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {

@@ -50,7 +50,7 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 });
 
 /// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
-const STACK: usize = 64 << 20;
+pub const STACK: usize = 64 << 20;
 
 /// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
 const SHALLOW: usize = 32;
@@ -141,7 +141,7 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
 }
 
 /// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
-pub fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
+fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
         match builder

@@ -1,11 +1,15 @@
-//! A large file part by part.
+//! A large file part by part, parsed on all processors.
 //!
 //! In: a source. Out: the items of each part in their order, if all of the file is right.
 
-use std::sync::atomic::AtomicBool;
+use std::{
+    ops::Range,
+    sync::{atomic::AtomicBool, mpsc},
+    thread,
+};
 
 use super::{
-    parser::{CHUNK, TreeBuilder, after, with_stack},
+    parser::{CHUNK, STACK, TreeBuilder, after},
     recovery::Recovery,
     scan::Scan,
     tokens::Lexer,
@@ -15,7 +19,11 @@ use super::{
 use crate::{
     cancel,
     source::{Source, SourceId},
+    threads,
 };
+
+/// Maximum number of threads that parse: one thread lowers what they parse, and more would wait for it.
+const MOST_THREADS: usize = 4;
 
 /// Parses a file in parts of at least so many bytes, and hands over the items of each in their order, so that there is never a tree
 /// of the whole. Answers whether all went well; otherwise the file has mistakes, is short, `each` wanted no more, or it was
@@ -35,38 +43,68 @@ pub fn parse_in_parts<'s>(
     if !scan.is_plain() {
         return false;
     }
+    let parts = ranges(source, bytes, &scan);
     let words = Vocabulary::new(text);
-    let mut start = source.bom_len();
-    while start < text.len() {
-        let part = with_stack(|| part_from(start, bytes, source, id, &scan, &words, cancel));
-        let Some((items, end)) = part else {
-            return false;
-        };
-        if !each(items) {
-            return false;
-        }
-        start = end;
-    }
-    true
+    let count = threads::available().min(parts.len()).min(MOST_THREADS);
+    thread::scope(|scope| {
+        // Thread i parses the parts i, i + count, …, each a few parts ahead of what is asked of it.
+        let parsed: Vec<mpsc::Receiver<_>> = (0..count)
+            .map(|first| {
+                let (found, results) = mpsc::sync_channel(1);
+                let (parts, scan, words) = (&parts, &scan, &words);
+                let work = move || {
+                    for part in parts.iter().skip(first).step_by(count) {
+                        let items = part_items(part.clone(), source, id, scan, words, cancel);
+                        let is_right = items.is_some();
+                        if found.send(items).is_err() || !is_right {
+                            break;
+                        }
+                    }
+                };
+                // Without the thread nothing is received from it, and the file is parsed as a whole.
+                let builder = thread::Builder::new().stack_size(STACK);
+                let _ = builder.spawn_scoped(scope, work);
+                results
+            })
+            .collect();
+        (0..parts.len()).all(|part| match parsed[part % count].recv() {
+            Ok(Some(items)) => each(items),
+            _ => false,
+        })
+    })
 }
 
-/// The items of the part from an offset on, and where it ends, if all of it is right.
-fn part_from<'s>(
-    start: usize,
-    bytes: usize,
+/// The parts of a text, each of which ends behind a block.
+fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
+    let (mut parts, mut from) = (Vec::new(), source.bom_len());
+    for &to in &scan.ends {
+        if to > from && to - from >= bytes {
+            parts.push(from..to);
+            from = to;
+        }
+    }
+    if from < source.text().len() {
+        parts.push(from..source.text().len());
+    }
+    parts
+}
+
+/// The items of a part, if all of it is right and no item goes on behind it.
+fn part_items<'s>(
+    part: Range<usize>,
     source: &'s Source,
     id: SourceId,
     scan: &Scan,
     words: &Vocabulary<'s>,
     cancel: &AtomicBool,
-) -> Option<(Vec<Item<'s>>, usize)> {
+) -> Option<Vec<Item<'s>>> {
     let text = source.text();
     let mut recovery = Recovery::new(source, id, words);
     let mut right = TreeBuilder::new(text, id, words);
-    let mut from = start;
-    for &to in after(&scan.ends, start + 1).iter().chain([&text.len()]) {
-        let is_part = to - start >= bytes || to == text.len();
-        if !is_part && to - from < CHUNK {
+    let mut from = part.start;
+    for &to in after(&scan.ends, part.start + 1).iter().chain([&part.end]) {
+        let is_end = to >= part.end;
+        if !is_end && to - from < CHUNK {
             continue;
         }
         let (next, is_right) = right.items(from..to, &mut recovery);
@@ -75,9 +113,9 @@ fn part_from<'s>(
             return None;
         }
         from = to;
-        if is_part {
+        if is_end {
             break;
         }
     }
-    Some((recovery.items, from))
+    Some(recovery.items)
 }

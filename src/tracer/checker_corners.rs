@@ -42,6 +42,9 @@ pub struct Checks {
     pub(crate) squares: Squares,
     /// The squares of its corners, in x and in z: above on the left and on the right, and below.
     pub(crate) corners: [[f64; 4]; 2],
+    /// Whether the corners are certain to lie in these squares. If not, lines of the board displaced by no more than the
+    /// forms of `squares` may be off have the corners in them.
+    pub(crate) is_certain: bool,
 }
 
 /// A block of pixels in which nothing but one board is seen.
@@ -217,7 +220,7 @@ impl Mesh {
         ControlFlow::Continue(())
     }
 
-    /// What a pixel shows, if it is certain in which squares its corners lie.
+    /// What a pixel shows: the squares in which its corners lie, or probably lie.
     fn checks(
         &self,
         row: u32,
@@ -225,15 +228,17 @@ impl Mesh {
         above: &CornerRow,
         below: &CornerRow,
     ) -> Option<Checks> {
-        let corners = [
+        let certain = [
             above.at(column),
             above.at(column + 1),
             below.at(column),
             below.at(column + 1),
         ];
-        if corners.as_flattened().iter().any(|square| square.is_nan()) {
-            return None;
-        }
+        let is_certain = !certain.as_flattened().iter().any(|square| square.is_nan());
+        let (corners, doubt) = match is_certain {
+            true => (certain, [0.0; 2]),
+            false => self.probable(certain, column, row)?,
+        };
         let Area { width, height, .. } = self.block;
         let x = middle(2 * column as u32 + 1, width);
         let y = middle(2 * row + 1, height);
@@ -244,14 +249,52 @@ impl Mesh {
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let Squares { across, below, odd } = &self.squares;
+        let below = local(below);
+        let mut across = across.each_ref().map(local);
+        if !is_certain {
+            let greatest = below.factors[2].abs() + below.spread();
+            for (across, doubt) in across.iter_mut().zip(doubt) {
+                across.rad += doubt * greatest * UP;
+            }
+        }
         Some(Checks {
             squares: Squares {
-                across: across.each_ref().map(local),
-                below: local(below),
+                across,
+                below,
                 odd: *odd,
             },
             corners: [0, 1].map(|axis| corners.map(|corner| corner[axis])),
+            is_certain,
         })
+    }
+
+    /// Fills in the squares in which a pixel's corners probably lie, and returns how far any of them may lie from the
+    /// line next to it, in squares. Returns `None` if a quotient is no number.
+    #[cold]
+    fn probable(
+        &self,
+        mut corners: [[f64; 2]; 4],
+        column: usize,
+        row: u32,
+    ) -> Option<([[f64; 2]; 4], [f64; 2])> {
+        let mut doubt = [0.0; 2];
+        for (place, corner) in (0..).zip(&mut corners) {
+            let x = self.columns[column + place % 2];
+            let y = middle(2 * (row + place as u32 / 2), self.block.height);
+            for axis in 0..2 {
+                if corner[axis].is_nan() {
+                    corner[axis] =
+                        floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
+                    // The computed quotient and the true one both lie within the slack of the line.
+                    doubt[axis] = 2.0 * self.slack[axis];
+                }
+            }
+        }
+        let is_known = corners
+            .as_flattened()
+            .iter()
+            .all(|square| square.is_finite());
+        is_known.then_some((corners, doubt))
     }
 }
 
@@ -271,13 +314,19 @@ fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
 
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn corners_simd(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
     mesh.evaluate(y, length, out);
 }
 
 /// The sign of each pixel whose corners lie in one square, and 0 for all others.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     let [a, b] = [&above.squares[0], &below.squares[0]];
     let [c, d] = [&above.squares[1], &below.squares[1]];

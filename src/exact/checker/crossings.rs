@@ -179,7 +179,10 @@ impl LineCrossings {
 }
 
 /// Σ (−1)^j X over so many crossings after those that are done, of the series so many terms.
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn block(crossings: &LineCrossings, series: &Series, terms: usize, [done, count]: [f64; 2]) -> f64 {
     match terms {
         1 => crossings.block::<1, 3>(series, done, count),

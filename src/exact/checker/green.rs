@@ -27,10 +27,13 @@ use std::f64::consts::PI;
 /// The series is long enough when what it neglects is below this part of what is asked for.
 const TRUNCATION: f64 = 1e-3;
 
-/// What may be neglected at an edge's lines, as a part of what is asked for: at one that ends, and at one that runs into the horizon. A pixel has
-/// two edges of either kind at most where both matter, and half of what they neglect together counts, as these are sums of signs.
+/// Shares of the tolerance that an edge may neglect at its lines, in a polygon that reaches the horizon: an edge that
+/// ends, and one that runs into the horizon. There are at most two of either kind where both matter, and half of what
+/// the edges neglect together counts, since these are sums of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
+/// The same in a polygon whose edges all end: two recede, and the other two hardly neglect anything (`tail::level`).
+const ONLY_FINITE_TAIL: f64 = 1.0;
 /// A polygon may neglect the part of that which its area is of the pixel's, but at least this part.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
 
@@ -60,6 +63,11 @@ pub(super) fn sum(
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
         .collect();
+    let is_endless = |edge: &Edge| edge.end.is_none();
+    let tails = match edges.iter().flatten().any(is_endless) {
+        true => [FINITE_TAIL, ENDLESS_TAIL],
+        false => [ONLY_FINITE_TAIL; 2],
+    };
     let nearest = corners.iter().fold(f64::INFINITY, |m, c| m.min(c.depth));
     let truncation = TRUNCATION * budget.tolerance;
     let (terms, truncation) = terms(board, nearest, &edges, area.abs(), truncation);
@@ -70,7 +78,8 @@ pub(super) fn sum(
     for (i, edge) in edges.iter().enumerate() {
         let mut ends = 0.0;
         if let Some(edge) = edge {
-            let part = edge.integral(board, terms, share, budget);
+            let tolerance = share * tails[usize::from(is_endless(edge))] * budget.tolerance;
+            let part = edge.integral(board, terms, tolerance, budget);
             sum.value += edge.sign * part.value;
             sum.bound += part.bound;
             ends -= edge.potential;
@@ -257,8 +266,8 @@ impl Edge {
         })
     }
 
-    /// ρ ∫ s(c) dX from near to far.
-    fn integral(&self, board: &Homography, terms: usize, share: f64, budget: &Budget) -> Sum {
+    /// ρ ∫ s(c) dX from near to far; `tolerance` is what may be neglected of it.
+    fn integral(&self, board: &Homography, terms: usize, tolerance: f64, budget: &Budget) -> Sum {
         let series = self.series(board, terms);
         let square = self.c.floor();
         let start = square_wave(square);
@@ -284,11 +293,6 @@ impl Edge {
                 count: self.count,
             };
             // s jumps by −2s where the first line is crossed, and by turns from there.
-            let part = match self.end {
-                Some(_) => FINITE_TAIL,
-                None => ENDLESS_TAIL,
-            };
-            let tolerance = share * part * budget.tolerance;
             let jumps = tail::sum(
                 &crossings,
                 &series,

@@ -304,7 +304,10 @@ impl Lines {
     }
 }
 
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt"))]
+#[multiversion(targets(
+    "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
+    "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
+))]
 fn sums_simd(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
     pixels.compute(lines, room)
 }

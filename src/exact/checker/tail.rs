@@ -39,9 +39,10 @@ const MOST: f64 = 300_000.0;
 const MODE_COST: f64 = 4.0;
 /// The modes up to this one are always computed; a later one may be skipped where it is small. (Measured: with 7 a horizon takes up to a fifth longer, and with 123 no less.)
 const FIRST_MODES: f64 = 31.0;
-/// Shares of the tolerance, which together are less than all of it: of a sum that is left out, and as much for modes that are; of what V_s lacks in the first term
-/// of X, and of the terms that have no modes. (Measured: the last two, a quarter and four times as great, change times by less than a tenth.)
+/// Shares of the tolerance, which together are less than all of it: of a sum that is left out, and as much for modes that are; of the modes beyond the last one; of
+/// what V_s lacks in the first term of X, and of the terms that have no modes. (Measured: the last two, a quarter and four times as great, change times by less than a tenth.)
 const LEFT_OUT: f64 = 0.25;
+const BEYOND: f64 = 0.6;
 const LACKING: f64 = 0.02;
 const LATER: f64 = 0.05;
 /// The series in 1/w is not used below this w: its terms fall by s/w and more, to a third each.
@@ -120,7 +121,7 @@ fn start(all: &LineCrossings, series: &Series, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
     // The cheapest: (m − m_0)/g crossings and κ/2m modes.
-    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / tolerance).sqrt();
+    let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * LEFT_OUT * tolerance)).sqrt() + g;
@@ -181,7 +182,7 @@ fn rest(
     };
     // |V_3| ≤ w^−3 + w^−2/2, and Σ n^−3 over the odd n beyond a whole number Q is at most 1/4Q².
     let largest = first * all_terms * (0.5 * u2 + u3);
-    let last = ((largest / tolerance).sqrt().ceil() + 1.0).clamp(3.0, MOST);
+    let last = ((largest / (4.0 * BEYOND * tolerance)).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = largest / (4.0 * (last - 1.0) * (last - 1.0));
     if beyond.is_nan() || beyond >= everything || !budget.spend(last * MODE_WORK) {
         return Sum {

@@ -148,7 +148,11 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
                             let slot = slots[usize::from(odd)];
                             return self.show(Part::OneColor { area, slot });
                         }
-                        Shown::Squares(checks) => Some(checks),
+                        // Samples tell certain squares apart, and exact areas need not.
+                        Shown::Squares(checks) => {
+                            let is_exact = self.quartering.samples.is_infinite();
+                            (checks.is_certain || is_exact).then_some(checks)
+                        }
                         Shown::Unknown => None,
                     };
                     self.show(Part::Pixel {

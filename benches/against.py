@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Commands of two versions of Pinhole, timed in turns: against.py PROGRAM COMMIT [NAME...]
+
+PROGRAM is a release build of `pinhole`. COMMIT is built in a folder of its own under `target/against`, unless it is the path of
+a program. Every command of `commands.py`, or those whose names contain a NAME, runs nine times in each program, in turns; the
+least counts, since other work on the machine only makes a time longer. Printed are the CPU seconds (user and system time of all
+threads) and the wall time of COMMIT's program, then PROGRAM's ratios to it, and last the CPU ratio of PROGRAM to a second series of its own:
+how far that is from 1 is the error of the others."""
+
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import commands
+
+ROUNDS = 9
+SIZE = (1280, 720)
+SPHERES = [10_000, 100_000, 1_000_000]
+
+
+def build(commit):
+    """The release build of a commit, made in a clone of the repository."""
+    if os.path.isfile(commit):
+        return commit
+    commit = subprocess.check_output(["git", "-C", commands.ROOT, "rev-parse", "--short", commit], text=True).strip()
+    folder = commands.ROOT / "target" / "against" / commit
+    if not folder.exists():
+        subprocess.run(["git", "clone", "--quiet", commands.ROOT, folder], check=True)
+        subprocess.run(["git", "-C", folder, "checkout", "--quiet", commit], check=True)
+    environment = {name: value for name, value in os.environ.items() if name != "CARGO_TARGET_DIR"}
+    subprocess.run(["cargo", "build", "--release", "--locked"], cwd=folder, check=True, env=environment)
+    return folder / "target" / "release" / "pinhole"
+
+
+def threaded(command):
+    """The command's arguments without `--threads 1`: all processors are at work, as for a user."""
+    words = [str(word) for word in command.arguments]
+    while "--threads" in words:
+        at = words.index("--threads")
+        del words[at : at + 2]
+    return words
+
+
+def run(program, command):
+    """CPU and wall seconds; infinite where the program does not know the command."""
+    start = time.monotonic()
+    with open(command.stdin, "rb") as stdin:
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        process = subprocess.Popen([program, *threaded(command)], stdin=stdin, **quiet)
+    _, status, usage = os.wait4(process.pid, 0)
+    if os.waitstatus_to_exitcode(status) != command.status:
+        return math.inf, math.inf
+    return usage.ru_utime + usage.ru_stime, time.monotonic() - start
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program, other, names = sys.argv[1], build(sys.argv[2]), sys.argv[3:]
+    print(f"{'':36}{'CPU s':>9}{'wall s':>9}{'CPU':>9}{'wall':>9}{'itself':>9}")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        commands.prepare(folder, program, SPHERES)
+        for command in commands.commands(folder, *SIZE, SPHERES):
+            if names and not any(name in command.name for name in names):
+                continue
+            series = [[], [], []]
+            for _ in range(ROUNDS):
+                for runs, binary in zip(series, [other, program, program]):
+                    runs.append(run(binary, command))
+            (cpu, wall), (new_cpu, new_wall), (again, _) = ([min(column) for column in zip(*runs)] for runs in series)
+            ratios = [new_cpu / cpu, new_wall / wall, again / new_cpu]
+            print(f"{command.name:36}{cpu:9.4f}{wall:9.4f}" + "".join(f"{ratio:9.3f}" for ratio in ratios), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+#!/usr/bin/env python3
+"""What commands cost, counted so that it can be compared from day to day: work.py PROGRAM [--write]
+
+PROGRAM is a release build of `pinhole`. Every command of `commands.py` runs under valgrind, which counts its instructions
+whatever else the machine does, and once more without it for its peak memory. Both are compared with `work.csv`: the exit status
+is 1 if a command takes 3 % more instructions or 10 % more memory than its row there, or has no row; a command that takes 3 %
+less is named. A row counts for the versions of rustc and valgrind in it; under others it is printed and not enforced. `--write`
+writes `work.csv` anew."""
+
+import csv
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+
+import commands
+
+TABLE = pathlib.Path(__file__).with_suffix(".csv")
+COLUMNS = ["command", "instructions", "memory_kb", "rustc", "valgrind"]
+SIZE = (160, 90)
+SPHERES = [1000, 10_000]
+# By how much a command may exceed its row. Counts repeat within 0.2 %, peak memory within some pages.
+MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
+# One thread where a command has no `--threads`, and hash tables in one order.
+ENVIRONMENT = {**os.environ, "RAYON_NUM_THREADS": "1", "NO_COLOR": "1"}
+
+
+def run(command, line):
+    """Runs a command line and returns what it wrote to standard error."""
+    with open(command.stdin, "rb") as stdin:
+        done = subprocess.run(line, stdin=stdin, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=ENVIRONMENT)
+    said = done.stderr.decode(errors="replace")
+    if done.returncode != command.status:
+        sys.exit(f"{command.name}: status {done.returncode}, not {command.status}\n{said[-2000:]}")
+    return said
+
+
+def measure(program, command):
+    """The instructions of a command and the peak of its resident memory in kilobytes."""
+    line = [program, *command.arguments]
+    said = run(command, ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *line])
+    instructions = int(re.search(r"Collected : (\d+)", said)[1])
+    # GNU time starts the command from a small process: from here, Python's own memory would count as the command's.
+    with tempfile.NamedTemporaryFile("r") as report:
+        run(command, ["/usr/bin/time", "--quiet", "-f", "%M", "-o", report.name, *line])
+        memory = int(report.read())
+    return instructions, memory
+
+
+def version(program):
+    return re.search(r"\d+\.\d+\.\d+", subprocess.run([program, "--version"], capture_output=True, text=True).stdout)[0]
+
+
+def measure_all(program):
+    """A row for each command, in their order; as many are measured at once as there are processors."""
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+        folder = pathlib.Path(folder)
+        commands.prepare(folder, program, SPHERES)
+        versions = [version("rustc"), version("valgrind")]
+
+        def row(command):
+            return [command.name, *measure(program, command), *versions]
+
+        return list(pool.map(row, commands.commands(folder, *SIZE, SPHERES)))
+
+
+def compare(rows):
+    """Prints each row beside the committed one; returns the names of the commands that take too much."""
+    with open(TABLE, newline="") as file:
+        known = {row["command"]: row for row in csv.DictReader(file)}
+    failed = [f"{name} (is no command any more)" for name in known.keys() - {row[0] for row in rows}]
+    for name, instructions, memory, *versions in rows:
+        before = known.get(name)
+        if before is None:
+            failed.append(f"{name} (has no row)")
+            continue
+        work, space = instructions / int(before["instructions"]), memory / int(before["memory_kb"])
+        applies = versions == [before["rustc"], before["valgrind"]]
+        verdict = ""
+        if work > MORE_INSTRUCTIONS or space > MORE_MEMORY:
+            verdict = "more" if applies else "more, with other versions"
+            if applies:
+                failed.append(f"{name} ({work:.3f} of the instructions, {space:.2f} of the memory)")
+        elif work < 2 - MORE_INSTRUCTIONS:
+            verdict = "less: its row can fall"
+        print(f"{name:36}{instructions / 1e6:12.2f} M {work:7.3f}{memory / 1024:9.1f} MB {space:6.2f}  {verdict}")
+    return failed
+
+
+def main():
+    if len(sys.argv) not in [2, 3] or sys.argv[2:] not in [[], ["--write"]]:
+        sys.exit(__doc__)
+    rows = measure_all(sys.argv[1])
+    if sys.argv[2:]:
+        with open(TABLE, "w", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerows([COLUMNS, *rows])
+        return
+    failed = compare(rows)
+    if failed:
+        sys.exit("\nToo much work: " + "; ".join(failed))
+
+
+if __name__ == "__main__":
+    main()
