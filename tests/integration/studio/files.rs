@@ -164,7 +164,7 @@ fn what_cannot_be_edited_is_told_at_once() {
     let port = taken.local_addr().unwrap().port();
     for (arguments, said) in [
         ("missing.scn", "cannot read missing.scn: "),
-        (".", ". is not a file"),
+        (".", "cannot read .: it is a folder, not a file"),
         ("-", "standard input cannot be edited"),
         ("a.png", "a.png is a picture"),
         (
