@@ -27,9 +27,16 @@ pub fn is_reason(error: &io::Error) -> bool {
 }
 
 /// Writes over a file that is still what was read. A copy of all that is to be in it stands beside it, or else in the user's folder for such things, until
-/// that is done: whatever happens meanwhile, one of the two is whole.
-pub fn write_in_place(path: &Path, original: &Original, content: &[u8]) -> io::Result<()> {
-    let mut copy = copy_beside(path)?;
+/// that is done: whatever happens meanwhile, one of the two is whole. Where no copy can be made, `reason` stays what kept the file from being replaced.
+pub fn write_in_place(
+    path: &Path,
+    original: &Original,
+    content: &[u8],
+    reason: io::Error,
+) -> io::Result<()> {
+    let Some(mut copy) = copy_beside(path) else {
+        return Err(reason);
+    };
     copy.write_all(content)?;
     copy.as_file().sync_all()?;
     let mut file = without_waiting(OpenOptions::new().write(true)).open(path)?;
@@ -53,19 +60,16 @@ pub fn write_in_place(path: &Path, original: &Original, content: &[u8]) -> io::R
     }
 }
 
-/// An empty file for the copy.
-fn copy_beside(path: &Path) -> io::Result<NamedTempFile> {
+/// An empty file for the copy, if there is a place for one.
+fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(50).collect();
     let prefix = format!("{name}.copy-");
-    let copy_in = |folder: &Path| Builder::new().prefix(&prefix).tempfile_in(folder);
-    let beside = path.parent().unwrap_or(Path::new("."));
-    copy_in(beside).or_else(|error| match state_folder() {
-        Some(folder) => {
-            fs::create_dir_all(&folder)?;
-            copy_in(&folder)
-        }
-        None => Err(error),
+    let copy_in = |folder: &Path| Builder::new().prefix(&prefix).tempfile_in(folder).ok();
+    copy_in(path.parent()?).or_else(|| {
+        let folder = state_folder()?;
+        fs::create_dir_all(&folder).ok()?;
+        copy_in(&folder)
     })
 }
 

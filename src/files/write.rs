@@ -62,7 +62,7 @@ pub fn write(
     let replaced = replace(&place, purpose, cancel, |out| out.write_all(&content));
     match replaced {
         Err(error) if place.found.is_some() && in_place::is_reason(&error) => {
-            in_place::write_in_place(&place.path, original, &content)
+            in_place::write_in_place(&place.path, original, &content, error)
         }
         replaced => replaced,
     }

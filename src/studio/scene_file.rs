@@ -217,8 +217,35 @@ fn write(path: &Path, text: &str, purpose: Purpose) -> io::Result<()> {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the tests are another program here"
+)]
 mod tests {
+    use std::fs;
+
     use super::*;
+
+    #[test]
+    fn what_is_saved_between_reading_and_writing_is_kept() {
+        /// Reads a file that another program saves right after that, if it holds `mine`.
+        fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
+            let bytes = files::read(path, 99)?;
+            if bytes == b"mine" {
+                fs::write(path, "theirs")?;
+            }
+            Ok(bytes)
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.scn");
+        fs::write(&path, "old").unwrap();
+        let mut file = SceneFile::open(&path, read_and_saved).unwrap();
+        file.watch = None;
+        file.save("mine", Some("old"), None).unwrap();
+        let saved = file.save("more", Some("mine"), None);
+        assert_eq!(saved, Err(NotSaved::Changed(Some("theirs".to_owned()))));
+        assert_eq!(fs::read(&path).unwrap(), b"theirs");
+    }
 
     #[test]
     fn a_name_leads_nowhere_else() {

@@ -243,6 +243,62 @@ fn a_name_that_was_given_may_lead_elsewhere_but_is_never_waited_for() {
 }
 
 #[test]
+fn a_large_file_is_refused_by_its_head_and_length() {
+    let folder = folder();
+    let grow = |name: &str, to: u64| {
+        let mut options = fs::OpenOptions::new();
+        let file = options.append(true).create(true).open(folder.path(name));
+        file.unwrap().set_len(to).unwrap();
+    };
+    fs::copy(folder.path("a.png"), folder.path("large.png")).unwrap();
+    grow("large.png", (256 << 20) + 1);
+    grow("none.png", 1 << 40);
+    grow("none.scn", 1 << 40);
+    let black = vec![0; 2500 * 20_000];
+    let one_bit = (png::ColorType::Grayscale, png::BitDepth::One);
+    let huge = crate::images::png([20_000; 2], one_bit.0, one_bit.1, &black);
+    folder.write("huge.png", huge);
+    for (name, about) in [
+        (
+            "large.png",
+            "it has more than 268435456 bytes: `--large` reads it",
+        ),
+        ("none.png", "it is no picture in PNG"),
+        ("none.scn", "256 MiB, too much for a scene"),
+        (
+            "huge.png",
+            "more than the 268435456 bytes that are read: `--large` reads it",
+        ),
+    ] {
+        refused_of_large(&folder, &["diff", "a.png", name], about);
+        if name != "none.scn" {
+            refused_of_large(&folder, &["diff", name, "a.png"], about);
+            let said = at_once(&folder, &["grade", "a.scn", name]);
+            assert!(
+                said.status == 2 && said.errors.contains(about),
+                "{}",
+                said.errors
+            );
+        }
+    }
+    let said = at_once(&folder, &["diff", "--large", "a.png", "large.png"]);
+    assert_eq!(said.status, 0, "{}", said.errors);
+}
+
+/// Runs a command that has to refuse something in one line, in a folder of files that are too large to be compared.
+#[track_caller]
+fn refused_of_large(folder: &Folder, arguments: &[&str], about: &str) {
+    let said = at_once(folder, arguments);
+    let told = (said.status, said.errors.lines().count());
+    assert_eq!(told, (2, 1), "{arguments:?}: {}", said.errors);
+    assert!(
+        said.errors.contains(about),
+        "{arguments:?}: {}",
+        said.errors
+    );
+}
+
+#[test]
 fn what_a_shell_connects_is_read() {
     let folder = folder();
     for line in [
