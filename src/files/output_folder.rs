@@ -26,6 +26,9 @@ const HEAD: &str = "# Files that pinhole made here, and replaces unless they wer
 /// A list with more bytes is none.
 const LIST_LIMIT: u64 = 16 << 20;
 
+/// A file with more bytes is none that was made here.
+const FILE_LIMIT: u64 = 256 << 20;
+
 /// A folder for what a command makes.
 #[derive(Debug)]
 pub struct OutputFolder {
@@ -171,9 +174,10 @@ impl OutputFolder {
         let Some(hashes) = self.made.get(name) else {
             return refused("pinhole did not make this file: move it away, or name another folder");
         };
-        match hashes.contains(&hash(&read(path, u64::MAX)?)) {
-            true => Ok(()),
-            false => refused(
+        match read(path, FILE_LIMIT) {
+            Ok(bytes) if hashes.contains(&hash(&bytes)) => Ok(()),
+            Err(error) if error.kind() != io::ErrorKind::FileTooLarge => Err(error),
+            _ => refused(
                 "it was changed since pinhole made it: move it away, or name another folder",
             ),
         }

@@ -70,6 +70,11 @@ fn what_somebody_else_made_or_changed_is_refused_before_anything_is_written() {
             fs::remove_dir_all(folder.path("out")).unwrap();
             folder.told(command, 0);
             folder.write(&path, "changed");
+            // Nor is it read to its end if it has none.
+            let huge = fs::OpenOptions::new().write(true).open(folder.path(&path));
+            huge.unwrap().set_len(1 << 40).unwrap();
+            assert!(folder.told(command, 2).contains("was changed since"));
+            folder.write(&path, "changed");
             let before = fs::read(folder.path("out/.pinhole")).unwrap();
             let told = folder.told(command, 2);
             assert!(told.contains("was changed since pinhole made it"), "{told}");
