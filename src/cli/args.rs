@@ -228,9 +228,10 @@ pub struct ReportArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(value_name = "SCENE", required_unless_present = "numerics")]
     pub scenes: Vec<PathBuf>,
-    /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG, report.csv and
-    /// report.json; of several scenes each has a folder in it. It is made if it is missing, and keeps a list `.pinhole` of what was
-    /// made there: any other file in the way, or a symbolic link, is refused
+    /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG,
+    /// report.csv and report.json; of several scenes each has a folder in it. It is made if it is
+    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way, or a
+    /// symbolic link, is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// The methods [default: all]
@@ -313,8 +314,8 @@ pub struct GradeArgs {
     /// The pictures, or folders of them
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing, and keeps a list `.pinhole` of what was
-    /// made there: any other file in the way is refused
+    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing, and keeps
+    /// a list `.pinhole` of what was made there: any other file in the way is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -339,7 +340,8 @@ pub struct ExplainArgs {
 /// How large pictures may be.
 #[derive(Debug, clap::Args)]
 pub struct LargeArgs {
-    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as long as there is memory for them
+    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
+    /// long as there is memory for them
     #[arg(long)]
     pub large: bool,
 }

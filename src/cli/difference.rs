@@ -1,7 +1,9 @@
-//! A unified diff of a text and its layout, in time and memory that grow with their length and not with its square.
+//! A unified diff of a text and its layout, in time and memory that grow with their length and not
+//! with its square.
 //!
-//! No search for a shortest edit is needed: a layout changes blanks and line ends alone. What stands before a line, blanks left out, says
-//! where the line belongs in the other text, so one walk over both finds the lines that stay.
+//! No search for a shortest edit is needed: a layout changes blanks and line ends alone. What
+//! stands before a line, blanks left out, says where the line belongs in the other text, so one
+//! walk over both finds the lines that stay.
 
 use std::{fmt::Write, ops::Range};
 
@@ -14,7 +16,8 @@ use crate::{
 /// Number of unchanged lines that are shown around a change, as everywhere.
 const CONTEXT: usize = 3;
 
-/// What would change, as a unified diff. Where lines end in different ways, carriage returns are shown: lines can differ in them alone.
+/// What would change, as a unified diff. Where lines end in different ways, carriage returns are
+/// shown: lines can differ in them alone.
 pub fn difference(source: &Source, formatted: &str) -> String {
     let text = source.text();
     let (before, after) = (lines(text), lines(formatted));
@@ -133,7 +136,8 @@ impl Printer {
     }
 }
 
-/// Lines as diffs name them: the first one from 1, and how many there are unless it is one. An empty range has the line before it.
+/// Lines as diffs name them: the first one from 1, and how many there are unless it is one. An
+/// empty range has the line before it.
 fn range(lines: Range<usize>) -> String {
     match lines.len() {
         0 => format!("{},0", lines.start),

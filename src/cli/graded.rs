@@ -147,7 +147,8 @@ pub fn csv(graded: &[Graded]) -> String {
         .collect()
 }
 
-/// A text as a cell of a CSV file: what a program that opens it would take for a formula begins with a `'`, and is a text to it so.
+/// A text as a cell of a CSV file: what a program that opens it would take for a formula begins
+/// with a `'`, and is a text to it so.
 fn text_cell(text: &str) -> String {
     let guard = match text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
         true => "'",

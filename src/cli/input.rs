@@ -63,7 +63,8 @@ impl Input {
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a text that is to be written back, and what it was; `command` says what is done with it. Of standard input there is nothing to write back to.
+    /// Reads a text that is to be written back, and what it was; `command` says what is done with
+    /// it. Of standard input there is nothing to write back to.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -212,7 +213,8 @@ pub enum Compared {
     Other(Vec<u8>),
 }
 
-/// Reads a picture, or as much of another file as `most`. Its first bytes say which it is, before the others are read.
+/// Reads a picture, or as much of another file as `most`. Its first bytes say which it is, before
+/// the others are read.
 pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compared> {
     let (mut from, length) = opened(path)?;
     let mut start = Vec::new();
@@ -247,7 +249,8 @@ pub enum Most {
     Start,
 }
 
-/// The bytes of a scene's file, or as much of a picture as can matter. Whatever is no file is refused.
+/// The bytes of a scene's file, or as much of a picture as can matter. Whatever is no file is
+/// refused.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }

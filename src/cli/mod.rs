@@ -92,7 +92,8 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// The answer to the arguments as they may be shown, if that is another one: it repeats some of them.
+/// The answer to the arguments as they may be shown, if that is another one: it repeats some of
+/// them.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()

@@ -216,7 +216,8 @@ impl Output {
         Ok(Self::File(path.to_owned(), format, Origin::Given))
     }
 
-    /// Whether the picture can be written there, as far as that can be known before; not in the place of what it is made of.
+    /// Whether the picture can be written there, as far as that can be known before; not in the
+    /// place of what it is made of.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(Trouble(

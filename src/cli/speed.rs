@@ -190,7 +190,8 @@ fn measure(
     }
 }
 
-/// Where the report of each scene goes, within the folder: of one into the folder itself, of several each into a folder there, under a page on all.
+/// Where the report of each scene goes, within the folder: of one into the folder itself, of
+/// several each into a folder there, under a page on all.
 fn folders(scenes: &[PathBuf]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];

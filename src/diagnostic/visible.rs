@@ -17,8 +17,8 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A name, a message, or whatever else is to stand within one line: line feeds and tabs are made visible too, so that it can forge neither a second
-/// line nor a cell of a table.
+/// A name, a message, or whatever else is to stand within one line: line feeds and tabs are made
+/// visible too, so that it can forge neither a second line nor a cell of a table.
 pub fn visible_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| matches!(character, '\n' | '\t' | '\u{2028}' | '\u{2029}');
     let shown = visible(text);

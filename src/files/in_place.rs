@@ -1,4 +1,5 @@
-//! Texts of files that cannot be replaced by renaming another one: in a folder that cannot be written to, or that something is mounted on.
+//! Texts of files that cannot be replaced by renaming another one: in a folder that cannot be
+//! written to, or that something is mounted on.
 
 use std::{
     env,
@@ -26,8 +27,10 @@ pub fn is_reason(error: &io::Error) -> bool {
     )
 }
 
-/// Writes over a file that is still what was read. A copy of all that is to be in it stands beside it, or else in the user's folder for such things, until
-/// that is done: whatever happens meanwhile, one of the two is whole. Where no copy can be made, `reason` stays what kept the file from being replaced.
+/// Writes over a file that is still what was read. A copy of all that is to be in it stands beside
+/// it, or else in the user's folder for such things, until that is done: whatever happens
+/// meanwhile, one of the two is whole. Where no copy can be made, `reason` stays what kept the file
+/// from being replaced.
 pub fn write_in_place(
     path: &Path,
     original: &Original,

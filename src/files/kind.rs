@@ -1,4 +1,5 @@
-//! What a path leads to, which is looked at before it is opened: opening a pipe may wait without end, and opening a device may do something.
+//! What a path leads to, which is looked at before it is opened: opening a pipe may wait without
+//! end, and opening a device may do something.
 
 use std::{
     fmt,
@@ -70,12 +71,14 @@ impl fmt::Display for Kind {
     }
 }
 
-/// Opens a file to be read. Whatever else there is at the path, or at the end of a link there, is refused, and never waited for.
+/// Opens a file to be read. Whatever else there is at the path, or at the end of a link there, is
+/// refused, and never waited for.
 pub fn open(path: &Path) -> io::Result<File> {
     open_if(path, |kind| kind == Kind::File)
 }
 
-/// Whether a path names something that this process has open already: `/dev/stdin`, or the `/dev/fd/63` that a shell writes for `<(…)`.
+/// Whether a path names something that this process has open already: `/dev/stdin`, or the
+/// `/dev/fd/63` that a shell writes for `<(…)`.
 fn is_argument(path: &Path) -> bool {
     path == Path::new("/dev/stdin")
         || [Path::new("/dev/fd"), Path::new("/proc/self/fd")]
@@ -83,7 +86,7 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens what the command line names to be read: a file, or whatever the shell has connected ([`is_argument`]).
+/// Opens what the command line names to be read: a file, or whatever the shell has connected.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
@@ -106,7 +109,8 @@ fn open_if(path: &Path, is_wanted: impl Fn(Kind) -> bool) -> io::Result<File> {
     Ok(file)
 }
 
-/// Has a file opened without waiting for whoever is at the other end of a pipe, and no terminal take this process over.
+/// Has a file opened without waiting for whoever is at the other end of a pipe, and no terminal
+/// take this process over.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use rustix::fs::OFlags;

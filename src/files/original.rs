@@ -1,4 +1,5 @@
-//! A file as it was when it was read, to be known again before it is replaced: another program may have saved it meanwhile.
+//! A file as it was when it was read, to be known again before it is replaced: another program may
+//! have saved it meanwhile.
 
 use std::{
     fmt,

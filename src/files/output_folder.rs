@@ -1,7 +1,8 @@
 //! A folder for what a command makes, in which nothing else is replaced.
 //!
-//! The folder keeps a list, `.pinhole`, of the files that were made there and the SHA-256 of what was written into each, in the form that `sha256sum --check`
-//! reads. A file that is not in it, or no longer has one of its hashes, is somebody's own.
+//! The folder keeps a list, `.pinhole`, of the files that were made there and the SHA-256 of what
+//! was written into each, in the form that `sha256sum --check` reads. A file that is not in it, or
+//! no longer has one of its hashes, is somebody's own.
 
 use std::{
     collections::BTreeMap,
@@ -33,7 +34,8 @@ const FILE_LIMIT: u64 = 256 << 20;
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// What was made there: a file's name, in which `/` stands between folders, and the hashes of what it may hold.
+    /// What was made there: a file's name, in which `/` stands between folders, and the hashes of
+    /// what it may hold.
     made: BTreeMap<String, Vec<String>>,
 }
 
@@ -138,7 +140,8 @@ impl OutputFolder {
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Refuses a name at which there is something that was not made here, or was changed since, and a folder on the way to it that is none.
+    /// Refuses a name at which there is something that was not made here, or was changed since, and
+    /// a folder on the way to it that is none.
     fn check(&self, name: &str) -> Result<(), NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();

@@ -23,9 +23,11 @@ impl<T: Write + Seek> Sink for T {}
 /// What a file is written for, which says what may be at its path.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
-    /// It has a name that somebody gave: what is there is replaced, a link is followed, and a pipe or a device gets the content once it is complete.
+    /// It has a name that somebody gave: what is there is replaced, a link is followed, and a pipe
+    /// or a device gets the content once it is complete.
     Named,
-    /// It has a name of our own in this folder, or below it: a file is replaced, also one that a link there leads to, but none outside of the folder.
+    /// It has a name of our own in this folder, or below it: a file is replaced, also one that a
+    /// link there leads to, but none outside of the folder.
     Within(&'a Path),
     /// It is new: whatever is there stays.
     New,
@@ -33,13 +35,15 @@ pub enum Purpose<'a> {
     Change(&'a Original),
 }
 
-/// Has `write` write the content of the file at `path`, which stays as it was until the new content is complete.
+/// Has `write` write the content of the file at `path`, which stays as it was until the new content
+/// is complete.
 ///
-/// The content goes into a temporary file in the same folder, which then takes the place of the old one, with its permissions and,
-/// where that is allowed, its owner; but it never runs as its owner (setuid). A hard link is cut: its other names keep the old content. Where the
-/// text of a file is changed that cannot be replaced so, it is written in place, with a complete copy elsewhere meanwhile.
-/// When `cancel` is set, or an error occurs, the temporary file is removed; where this process is killed, the next one that writes the
-/// file does it.
+/// The content goes into a temporary file in the same folder, which then takes the place of the old
+/// one, with its permissions and, where that is allowed, its owner; but it never runs as its owner
+/// (setuid). A hard link is cut: its other names keep the old content. Where the text of a file is
+/// changed that cannot be replaced so, it is written in place, with a complete copy elsewhere
+/// meanwhile. When `cancel` is set, or an error occurs, the temporary file is removed; where this
+/// process is killed, the next one that writes the file does it.
 pub fn write(
     path: &Path,
     purpose: Purpose<'_>,
@@ -68,7 +72,8 @@ pub fn write(
     }
 }
 
-/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by then cannot be taken back.
+/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by
+/// then cannot be taken back.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -79,7 +84,8 @@ pub fn write_stream(
     out.flush()
 }
 
-/// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to learn it after a long render.
+/// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to
+/// learn it after a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     match place(path, purpose)? {
         Place::File(place) => temporary(&place)?.close(),
@@ -94,7 +100,8 @@ enum Place {
     Stream,
 }
 
-/// A file that is made or replaced, behind all links, and what there is to know about the one that exists already.
+/// A file that is made or replaced, behind all links, and what there is to know about the one that
+/// exists already.
 struct FilePlace {
     path: PathBuf,
     found: Option<Metadata>,
@@ -137,8 +144,8 @@ fn behind_links(path: &Path) -> io::Result<Place> {
     match fs::metadata(path) {
         Ok(found) => match Kind::of(&found) {
             Kind::File => {
-                // Replacing a file only takes the right to write to its folder; not to touch a file that is write-protected is
-                // what its owner expects.
+                // Replacing a file only takes the right to write to its folder; not to touch a file
+                // that is write-protected is what its owner expects.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
                 Ok(Place::File(FilePlace {
                     path: fs::canonicalize(path)?,
@@ -149,7 +156,8 @@ fn behind_links(path: &Path) -> io::Result<Place> {
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // A link to nothing: the file that it would create. Links in a circle are another error.
+            // A link to nothing: the file that it would create. Links in a circle are another
+            // error.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(Place::File(FilePlace {
                 path: path.to_owned(),
@@ -204,7 +212,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes to a pipe or a device. Nobody is waited for to open the other end, and what comes after that is up to whoever did.
+/// Writes to a pipe or a device. Nobody is waited for to open the other end, and what comes after
+/// that is up to whoever did.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,

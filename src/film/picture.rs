@@ -6,8 +6,8 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless it is said that it may be larger: of 2^26 pixels with four bytes each, whose film
-/// takes 1.5 GiB.
+/// Maximum number of bytes that a picture is decoded to, unless it is said that it may be larger:
+/// of 2^26 pixels with four bytes each, whose film takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// A picture as a file holds it.
@@ -141,7 +141,8 @@ pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Refuses a picture that is decoded to more bytes than this, with four channels of so many bytes, or has no pixels.
+/// Refuses a picture that is decoded to more bytes than this, with four channels of so many bytes,
+/// or has no pixels.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,

@@ -42,7 +42,8 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     read_picture_up_to(bytes, DECODED_LIMIT)
 }
 
-/// Reads a picture that is decoded to at most so many bytes, which its first bytes tell, and for which there is memory.
+/// Reads a picture that is decoded to at most so many bytes, which its first bytes tell, and for
+/// which there is memory.
 pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,

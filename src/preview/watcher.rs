@@ -53,8 +53,9 @@ pub struct Content {
     pub since: Instant,
 }
 
-/// Watches a file, which is read by `read` without waiting for anybody ([`files::open`]), until what is returned ends or is dropped. The first content is there at once; after that
-/// there is one whenever the file was saved, be it with the text that it had.
+/// Watches a file, which is read by `read` without waiting for anybody ([`files::open`]), until
+/// what is returned ends or is dropped. The first content is there at once; after that there is one
+/// whenever the file was saved, be it with the text that it had.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,

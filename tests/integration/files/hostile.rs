@@ -1,4 +1,5 @@
-//! Paths that somebody else has prepared: whatever opens or writes one says so at once, in one line, and leaves every other file as it is.
+//! Paths that somebody else has prepared: whatever opens or writes one says so at once, in one
+//! line, and leaves every other file as it is.
 
 use std::{
     fs,
@@ -285,7 +286,8 @@ fn a_large_file_is_refused_by_its_head_and_length() {
     assert_eq!(said.status, 0, "{}", said.errors);
 }
 
-/// Runs a command that has to refuse something in one line, in a folder of files that are too large to be compared.
+/// Runs a command that has to refuse something in one line, in a folder of files that are too large
+/// to be compared.
 #[track_caller]
 fn refused_of_large(folder: &Folder, arguments: &[&str], about: &str) {
     let said = at_once(folder, arguments);

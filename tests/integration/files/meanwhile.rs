@@ -1,4 +1,5 @@
-//! What happens while the program writes: others save the file, the folder lets nobody in, the process is killed.
+//! What happens while the program writes: others save the file, the folder lets nobody in, the
+//! process is killed.
 
 use std::{
     fs,

@@ -1,4 +1,5 @@
-//! Files: written whole or not at all and only where they are meant to go, and what is no file is not waited for.
+//! Files: written whole or not at all and only where they are meant to go, and what is no file is
+//! not waited for.
 
 #[cfg(unix)]
 mod hostile;
