@@ -1,4 +1,8 @@
 //! What culling gains: `cargo bench --bench culling`. See README.md beside this file.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a benchmark reads and writes files of its own"
+)]
 
 mod clock;
 mod one_by_one;

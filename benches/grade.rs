@@ -2,6 +2,10 @@
 //!
 //! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` those of every size and way of sampling. `-- --write FOLDER`
 //! writes the pictures, their scenes and `truth.json` in place of judging them. `--program FILE` asks another program.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a benchmark reads and writes files of its own"
+)]
 
 #[path = "../tests/integration/grade/case.rs"]
 mod case;

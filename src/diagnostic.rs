@@ -13,7 +13,7 @@ pub use fix::{Edit, Fix, apply};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(any(feature = "cli", feature = "report"))]
-pub use visible::{escaped, visible};
+pub use visible::{escaped, visible, visible_line};
 
 use serde_json::{Value, json};
 

@@ -24,7 +24,7 @@
 //!   decision; its documentation says how. [`projection`] leads to points of the picture and back in rounded numbers.
 //!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
 //! - Who has no more use for a result sets a flag, and all of these are given up soon after it: [`cancel`].
-//! - [`film`] makes bytes of the means and files of the bytes.
+//! - [`film`] makes bytes of the means and files of the bytes; [`files`] opens files, and sees to it that they are written whole or not at all.
 //! - [`mod@format`] lays a text out in the one canonical way.
 //! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of it: what went wrong; and [`report`]
 //!   about Pinhole itself: how right and how fast it is.
@@ -37,6 +37,7 @@ pub mod cancel;
 pub mod color;
 pub mod diagnostic;
 pub mod explain;
+pub mod files;
 pub mod math;
 pub mod numbers;
 pub mod source;

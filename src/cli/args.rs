@@ -10,7 +10,7 @@ use clap::{
 use clap_complete::Shell;
 
 use super::help;
-use crate::{area::Area, scene::Method};
+use crate::{area::Area, film::DECODED_LIMIT, scene::Method};
 
 /// Renders small declarative scene files through a virtual pinhole camera
 #[derive(Debug, Parser)]
@@ -228,8 +228,10 @@ pub struct ReportArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(value_name = "SCENE", required_unless_present = "numerics")]
     pub scenes: Vec<PathBuf>,
-    /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG, report.csv and
-    /// report.json; of several scenes each has a folder in it. It is made if it is missing; a symbolic link in it is refused
+    /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG,
+    /// report.csv and report.json; of several scenes each has a folder in it. It is made if it is
+    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way, or a
+    /// symbolic link, is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// The methods [default: all]
@@ -295,6 +297,8 @@ pub struct DiffArgs {
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
+    pub large: LargeArgs,
+    #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub threads: ThreadArgs,
@@ -310,9 +314,12 @@ pub struct GradeArgs {
     /// The pictures, or folders of them
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing
+    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing, and keeps
+    /// a list `.pinhole` of what was made there: any other file in the way is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub large: LargeArgs,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
@@ -328,6 +335,43 @@ pub struct ExplainArgs {
     /// [default: list all codes]
     #[arg(value_name = "WORD")]
     pub word: Option<String>,
+}
+
+/// How large pictures may be.
+#[derive(Debug, clap::Args)]
+pub struct LargeArgs {
+    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
+    /// long as there is memory for them
+    #[arg(long)]
+    pub large: bool,
+}
+
+impl LargeArgs {
+    /// Maximum length of a picture's file, in bytes.
+    pub fn file_limit(&self) -> u64 {
+        match self.large {
+            true => 4 << 30,
+            false => 256 << 20,
+        }
+    }
+
+    /// Maximum length of a decoded picture, in bytes.
+    pub fn decoded_limit(&self) -> u64 {
+        match self.large {
+            true => u64::MAX,
+            false => DECODED_LIMIT,
+        }
+    }
+
+    /// Says that a picture has more than that, and what to do.
+    pub fn hint(&self, what: &str, limit: u64) -> String {
+        let way_out = if self.large {
+            ""
+        } else {
+            ": `--large` reads it"
+        };
+        format!("it has more than {limit} {what}{way_out}")
+    }
 }
 
 /// For whom the answer is.

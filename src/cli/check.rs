@@ -1,18 +1,17 @@
 //! `check`: the problems of scenes, and with `--fix` the way out of those that have one.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use super::{
     Status, Trouble,
     args::{CheckArgs, Format},
     each,
-    input::{Input, check_standard, is_standard, shown},
+    input::{Input, change, check_standard, is_standard},
     interrupt::Interrupt,
     output,
 };
 use crate::{
-    diagnostic::{self, Diagnostic},
-    film,
+    diagnostic::{self, Diagnostic, visible_line},
     scene::{self, Reading},
     source::Source,
 };
@@ -36,45 +35,35 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 }
 
 fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
-    // What is written into a pipe comes back to nobody.
-    let is_pipe = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
-    if args.fix && is_pipe && !is_standard(path) {
-        return Err(Trouble(format!(
-            "{} is not a file, and cannot be fixed",
-            shown(path)
-        )));
-    }
-    let mut input = Input::read(path, &args.overrides)?;
-    if args.fix {
-        fix(path, &mut input, interrupt)?;
-    }
+    let input = match args.fix {
+        true => fixed(path, args, interrupt)?,
+        false => Input::read(path, &args.overrides)?,
+    };
     report(&input, args.format.format)
 }
 
 /// Fixes the errors of a file, and says what was done.
-fn fix(path: &Path, input: &mut Input, interrupt: &Interrupt) -> Result<(), Trouble> {
-    if input.is_picture {
-        let hint = "--fix takes the scene's text";
-        return Err(Trouble(format!("{} is a picture; {hint}", shown(path))));
-    }
+fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, Trouble> {
+    let (mut input, original) = Input::to_change(path, &args.overrides, "--fix")?;
     let fixed = scene::fix_all(&input.sources);
-    if is_standard(path) {
-        output::to_programs(fixed.text.as_bytes())?;
-    } else if fixed.text != input.sources.file.text() {
-        film::write_whole(path, interrupt.watch(), |file| {
-            file.write_all(fixed.text.as_bytes())
-        })
-        .map_err(|error| Trouble(format!("cannot write {}: {error}", shown(path))))?;
+    match &original {
+        None => output::to_programs(fixed.text.as_bytes())?,
+        Some(original) if fixed.text != input.sources.file.text() => {
+            change(path, original, &fixed.text, interrupt)?;
+        }
+        Some(_) => {}
     }
     let name = input.sources.file.name().to_owned();
     for done in &fixed.done {
         let (line, column) = (done.place.line, done.place.column);
-        output::to_people(&format!("{name}:{line}:{column}: {}\n", done.title));
+        let title = visible_line(&done.title);
+        let name = visible_line(&name);
+        output::to_people(&format!("{name}:{line}:{column}: {title}\n"));
     }
     if !fixed.done.is_empty() {
         input.sources.file = Source::from_text(name, fixed.text);
     }
-    Ok(())
+    Ok(input)
 }
 
 fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
@@ -82,7 +71,8 @@ fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
         Format::Human => {
             let reading = input.scene();
             if reading.diagnostics.is_empty() && output::is_watched() {
-                output::to_people(&format!("{}: ok\n", input.sources.file.name()));
+                let name = visible_line(input.sources.file.name());
+                output::to_people(&format!("{name}: ok\n"));
             }
             reading
         }

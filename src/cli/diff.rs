@@ -10,14 +10,15 @@ use serde_json::{Map, Value, json};
 
 use super::{
     Status, Trouble,
-    args::{DiffArgs, Format},
-    input::{self, Input, is_standard, shown},
+    args::{DiffArgs, Format, LargeArgs},
+    input::{self, Compared, Input, Most, is_standard, shown, unreadable, unwritable},
     interrupt::Interrupt,
     judge::{self, quoted},
     output, progress,
 };
 use crate::{
-    diagnostic::visible,
+    diagnostic::{visible, visible_line},
+    files::{self, Purpose},
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
     grading::{Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
@@ -33,20 +34,32 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if let Some(path) = &args.output {
         check_heat_map(path, args)?;
     }
-    let a = input::whole(&args.a).map_err(|error| unreadable(&args.a, &error))?;
-    if !film::is_picture(&a) && is_scene(&args.a) {
-        return Err(Trouble(format!(
-            "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
-            shown(&args.a)
-        )));
-    }
+    let a = input::compared(&args.a, &args.large, Most::Start);
+    let a = match a.map_err(|error| unreadable(&args.a, &error))? {
+        Compared::Other(_) if is_scene(&args.a) => {
+            return Err(Trouble(format!(
+                "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
+                shown(&args.a)
+            )));
+        }
+        Compared::Picture(bytes) | Compared::Other(bytes) => bytes,
+    };
     let jpeg = Jpeg::of(&a);
-    let a = read(&args.a, &a)?;
-    let b = input::whole(&args.b).map_err(|error| unreadable(&args.b, &error))?;
+    let a = read(&args.a, &a, &args.large)?;
+    // A file that is named as a picture is one, however broken.
+    let most = match judge::is_named_as_picture(&args.b) {
+        true => Most::Start,
+        false => Most::Scene,
+    };
+    let is_named = matches!(most, Most::Start);
+    let b = input::compared(&args.b, &args.large, most);
+    let (b, is_picture) = match b.map_err(|error| unreadable(&args.b, &error))? {
+        Compared::Picture(bytes) => (bytes, true),
+        Compared::Other(bytes) => (bytes, is_named),
+    };
     let cancel = interrupt.watch();
     let is_strict = args.strict || args.tolerance.is_some();
-    // A file that is named as a picture is one, however broken.
-    if film::is_picture(&b) || judge::is_named_as_picture(&args.b) {
+    if is_picture {
         if !args.overrides.sets.is_empty() {
             let message = format!(
                 "`--set` changes a scene, and {} is a picture",
@@ -54,7 +67,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             );
             return Err(Trouble(message));
         }
-        let b = read(&args.b, &b)?;
+        let b = read(&args.b, &b, &args.large)?;
         let steps = args.tolerance;
         let steps = steps.unwrap_or_else(|| a.rounding.steps() + b.rounding.steps());
         let tolerance = Tolerance {
@@ -64,7 +77,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         let comparison = film::compare(&a.film, &b.film, tolerance);
         let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
         let report = Report {
-            names: [shown(&args.a), shown(&args.b)],
+            names: [&args.a, &args.b].map(|path| path.display().to_string()),
             sizes: [&a.film, &b.film].map(|film| [film.width(), film.height()]),
             comparison,
             tolerance: steps,
@@ -107,7 +120,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let is_equal = comparison.is_equal();
     let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
     let report = Report {
-        names: [shown(&args.a), shown(&args.b)],
+        names: [&args.a, &args.b].map(|path| path.display().to_string()),
         sizes: [[part.width, part.height]; 2],
         comparison: Ok(comparison),
         tolerance: steps,
@@ -128,16 +141,12 @@ fn status(is_accepted: bool) -> Status {
 }
 
 /// Reads a picture, and warns of what its format does to colours.
-fn read(path: &Path, bytes: &[u8]) -> Result<Picture, Trouble> {
-    let picture = film::read_picture(bytes).map_err(|error| unreadable(path, &error))?;
+fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble> {
+    let picture = judge::picture(bytes, large).map_err(|error| unreadable(path, &error))?;
     if let Some(warning) = picture.coding.warning() {
         output::warning(&format!("{}: {warning}", shown(path)));
     }
     Ok(picture)
-}
-
-fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
-    Trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
 fn is_scene(path: &Path) -> bool {
@@ -171,8 +180,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
             )));
         }
     }
-    film::check_writable(path)
-        .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))
+    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
 }
 
 /// What the colours of a heat map mean.
@@ -198,10 +206,12 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
-    film::write_whole(path, cancel, |out| film::write_png(&map, None, out))
-        .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(path))))?;
+    files::write(path, Purpose::Named, cancel, |out| {
+        film::write_png(&map, None, out)
+    })
+    .map_err(|error| unwritable(path, &error))?;
     let legend = legend(is_equal);
-    output::to_people(&format!("{}: {legend}\n", visible(&shown(path))));
+    output::to_people(&format!("{}: {legend}\n", shown(path)));
     Ok(())
 }
 
@@ -232,7 +242,7 @@ impl Report {
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
-        let [a, b] = self.names.each_ref().map(|name| visible(name));
+        let [a, b] = self.names.each_ref().map(|name| visible_line(name));
         let b = match self.verdict {
             Some(_) => format!("the exact picture of {b}"),
             None => b.into_owned(),
@@ -318,7 +328,7 @@ impl Report {
 
     fn json(&self) -> Value {
         Value::Object(json(
-            self.names.each_ref().map(String::as_str),
+            self.names.clone(),
             self.sizes,
             self.comparison.as_ref().ok(),
             self.tolerance,
@@ -329,7 +339,7 @@ impl Report {
 
 /// What programs read of a comparison, field by field.
 pub fn json(
-    [a, b]: [&str; 2],
+    [a, b]: [String; 2],
     sizes: [[u32; 2]; 2],
     found: Option<&Comparison>,
     tolerance: f64,

@@ -13,22 +13,27 @@ use serde_json::json;
 
 use super::{
     Status, Trouble,
-    args::{Format, GradeArgs},
+    args::{Format, GradeArgs, LargeArgs},
     diff,
     grade_page::page,
     graded::{Graded, Judged, csv, table},
-    input::{self, Input, shown},
+    input::{self, Compared, Input, Most, not_written, shown, unreadable},
     interrupt::Interrupt,
     judge, output, progress,
     thumbnails::Thumbnails,
 };
 use crate::{
     area::Area,
+    diagnostic::visible_line,
+    files::OutputFolder,
     film::{self, Jpeg, Picture, Rounding},
     grading::Reference,
     render::{Control, RenderError},
     scene::Scene,
 };
+
+/// What a folder gets.
+const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 
 /// Judges them.
 pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -37,10 +42,9 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         return Ok(Status::SceneErrors);
     };
     let paths = pictures(&args.pictures)?;
-    if let Some(folder) = &args.output {
-        let made = fs::create_dir_all(folder);
-        made.map_err(|error| Trouble(format!("cannot make {}: {error}", shown(folder))))?;
-    }
+    let folder = args.output.as_deref();
+    let folder = folder.map(|folder| OutputFolder::open(folder, FILES));
+    let folder = folder.transpose().map_err(not_written)?;
     let cancel = interrupt.watch();
     let graded = match graded(args, &scene, &paths, cancel) {
         Ok(Ok(graded)) => graded,
@@ -50,7 +54,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     for (name, judged) in graded.iter().filter_map(Graded::judged) {
         if let Some(warning) = judged.warning {
-            output::warning(&format!("{name}: {warning}"));
+            output::warning(&format!("{}: {warning}", visible_line(name)));
         }
     }
     let lines: String = graded
@@ -61,18 +65,13 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         Format::Human => output::to_people(&table(&graded)),
         Format::Json => output::to_programs(lines.as_bytes())?,
     }
-    if let Some(folder) = &args.output {
+    if let Some(mut folder) = folder {
         let html = page(&shown(&args.scene), &graded)
             .map_err(|error| Trouble(format!("cannot make the page: {error}")))?;
-        for (name, text) in [
-            ("index.html", html),
-            ("grade.csv", csv(&graded)),
-            ("grade.jsonl", lines),
-        ] {
-            let path = folder.join(name);
-            fs::write(&path, text)
-                .map_err(|error| Trouble(format!("cannot write to {}: {error}", shown(&path))))?;
-        }
+        let [page, table, answers] = FILES.map(str::to_owned);
+        folder
+            .write(&[(page, html), (table, csv(&graded)), (answers, lines)])
+            .map_err(not_written)?;
     }
     Ok(graded
         .iter()
@@ -112,7 +111,7 @@ fn graded(
         let grade = |path: &PathBuf| {
             let result = grade(path, scene, &reference, args, cancel)?;
             done.fetch_add(1, Ordering::Relaxed);
-            let name = shown(path);
+            let name = path.display().to_string();
             Ok(Graded { name, result })
         };
         pool.install(|| paths.par_iter().map(grade).collect())
@@ -127,7 +126,7 @@ fn grade(
     args: &GradeArgs,
     cancel: &AtomicBool,
 ) -> Result<Result<Judged, String>, RenderError> {
-    let read = read(path, scene);
+    let read = read(path, scene, &args.large);
     let (picture, jpeg, part, is_ours) = match read {
         Ok(read) => read,
         Err(error) => return Ok(Err(error)),
@@ -162,7 +161,7 @@ fn grade(
         None => None,
     };
     let mut fields = diff::json(
-        [&shown(path), &shown(&args.scene)],
+        [path, &args.scene].map(|path| path.display().to_string()),
         [[part.width, part.height]; 2],
         Some(&comparison),
         steps,
@@ -180,9 +179,15 @@ fn grade(
 }
 
 /// A picture, how it is coded if it is a JPEG, the part of the scene that it shows, and whether Pinhole rendered it.
-fn read(path: &Path, scene: &Scene) -> Result<(Picture, Option<Jpeg>, Area, bool), String> {
-    let bytes = input::whole(path).map_err(|error| error.to_string())?;
-    let picture = film::read_picture(&bytes).map_err(|error| error.to_string())?;
+fn read(
+    path: &Path,
+    scene: &Scene,
+    large: &LargeArgs,
+) -> Result<(Picture, Option<Jpeg>, Area, bool), String> {
+    let read = input::compared(path, large, Most::Start);
+    let (Compared::Picture(bytes) | Compared::Other(bytes)) =
+        read.map_err(|error| error.to_string())?;
+    let picture = judge::picture(&bytes, large)?;
     let part = judge::part(&picture, scene).map_err(|misfit| format!("it {misfit}"))?;
     let is_ours = film::read_recipe(&bytes).is_ok();
     Ok((picture, Jpeg::of(&bytes), part, is_ours))
@@ -196,11 +201,11 @@ fn pictures(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
             pictures.push(path.clone());
             continue;
         }
-        let unreadable = |error| Trouble(format!("cannot read {}: {error}", shown(path)));
+        let unreadable = |error| unreadable(path, &error);
         let mut found = Vec::new();
         for entry in fs::read_dir(path).map_err(unreadable)? {
             let entry = entry.map_err(unreadable)?.path();
-            if judge::is_named_as_picture(&entry) && entry.is_file() {
+            if judge::is_named_as_picture(&entry) && !entry.is_dir() {
                 found.push(entry);
             }
         }

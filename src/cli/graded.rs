@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Status, judge::quoted, thumbnails::Thumbnails};
 use crate::{
-    diagnostic::visible,
+    diagnostic::visible_line,
     film::Comparison,
     grading::{Kind, Verdict},
     numbers::short,
@@ -96,7 +96,7 @@ impl Graded {
 pub fn table(graded: &[Graded]) -> String {
     let rows: Vec<[String; 4]> = graded
         .iter()
-        .map(|one| one.cells().map(|cell| visible(&cell).into_owned()))
+        .map(|one| one.cells().map(|cell| visible_line(&cell).into_owned()))
         .collect();
     let widest = rows
         .iter()
@@ -116,7 +116,6 @@ pub fn table(graded: &[Graded]) -> String {
 
 /// A table for other programs.
 pub fn csv(graded: &[Graded]) -> String {
-    let cell = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
     let row = |one: &Graded| {
         let [name, _, error, samples] = one.cells();
         let (verdict, line, set) = match &one.result {
@@ -137,13 +136,23 @@ pub fn csv(graded: &[Graded]) -> String {
         };
         format!(
             "{},{verdict},{error},{samples},{},{}\n",
-            cell(&name),
-            cell(&line),
-            cell(&set)
+            text_cell(&name),
+            text_cell(&line),
+            text_cell(&set)
         )
     };
     let rows = graded.iter().map(row);
     iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
         .chain(rows)
         .collect()
+}
+
+/// A text as a cell of a CSV file: what a program that opens it would take for a formula begins
+/// with a `'`, and is a text to it so.
+fn text_cell(text: &str) -> String {
+    let guard = match text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
+        true => "'",
+        false => "",
+    };
+    format!("\"{guard}{}\"", visible_line(text).replace('"', "\"\""))
 }

@@ -1,16 +1,22 @@
 //! Scenes from files, from standard input and from pictures.
 
 use std::{
-    fs::{self, File},
+    fs,
     io::{self, Read},
     path::{Path, PathBuf},
 };
 
-use super::{Trouble, args::Overrides, output};
+use super::{
+    Trouble,
+    args::{LargeArgs, Overrides},
+    interrupt::Interrupt,
+    output,
+};
 use crate::{
     area::Area,
-    diagnostic::Report,
-    film::{Recipe, SIGNATURE, read_recipe},
+    diagnostic::{Report, visible_line},
+    files::{self, NotWritten, Original, Purpose},
+    film::{self, Recipe, SIGNATURE, read_recipe},
     scene::{self, Reading},
     source::{Source, Sources},
 };
@@ -21,8 +27,8 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// So much of a picture is read: more than enough for what may stand before its pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// No picture that is compared has more bytes.
-const FILE_LIMIT: u64 = 4 << 30;
+/// So many bytes of a file say whether it is a picture.
+const START: u64 = 64;
 
 /// What a scene is read from.
 pub struct Input {
@@ -52,12 +58,45 @@ pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
 impl Input {
     /// Reads what SCENE names.
     pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
+        let bytes = argument(path).and_then(limited);
+        let bytes = bytes.map_err(|error| unreadable(path, &error))?;
+        Self::of_bytes(path, bytes, overrides)
+    }
+
+    /// Reads a text that is to be written back, and what it was; `command` says what is done with
+    /// it. Of standard input there is nothing to write back to.
+    pub fn to_change(
+        path: &Path,
+        overrides: &Overrides,
+        command: &str,
+    ) -> Result<(Self, Option<Original>), Trouble> {
+        let (input, original) = if is_standard(path) {
+            (Self::read(path, overrides)?, None)
+        } else {
+            // What is written into a pipe comes back to nobody.
+            let original = Original::read(path, bytes).map_err(|error| match error.kind() {
+                io::ErrorKind::InvalidInput => {
+                    let hint = format!("{command} takes files, or standard input as `-`");
+                    unreadable(path, &format!("{error}; {hint}"))
+                }
+                _ => unreadable(path, &error),
+            })?;
+            let bytes = original.bytes().unwrap_or_default().to_owned();
+            (Self::of_bytes(path, bytes, overrides)?, Some(original))
+        };
+        match input.is_picture {
+            true => Err(Trouble(format!(
+                "{} is a picture; {command} takes the scene's text",
+                shown(path)
+            ))),
+            false => Ok((input, original)),
+        }
+    }
+
+    fn of_bytes(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Result<Self, Trouble> {
         let name = path.display().to_string();
-        let bytes = bytes(path)
-            .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(path))))?;
         let mut input = if bytes.starts_with(&SIGNATURE) {
-            let recipe = read_recipe(&bytes)
-                .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(path))))?;
+            let recipe = read_recipe(&bytes).map_err(|error| unreadable(path, &error))?;
             Self::from_picture(name, recipe)
         } else {
             Self::from_text(name, bytes)
@@ -124,9 +163,38 @@ impl Input {
     }
 }
 
-/// What SCENE or FILE is called in a message.
+/// What SCENE or FILE is called in a message: on one line, whatever its name holds.
 pub fn shown(path: &Path) -> String {
-    path.display().to_string()
+    visible_line(&path.display().to_string()).into_owned()
+}
+
+/// Says that a path cannot be read.
+pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
+    Trouble(format!("cannot read {}: {error}", shown(path)))
+}
+
+/// Says that a path cannot be written to.
+pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
+    Trouble(format!("cannot write to {}: {error}", shown(path)))
+}
+
+/// Says why a folder does not get what was made for it.
+pub fn not_written(why: NotWritten) -> Trouble {
+    unwritable(&why.path, &why.error)
+}
+
+/// Changes the text of a file, if it still is what was read.
+pub fn change(
+    path: &Path,
+    original: &Original,
+    text: &str,
+    interrupt: &Interrupt,
+) -> Result<(), Trouble> {
+    let purpose = Purpose::Change(original);
+    files::write(path, purpose, interrupt.watch(), |out| {
+        out.write_all(text.as_bytes())
+    })
+    .map_err(|error| unwritable(path, &error))
 }
 
 /// Whether two paths lead to one file.
@@ -137,27 +205,69 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The whole of a picture's file, or a scene's.
-pub fn whole(path: &Path) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let from: Box<dyn Read> = match is_standard(path) {
-        true => Box::new(io::stdin().lock()),
-        false => Box::new(File::open(path)?),
-    };
-    let mut from = from.take(FILE_LIMIT);
-    from.read_to_end(&mut bytes)?;
-    if bytes.len() as u64 >= FILE_LIMIT {
-        return Err(io::Error::other("it has more than 4 GiB"));
-    }
-    Ok(bytes)
+/// What a file of a comparison is.
+pub enum Compared {
+    /// A picture: the whole of it.
+    Picture(Vec<u8>),
+    /// Something else: as much as a scene may have.
+    Other(Vec<u8>),
 }
 
-/// The bytes of a scene, or as much of a picture as can matter.
-pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
-    if is_standard(path) {
-        return limited(io::stdin().lock());
+/// Reads a picture, or as much of another file as `most`. Its first bytes say which it is, before
+/// the others are read.
+pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compared> {
+    let (mut from, length) = opened(path)?;
+    let mut start = Vec::new();
+    from.by_ref().take(START).read_to_end(&mut start)?;
+    let is_picture = film::is_picture(&start);
+    let limit = match (is_picture, most) {
+        (true, _) => large.file_limit(),
+        (false, Most::Scene) => SCENE_LIMIT,
+        (false, Most::Start) => return Ok(Compared::Other(start)),
+    };
+    let too_large = |error: io::Error| match (error.kind(), is_picture) {
+        (io::ErrorKind::FileTooLarge, true) => io::Error::other(large.hint("bytes", limit)),
+        (io::ErrorKind::FileTooLarge, false) => no_scene(),
+        _ => error,
+    };
+    if length.is_some_and(|length| length > limit) {
+        return Err(too_large(io::ErrorKind::FileTooLarge.into()));
     }
-    limited(File::open(path)?)
+    let whole = io::Cursor::new(start).chain(from);
+    let bytes = files::read_from(whole, limit).map_err(too_large)?;
+    Ok(match is_picture {
+        true => Compared::Picture(bytes),
+        false => Compared::Other(bytes),
+    })
+}
+
+/// What is read of a file that is no picture.
+pub enum Most {
+    /// What a scene may have.
+    Scene,
+    /// What says that it is none.
+    Start,
+}
+
+/// The bytes of a scene's file, or as much of a picture as can matter. Whatever is no file is
+/// refused.
+pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    limited(files::open(path)?)
+}
+
+/// What SCENE or PICTURE names, to be read.
+fn argument(path: &Path) -> io::Result<Box<dyn Read>> {
+    opened(path).map(|(from, _)| from)
+}
+
+/// The same, with its length if it is a file.
+fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
+    if is_standard(path) {
+        return Ok((Box::new(io::stdin().lock()), None));
+    }
+    let file = files::open_argument(path)?;
+    let length = file.metadata().ok().filter(fs::Metadata::is_file);
+    Ok((Box::new(file), length.map(|found| found.len())))
 }
 
 /// Reads a scene, or as much of a picture as can matter.
@@ -172,10 +282,12 @@ fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
         return Ok(bytes);
     }
     by_ref.take(SCENE_LIMIT).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 >= SCENE_LIMIT {
-        return Err(io::Error::other(
-            "it has more than 256 MiB, too much for a scene",
-        ));
+    match bytes.len() as u64 >= SCENE_LIMIT {
+        true => Err(no_scene()),
+        false => Ok(bytes),
     }
-    Ok(bytes)
+}
+
+fn no_scene() -> io::Error {
+    io::Error::other("it has more than 256 MiB, too much for a scene")
 }

@@ -2,7 +2,24 @@
 
 use std::path::Path;
 
-use crate::{area::Area, film::Picture, scene::Scene};
+use super::args::LargeArgs;
+use crate::{
+    area::Area,
+    film::{self, Picture, Unreadable},
+    scene::Scene,
+};
+
+/// Reads a picture, unless it is larger than is wanted.
+///
+/// # Errors
+///
+/// Why it cannot be read.
+pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
+    film::read_picture_up_to(bytes, large.decoded_limit()).map_err(|error| match error {
+        Unreadable::Large { .. } if !large.large => format!("{error}: `--large` reads it"),
+        error => error.to_string(),
+    })
+}
 
 /// The part of a scene that a picture shows: the crop that it carries, or all of it.
 ///

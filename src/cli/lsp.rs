@@ -4,13 +4,13 @@ use std::io;
 
 use super::{Status, Trouble, output};
 use crate::{
-    diagnostic::visible,
+    diagnostic::visible_line,
     lsp::{Server, stdio},
 };
 
 /// Talks to an editor until it ends.
 pub fn run() -> Result<Status, Trouble> {
-    let log = |message: &str| output::to_people(&format!("{}\n", visible(message)));
+    let log = |message: &str| output::to_people(&format!("{}\n", visible_line(message)));
     let server = Server::new(log);
     match stdio::serve(server, io::stdin(), &mut io::stdout().lock(), log) {
         Ok(true) => Ok(Status::Done),

@@ -6,6 +6,7 @@
 mod args;
 mod check;
 mod diff;
+mod difference;
 mod explain;
 mod fmt;
 mod grade;
@@ -37,7 +38,8 @@ mod thumbnails;
 mod watch;
 
 use std::{
-    borrow::Cow,
+    env,
+    ffi::OsString,
     fmt::{Display, Formatter},
     io,
     path::{Path, PathBuf},
@@ -50,13 +52,13 @@ use self::{
     args::{Args, Command},
     interrupt::Interrupt,
 };
-use crate::{diagnostic::visible, threads};
+use crate::{diagnostic::visible_line, threads};
 
 /// Runs the command that the arguments name.
 pub fn run() -> ExitCode {
     let args = match Args::try_parse() {
         Ok(args) => args,
-        Err(answer) => return tell(&answer),
+        Err(answer) => return tell(&visible_answer().unwrap_or(answer)),
     };
     if let Some(wanted) = args.command.threads() {
         threads::limit(wanted);
@@ -64,7 +66,7 @@ pub fn run() -> ExitCode {
     let done = Interrupt::listen().and_then(|interrupt| match args.command {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args, &interrupt),
-        Command::New(args) => new::run(&args),
+        Command::New(args) => new::run(&args, &interrupt),
         #[cfg(feature = "preview")]
         Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
@@ -90,17 +92,19 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// The answer to the arguments as they may be shown, if that is another one: it repeats some of
+/// them.
+fn visible_answer() -> Option<clap::Error> {
+    let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
+    Args::try_parse_from(env::args_os().map(shown)).err()
+}
+
 /// Tells help or the version, or what is wrong with the arguments.
 fn tell(answer: &clap::Error) -> ExitCode {
     let status = match answer.use_stderr() {
         true => Status::Trouble,
         false => Status::Done,
     };
-    let plain = answer.to_string();
-    if let Cow::Owned(visible) = visible(&plain) {
-        output::to_people(&visible);
-        return status.into();
-    }
     match answer.print() {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             output::error(&format!("cannot write to standard output: {error}"));

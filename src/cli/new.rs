@@ -1,31 +1,26 @@
 //! `new`: the smallest scene that shows something, in a file of its own.
 
-use std::{fs::OpenOptions, io::Write};
-
 use super::{
     Status, Trouble,
     args::NewArgs,
-    input::{is_standard, shown},
+    input::{is_standard, unwritable},
+    interrupt::Interrupt,
     output,
 };
-use crate::scene;
+use crate::{
+    files::{self, Purpose},
+    scene,
+};
 
 /// Writes the scene, unless the file is there already.
-pub fn run(args: &NewArgs) -> Result<Status, Trouble> {
+pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.file) {
         output::to_programs(scene::SMALLEST.as_bytes())?;
         return Ok(Status::Done);
     }
-    let file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&args.file);
-    let written = file.and_then(|mut file| file.write_all(scene::SMALLEST.as_bytes()));
-    match written {
-        Ok(()) => Ok(Status::Done),
-        Err(error) => Err(Trouble(format!(
-            "cannot write {}: {error}",
-            shown(&args.file)
-        ))),
-    }
+    files::write(&args.file, Purpose::New, interrupt.watch(), |out| {
+        out.write_all(scene::SMALLEST.as_bytes())
+    })
+    .map_err(|error| unwritable(&args.file, &error))?;
+    Ok(Status::Done)
 }

@@ -8,7 +8,7 @@ use std::{
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;
-use crate::diagnostic::{Drawing, Style, visible};
+use crate::diagnostic::{Drawing, Style, visible_line};
 
 /// Writes to standard output.
 pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {
@@ -70,7 +70,7 @@ pub fn worded_warning(message: &dyn fmt::Display) -> String {
 
 fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {
     let message = message.to_string();
-    let message = visible(&message);
+    let message = visible_line(&message);
     match style().color {
         true => format!("\x1b[{color}m{word}:\x1b[0m {message}\n"),
         false => format!("{word}: {message}\n"),

@@ -13,6 +13,7 @@ use super::{
 };
 use crate::{
     area::Area,
+    files::{self, Purpose},
     film::{self, Recipe},
     numbers,
     render::{self, Control, Exact, RenderError, Rendered},
@@ -52,7 +53,7 @@ impl Picture {
         match self {
             Self::Light(Rendered::Sampled(_)) | Self::Bytes(Rendered::Sampled(_)) => String::new(),
             Self::Light(Rendered::Exact(exact)) => match output {
-                Output::File(_, Format::Exr) => {
+                Output::File(_, Format::Exr, _) => {
                     certificate(exact, part, exact.certain, "the 32-bit rounding")
                 }
                 _ => certificate(
@@ -162,9 +163,18 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
 /// Where a picture goes, and as what.
 pub enum Output {
     /// A file.
-    File(PathBuf, Format),
+    File(PathBuf, Format, Origin),
     /// Standard output, as PNG.
     Standard,
+}
+
+/// Where a file's name comes from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The command line.
+    Given,
+    /// The scene's name: only a file in its folder is replaced.
+    Scene,
 }
 
 /// What a picture's file holds.
@@ -174,6 +184,15 @@ pub enum Format {
     Png,
     /// Linear light.
     Exr,
+}
+
+impl Origin {
+    fn purpose(self, path: &Path) -> Purpose<'_> {
+        match self {
+            Self::Given => Purpose::Named,
+            Self::Scene => Purpose::Within(path.parent().unwrap_or(Path::new("."))),
+        }
+    }
 }
 
 impl Output {
@@ -188,29 +207,33 @@ impl Output {
                         .to_owned(),
                 ));
             }
-            None => return Ok(Self::File(scene.with_extension("png"), Format::Png)),
+            None => {
+                let path = scene.with_extension("png");
+                return Ok(Self::File(path, Format::Png, Origin::Scene));
+            }
         };
         let format = format(path)?;
-        Ok(Self::File(path.to_owned(), format))
+        Ok(Self::File(path.to_owned(), format, Origin::Given))
     }
 
-    /// Whether the picture can be written there, as far as that can be known before; not in the place of the text that it is made of.
-    pub fn check(&self, text: Option<&Path>) -> Result<(), Trouble> {
+    /// Whether the picture can be written there, as far as that can be known before; not in the
+    /// place of what it is made of.
+    pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(Trouble(
                 "standard output is a terminal, which shows no pictures: use `-o FILE`, or a pipe"
                     .to_owned(),
             )),
             Self::Standard => Ok(()),
-            Self::File(path, _) => {
-                if text.is_some_and(|text| input::is_same_file(path, text)) {
+            Self::File(path, _, origin) => {
+                if input::is_same_file(path, scene) {
                     return Err(Trouble(format!(
                         "{} is the scene itself: say with `-o FILE` where the picture goes",
                         shown(path)
                     )));
                 }
-                film::check_writable(path)
-                    .map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
+                files::check_writable(path, origin.purpose(path))
+                    .map_err(|error| input::unwritable(path, &error))
             }
         }
     }
@@ -218,7 +241,7 @@ impl Output {
     /// What it takes of the pixels.
     pub fn keep(&self) -> Keep {
         match self {
-            Self::File(_, Format::Exr) => Keep::Light,
+            Self::File(_, Format::Exr, _) => Keep::Light,
             _ => Keep::Bytes,
         }
     }
@@ -232,17 +255,19 @@ impl Output {
         cancel: &AtomicBool,
     ) -> io::Result<()> {
         match self {
-            Self::Standard => film::write_stream(output::Programs::new(), cancel, |out| {
+            Self::Standard => files::write_stream(output::Programs::new(), cancel, |out| {
                 write_png(picture, recipe, out)
             }),
-            Self::File(path, format) => {
-                film::write_whole(path, cancel, |out| match (format, picture) {
-                    (Format::Png, _) => write_png(picture, recipe, out),
-                    (Format::Exr, Picture::Light(light)) => {
-                        film::write_exr(light.film(), recipe.crop.unwrap_or(whole), whole, out)
+            Self::File(path, format, origin) => {
+                files::write(path, origin.purpose(path), cancel, |out| {
+                    match (format, picture) {
+                        (Format::Png, _) => write_png(picture, recipe, out),
+                        (Format::Exr, Picture::Light(light)) => {
+                            film::write_exr(light.film(), recipe.crop.unwrap_or(whole), whole, out)
+                        }
+                        // `keep` asks for light where it goes into an EXR.
+                        (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
                     }
-                    // `keep` asks for light where it goes into an EXR.
-                    (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
                 })
             }
         }
@@ -250,7 +275,7 @@ impl Output {
 
     /// What is to be said where the picture should carry its scene and cannot.
     pub fn note_of_length(&self, recipe: &Recipe) -> String {
-        let carries = !matches!(self, Self::File(_, Format::Exr));
+        let carries = !matches!(self, Self::File(_, Format::Exr, _));
         match carries && !recipe.fits() {
             true => output::worded_warning(&format!(
                 "the scene and its overrides have more than 1 MiB of text or 1000 overrides, so {self} does not carry them"
@@ -270,7 +295,7 @@ fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io:
 impl std::fmt::Display for Output {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::File(path, _) => f.write_str(&shown(path)),
+            Self::File(path, ..) => f.write_str(&shown(path)),
             Self::Standard => f.write_str("standard output"),
         }
     }

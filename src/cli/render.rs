@@ -18,7 +18,7 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let input = Input::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
     // Before the hours of a render, not after them; and a file that cannot be written outweighs errors of the scene.
-    output.check((!input.is_picture).then_some(args.scene.as_path()))?;
+    output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };

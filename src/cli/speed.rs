@@ -1,9 +1,10 @@
 //! `report SCENE…`: speed against error, for a terminal, for programs, and as files.
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
+    slice,
+    sync::atomic::Ordering,
     time::Duration,
 };
 
@@ -12,12 +13,12 @@ use serde_json::json;
 use super::{
     Status, Trouble,
     args::{Format, ReportArgs, methods},
-    input::{Input, check_standard, is_same_file, is_standard, shown},
+    input::{Input, check_standard, is_standard, not_written},
     interrupt::Interrupt,
     output, progress,
 };
 use crate::{
-    film,
+    files::OutputFolder,
     render::{Control, RenderError},
     report::speed::{
         self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
@@ -45,12 +46,14 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     check_standard(&args.scenes)?;
     let request = request(args);
     check_methods(&request)?;
-    if let Some(folder) = &args.output {
-        make_folder(folder)?;
-        let index = folder.join(INDEX);
-        refuse_link(&index)?;
-        film::check_writable(&index).map_err(|error| cannot_write(&index, &error))?;
-    }
+    let folders = folders(&args.scenes);
+    let output = args.output.as_deref();
+    let output = output.map(|output| {
+        let files = folders.iter().flat_map(|folder| files(folder));
+        let names: Vec<_> = files.chain([INDEX.to_owned()]).collect();
+        OutputFolder::open(output, names.iter().map(String::as_str))
+    });
+    let output = output.transpose().map_err(not_written)?;
     let mut subjects = Vec::new();
     let mut status = Status::Done;
     for path in &args.scenes {
@@ -59,7 +62,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             Some(scene) => {
                 check_samples(&scene, &request)?;
                 let subject = Subject {
-                    name: shown(path),
+                    name: path.display().to_string(),
                     overrides: input.recipe(None).overrides,
                 };
                 subjects.push((subject, scene));
@@ -70,11 +73,6 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if status != Status::Done {
         return Ok(status);
     }
-    let folders = args
-        .output
-        .as_deref()
-        .map(|folder| folders(folder, &args.scenes));
-    let folders = folders.transpose()?;
     let mut measured = Vec::new();
     for (subject, scene) in &subjects {
         let Some(found) = measure(subject, scene, &request, interrupt)? else {
@@ -90,13 +88,15 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         }
     }
     // What was measured is kept, so Ctrl-C does not end the writing of it.
-    if let (Some(folder), Some(folders), false) = (&args.output, folders, measured.is_empty()) {
+    if let (Some(mut output), false) = (output, measured.is_empty()) {
+        let mut made = Vec::new();
         for (folder, measured) in folders.iter().zip(&measured) {
-            write_one(folder, measured)?;
+            made.extend(files(folder).into_iter().zip(texts(measured)?));
         }
         if args.scenes.len() > 1 {
-            write_page(folder, &measured)?;
+            made.push((INDEX.to_owned(), page(&measured)?));
         }
+        output.write(&made).map_err(not_written)?;
     }
     if args.format.format == Format::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
@@ -190,93 +190,41 @@ fn measure(
     }
 }
 
-/// Where the report of each scene goes: of one into the folder itself, of several each into a folder there, under a page on all. What cannot be
-/// written, or would write over a scene, is refused before anything is measured.
-fn folders(folder: &Path, scenes: &[PathBuf]) -> Result<Vec<PathBuf>, Trouble> {
+/// Where the report of each scene goes, within the folder: of one into the folder itself, of
+/// several each into a folder there, under a page on all.
+fn folders(scenes: &[PathBuf]) -> Vec<String> {
+    if scenes.len() == 1 {
+        return vec![String::new()];
+    }
     let mut names = Vec::new();
-    if scenes.len() > 1 {
-        for scene in scenes {
-            names.push(name(scene, &names));
-        }
+    for scene in scenes {
+        names.push(name(scene, &names));
     }
-    let mut folders: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
-    for folder in &folders {
-        refuse_link(folder)?;
-        check_folder(folder)?;
-    }
-    if folders.is_empty() {
-        folders.push(folder.to_owned());
-    }
-    let files = folders
-        .iter()
-        .flat_map(|folder| FILES.map(|file| folder.join(file)));
-    for file in files.chain([folder.join(INDEX)]) {
-        refuse_link(&file)?;
-        if let Some(scene) = scenes.iter().find(|scene| is_same_file(&file, scene)) {
-            return Err(Trouble(format!(
-                "the report would write over the scene {}",
-                shown(scene)
-            )));
-        }
-    }
-    Ok(folders)
+    names.iter().map(|name| format!("{name}/")).collect()
 }
 
-fn write_one(folder: &Path, measured: &Measurement) -> Result<(), Trouble> {
-    make_folder(folder)?;
-    let csv = folder.join("report.csv");
-    let texts = [
-        to_csv(measured).map_err(|error| cannot_write(&csv, &error))?,
+/// The names of a report's files.
+fn files(folder: &str) -> [String; 5] {
+    FILES.map(|name| format!("{folder}{name}"))
+}
+
+/// What goes into these files.
+fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
+    Ok([
+        to_csv(measured).map_err(unmade)?,
         format!("{:#}\n", to_json(measured)),
         against_time(measured),
         against_samples(measured),
-    ];
-    for (name, text) in FILES.into_iter().zip(texts) {
-        write_file(&folder.join(name), &text)?;
-    }
-    write_page(folder, std::slice::from_ref(measured))
+        page(slice::from_ref(measured))?,
+    ])
 }
 
-fn write_page(folder: &Path, measured: &[Measurement]) -> Result<(), Trouble> {
-    let path = folder.join(INDEX);
-    let page = speed::page(measured).map_err(|error| cannot_write(&path, &error))?;
-    write_file(&path, &page)
+fn page(measured: &[Measurement]) -> Result<String, Trouble> {
+    speed::page(measured).map_err(unmade)
 }
 
-fn write_file(path: &Path, text: &str) -> Result<(), Trouble> {
-    let go_on = AtomicBool::new(false);
-    film::write_whole(path, &go_on, |out| out.write_all(text.as_bytes()))
-        .map_err(|error| cannot_write(path, &error))
-}
-
-/// A report writes nothing outside of its folder, whatever links there are in it.
-fn refuse_link(path: &Path) -> Result<(), Trouble> {
-    match path.is_symlink() {
-        true => Err(Trouble(format!(
-            "{} is a symbolic link, and a report writes nothing outside of its folder",
-            shown(path)
-        ))),
-        false => Ok(()),
-    }
-}
-
-fn check_folder(folder: &Path) -> Result<(), Trouble> {
-    match folder.is_file() {
-        true => Err(Trouble(format!(
-            "{} is a file, and the report is a folder of files",
-            shown(folder)
-        ))),
-        false => Ok(()),
-    }
-}
-
-fn make_folder(folder: &Path) -> Result<(), Trouble> {
-    check_folder(folder)?;
-    fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
-}
-
-fn cannot_write(path: &Path, error: &io::Error) -> Trouble {
-    Trouble(format!("cannot write to {}: {error}", shown(path)))
+fn unmade(error: io::Error) -> Trouble {
+    Trouble(format!("cannot make the report: {error}"))
 }
 
 /// A scene's folder: its file's name without the ending, with a number if another one has that, or the page. It is a name within the report's

@@ -1,7 +1,6 @@
 //! `watch`: a scene is rendered whenever its file is saved.
 
 use std::{
-    fs,
     path::Path,
     sync::{
         Arc,
@@ -35,7 +34,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let start = Instant::now();
     let output = output(args)?;
     check_scene(&args.scene)?;
-    output.check(Some(&args.scene))?;
+    output.check(&args.scene)?;
     let mut screen = match args.show {
         true => Screen::of_pictures()?,
         false => Screen::of_words(),
@@ -94,12 +93,8 @@ fn output(args: &WatchArgs) -> Result<Output, Trouble> {
 
 /// What can be known at the start: later, files come and go.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
-    let cannot_read = |error| Trouble(format!("cannot read {}: {error}", shown(scene)));
-    let found = fs::metadata(scene).map_err(cannot_read)?;
-    if !found.is_file() {
-        return Err(Trouble(format!("{} is not a file", shown(scene))));
-    }
-    check_text(scene, &input::bytes(scene).map_err(cannot_read)?)
+    let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
+    check_text(scene, &bytes)
 }
 
 fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
@@ -137,7 +132,7 @@ fn make(
     let recipe = input.recipe(None);
     let whole = Area::whole(scene.image.width, scene.image.height);
     // The picture must not take the place of the scene, should a link lead there by now.
-    let written = output.check(Some(&args.scene)).and_then(|()| {
+    let written = output.check(&args.scene).and_then(|()| {
         let written = output.write(&picture, &recipe, whole, is_stale);
         written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
     });

@@ -12,7 +12,7 @@ use miette::{
 
 use super::{
     Diagnostic, Label, Severity, clamp, summary,
-    visible::{push_visible, visible},
+    visible::{push_visible, visible_line},
 };
 use crate::{
     explain::short,
@@ -116,18 +116,18 @@ impl<'s> Report<'s> {
         let code = &diagnostic.code;
         let mut text = format!(
             "{on}{word}[{code}]:{off} {}\n",
-            visible(&diagnostic.message)
+            visible_line(&diagnostic.message)
         );
         let excerpts = excerpts(diagnostic, self.sources);
         if excerpts.is_empty()
             && let Some(help) = &diagnostic.help
         {
-            let _ = writeln!(text, "  help: {}", visible(help));
+            let _ = writeln!(text, "  help: {}", visible_line(help));
         }
         let last = excerpts.len().saturating_sub(1);
         for (index, excerpt) in excerpts.into_iter().enumerate() {
             let help = diagnostic.help.as_ref().filter(|_| index == last);
-            let help = help.map(|help| visible(help).into_owned());
+            let help = help.map(|help| visible_line(help).into_owned());
             text.push_str(&self.snippet(excerpt, help));
         }
         if self.style.drawing == Drawing::Ascii {
@@ -168,7 +168,7 @@ impl<'s> Report<'s> {
             "{} {}: {}\n",
             diagnostic.severity.word(),
             diagnostic.code,
-            visible(&diagnostic.message)
+            visible_line(&diagnostic.message)
         );
         for label in &diagnostic.labels {
             let source = self.sources.get(label.span.source);
@@ -178,7 +178,7 @@ impl<'s> Report<'s> {
             let _ = write!(
                 text,
                 "  {}, line {}, column {}",
-                visible(source.name()),
+                visible_line(source.name()),
                 place.line,
                 place.column
             );
@@ -186,12 +186,12 @@ impl<'s> Report<'s> {
             if !one_line.is_empty() {
                 let shown: String = one_line.chars().take(60).collect();
                 let rest = if shown.len() < under.len() { "…" } else { "" };
-                let _ = write!(text, ", at `{}{rest}`", visible(&shown));
+                let _ = write!(text, ", at `{}{rest}`", visible_line(&shown));
             }
-            let _ = writeln!(text, ": {}", visible(&label.message));
+            let _ = writeln!(text, ": {}", visible_line(&label.message));
         }
         if let Some(help) = &diagnostic.help {
-            let _ = writeln!(text, "  help: {}", visible(help));
+            let _ = writeln!(text, "  help: {}", visible_line(help));
         }
         text
     }
@@ -300,8 +300,11 @@ impl<'s> Excerpt<'s> {
             let inner = SourceSpan::from((start, end - start));
             // miette shows line and column of the primary label.
             excerpt.labels.push(match index {
-                0 => LabeledSpan::new_primary_with_span(Some(visible(message).into_owned()), inner),
-                _ => LabeledSpan::new_with_span(Some(visible(message).into_owned()), inner),
+                0 => LabeledSpan::new_primary_with_span(
+                    Some(visible_line(message).into_owned()),
+                    inner,
+                ),
+                _ => LabeledSpan::new_with_span(Some(visible_line(message).into_owned()), inner),
             });
         }
         excerpt
@@ -386,7 +389,7 @@ impl SourceCode for Excerpt<'_> {
         let real = shown.find(|(_, place)| *place <= span.offset());
         let real = real.map_or(0, |(at, _)| *at);
         Ok(Box::new(MietteSpanContents::new_named(
-            visible(self.source.name()).into_owned(),
+            visible_line(self.source.name()).into_owned(),
             data,
             (first.start, last.end - first.start).into(),
             first.number - 1,

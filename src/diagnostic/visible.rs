@@ -17,9 +17,27 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// The visible text as it stands in HTML and XML, in an attribute too.
+/// A name, a message, or whatever else is to stand within one line: line feeds and tabs are made
+/// visible too, so that it can forge neither a second line nor a cell of a table.
+pub fn visible_line(text: &str) -> Cow<'_, str> {
+    let breaks = |character| matches!(character, '\n' | '\t' | '\u{2028}' | '\u{2029}');
+    let shown = visible(text);
+    if !shown.contains(breaks) {
+        return shown;
+    }
+    let mut line = String::with_capacity(shown.len());
+    for character in shown.chars() {
+        match breaks(character) {
+            true => line.extend(character.escape_unicode()),
+            false => line.push(character),
+        }
+    }
+    Cow::Owned(line)
+}
+
+/// The visible text of a line as it stands in HTML and XML, in an attribute too.
 pub fn escaped(text: &str) -> String {
-    visible(text)
+    visible_line(text)
         .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -24,11 +24,10 @@ use exr::{
 
 use super::{
     memory::TooLarge,
-    picture::{Coding, Picture, Rounding, Unreadable, check_pixels},
+    picture::{Coding, Picture, Rounding, Unreadable, check_size},
     pixels::Film,
-    write::Sink,
 };
-use crate::area::Area;
+use crate::{area::Area, files::Sink};
 
 /// Writes a part of a whole picture, or all of it.
 pub fn write_exr(film: &Film, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
@@ -78,12 +77,18 @@ pub fn write_exr(film: &Film, part: Area, whole: Area, out: &mut dyn Sink) -> io
 }
 
 /// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
-pub fn read(bytes: &[u8]) -> Result<Picture, Unreadable> {
+pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
         // Before anything is unpacked.
         let Vec2(width, height) = header.layer_size;
-        check_pixels(width as u64, height as u64)?;
+        let channels = &header.channels.list;
+        // Channels beyond the four are decoded, too.
+        let sizes = channels
+            .iter()
+            .map(|channel| channel.sample_type.bytes_per_sample());
+        let channel = sizes.sum::<usize>().div_ceil(4);
+        check_size([width as u64, height as u64], channel as u64, limit)?;
     }
     let image = reader()
         .no_deep_data()

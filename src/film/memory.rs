@@ -1,8 +1,10 @@
 //! Whether there is memory for a picture, before it is taken.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use thiserror::Error;
+
+use crate::files::read_system_text;
 
 /// A picture for which there is no memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -60,7 +62,7 @@ fn available() -> Option<u64> {
 }
 
 fn machine() -> Option<u64> {
-    let table = fs::read_to_string("/proc/meminfo").ok()?;
+    let table = read_system_text("/proc/meminfo")?;
     // In KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
@@ -68,7 +70,7 @@ fn machine() -> Option<u64> {
 /// What is left of the limits of this process's control group and of the groups around it.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
-    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let groups = read_system_text("/proc/self/cgroup")?;
     let group = groups.lines().find_map(|line| line.strip_prefix("0::/"))?;
     Path::new(ROOT)
         .join(group)
@@ -80,7 +82,7 @@ fn control_group() -> Option<u64> {
 
 /// What a group may still take. Copies of files, which it is charged for, give way on demand.
 fn left(group: &Path) -> Option<u64> {
-    let read = |name| fs::read_to_string(group.join(name)).ok();
+    let read = |name| read_system_text(group.join(name));
     // Without a limit there is a word here.
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;
     let usage: u64 = read("memory.current")?.trim().parse().ok()?;

@@ -1,7 +1,7 @@
 //! Pixels, and the files they go to.
 //!
 //! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in memory, and a picture file: `png` with the
-//! scene that made it, or `exr`. `write` sees to it that a file is written whole or not at all. `read` makes a `picture` of a file, also of
+//! scene that made it, or `exr`. `read` makes a `picture` of a file, also of
 //! another program's, `compare` says how far two films are apart, and `embed` puts one into a page.
 
 mod compare;
@@ -16,7 +16,6 @@ mod pixels;
 mod png;
 mod read;
 mod srgb;
-mod write;
 
 #[cfg(any(feature = "cli", feature = "report"))]
 pub use self::embed::{data_uri, reduced};
@@ -28,10 +27,9 @@ pub use self::{
     jpeg::{Jpeg, Table as JpegTable},
     mean::mean,
     memory::TooLarge,
-    picture::{Coding, Picture, Rounding, Unreadable},
+    picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
     pixels::{Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    read::{is_picture, read_picture},
+    read::{is_picture, read_picture, read_picture_up_to},
     srgb::Encoder,
-    write::{Sink, check_writable, write_stream, write_whole},
 };

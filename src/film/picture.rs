@@ -6,8 +6,9 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// A picture with more pixels is not read: as a film they take 1.5 GiB.
-const PIXELS: u64 = 1 << 26;
+/// Maximum number of bytes that a picture is decoded to, unless it is said that it may be larger:
+/// of 2^26 pixels with four bytes each, whose film takes 1.5 GiB.
+pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// A picture as a file holds it.
 #[derive(Clone, Debug)]
@@ -108,8 +109,20 @@ pub enum Unreadable {
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
     /// It is larger than pictures that are read.
-    #[error("it has {0} × {1} pixels, and pictures of more than 67108864 are not read")]
-    Pixels(u64, u64),
+    #[error(
+        "it has {width} × {height} pixels, which are decoded to more than the {limit} bytes that are read"
+    )]
+    Large {
+        /// The number of columns.
+        width: u64,
+        /// The number of rows.
+        height: u64,
+        /// How many bytes are decoded at most.
+        limit: u64,
+    },
+    /// It has no columns or no rows.
+    #[error("it has {0} × {1} pixels, and so none at all")]
+    Empty(u64, u64),
     /// There is no memory for it.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
@@ -128,10 +141,24 @@ pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Refuses sides that no picture has which is read here.
-pub(super) fn check_pixels(width: u64, height: u64) -> Result<(), Unreadable> {
-    match width.checked_mul(height) {
-        Some(1..=PIXELS) => Ok(()),
-        _ => Err(Unreadable::Pixels(width, height)),
+/// Refuses a picture that is decoded to more bytes than this, with four channels of so many bytes,
+/// or has no pixels.
+pub(super) fn check_size(
+    [width, height]: [u64; 2],
+    channel: u64,
+    limit: u64,
+) -> Result<(), Unreadable> {
+    let large = Unreadable::Large {
+        width,
+        height,
+        limit,
+    };
+    match width
+        .checked_mul(height)
+        .and_then(|n| n.checked_mul(4 * channel))
+    {
+        Some(0) => Err(Unreadable::Empty(width, height)),
+        Some(bytes) if bytes <= limit => Ok(()),
+        _ => Err(large),
     }
 }

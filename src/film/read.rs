@@ -13,13 +13,13 @@ use png::{BitDepth, ColorType, DecodingError, Transformations};
 
 use super::{
     exr, memory,
-    picture::{Coding, Picture, Rounding, Unreadable, check_pixels, name},
+    picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable, check_size, name},
     pixels::Film,
     png::read_recipe,
 };
 use crate::color::srgb_to_linear;
 
-/// What a decoder may take, in bytes: as much as `image` allows by default.
+/// What a decoder may take besides the picture, in bytes: as much as `image` allows by default.
 const UNPACKING: usize = 512 << 20;
 
 /// Whether a file begins as a picture does, of a format that is read here or not.
@@ -37,12 +37,18 @@ fn format(bytes: &[u8]) -> Option<ImageFormat> {
     }
 }
 
-/// Reads a picture.
+/// Reads a picture of the usual size.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
+    read_picture_up_to(bytes, DECODED_LIMIT)
+}
+
+/// Reads a picture that is decoded to at most so many bytes, which its first bytes tell, and for
+/// which there is memory.
+pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
-        Some(ImageFormat::OpenExr) => exr::read(bytes)?,
-        Some(ImageFormat::Png) => read_png(bytes)?,
-        Some(format) if format.reading_enabled() => read(bytes, format)?,
+        Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
+        Some(ImageFormat::Png) => read_png(bytes, limit)?,
+        Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
         other => return Err(Unreadable::Format(other)),
     };
     let width = picture.film.width() as usize;
@@ -54,14 +60,19 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     Ok(picture)
 }
 
-fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
+fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unreadable> {
     let unreadable = |error| unreadable(&error, format);
-    let reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    if limit > DECODED_LIMIT {
+        // What there is memory for is looked at below.
+        reader.no_limits();
+    }
     let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
-    check_pixels(width.into(), height.into())?;
     let color = decoder.color_type();
-    let rounding = match color.bytes_per_pixel() / color.channel_count() {
+    let channel = color.bytes_per_pixel() / color.channel_count();
+    check_size([width.into(), height.into()], channel.into(), limit)?;
+    let rounding = match channel {
         1 => Rounding::Byte,
         2 => Rounding::Word,
         _ => Rounding::Float,
@@ -102,7 +113,7 @@ fn read(bytes: &[u8], format: ImageFormat) -> Result<Picture, Unreadable> {
     })
 }
 
-fn read_png(bytes: &[u8]) -> Result<Picture, Unreadable> {
+fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let unreadable = |error| match error {
         DecodingError::LimitsExceeded => Unreadable::Unpacking,
         error => Unreadable::Damaged {
@@ -116,7 +127,11 @@ fn read_png(bytes: &[u8]) -> Result<Picture, Unreadable> {
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
-    check_pixels(width.into(), height.into())?;
+    let channel = match header.bit_depth {
+        BitDepth::Sixteen => 2,
+        _ => 1,
+    };
+    check_size([width.into(), height.into()], channel, limit)?;
     let mut reader = decoder.read_info().map_err(unreadable)?;
     let (color, depth) = reader.output_color_type();
     let (rounding, length) = match depth {

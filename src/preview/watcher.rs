@@ -30,6 +30,7 @@ use notify::{
 };
 
 use super::Latest;
+use crate::files;
 
 /// A file is read when it was left alone for so long.
 const QUIET: Duration = Duration::from_millis(10);
@@ -52,8 +53,9 @@ pub struct Content {
     pub since: Instant,
 }
 
-/// Watches a file, which is read by `read`, until what is returned ends or is dropped. The first content is there at once; after that
-/// there is one whenever the file was saved, be it with the text that it had.
+/// Watches a file, which is read by `read` without waiting for anybody ([`files::open`]), until
+/// what is returned ends or is dropped. The first content is there at once; after that there is one
+/// whenever the file was saved, be it with the text that it had.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
@@ -229,11 +231,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         let end = Instant::now() + ABSENCE;
         loop {
             let stamp = stamp(&self.path);
-            // A pipe would never end.
-            let bytes = match fs::metadata(&self.path) {
-                Ok(found) if !found.is_file() => Err(io::Error::other("it is not a file")),
-                _ => (self.read)(&self.path),
-            };
+            let bytes = (self.read)(&self.path);
             let is_there = match &bytes {
                 Ok(bytes) => !bytes.is_empty(),
                 Err(error) => error.kind() != io::ErrorKind::NotFound,
@@ -275,26 +273,11 @@ fn folder(path: &Path) -> PathBuf {
 }
 
 /// What changes when a file is saved: its time, its length, or which file it is.
-type Stamp = (SystemTime, u64, FileId);
+type Stamp = (SystemTime, u64, files::FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {
     let found = fs::metadata(path).ok()?;
-    Some((found.modified().ok()?, found.len(), file_id(&found)))
-}
-
-/// The device of a file, and its number there.
-type FileId = (u64, u64);
-
-#[cfg(unix)]
-fn file_id(found: &fs::Metadata) -> FileId {
-    use std::os::unix::fs::MetadataExt as _;
-    (found.dev(), found.ino())
-}
-
-/// Elsewhere the library tells no number, and a file that takes the place of another has a time of its own.
-#[cfg(not(unix))]
-fn file_id(_: &fs::Metadata) -> FileId {
-    (0, 0)
+    Some((found.modified().ok()?, found.len(), files::id(&found)))
 }
 
 #[cfg(test)]

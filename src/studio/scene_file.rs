@@ -1,13 +1,13 @@
 //! The scene's own file: the only one that Studio reads or writes.
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
 use crate::{
-    film,
+    files::{self, Original, Purpose},
     preview::{self, Content, Latest},
     scene::SMALLEST,
 };
@@ -131,7 +131,7 @@ impl SceneFile {
     /// It is not saved, and no file has changed.
     pub fn save(
         &mut self,
-        text: &str,
+        new: &str,
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
@@ -142,25 +142,39 @@ impl SceneFile {
                     return Err(NotSaved::Refused(format!("this scene is in {own}")));
                 }
                 let unread = |why| NotSaved::Refused(format!("{own} cannot be read: {why}"));
-                let found = self.found(path).map_err(unread)?;
-                if found.as_deref() != Some(text) {
+                let original = match Original::read(path, self.read) {
+                    Ok(original) => original,
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => Original::missing(),
+                    Err(error) => return Err(unread(error.to_string())),
+                };
+                let found = original.bytes().map(|bytes| text(Ok(bytes.to_owned())));
+                let found = found
+                    .transpose()
+                    .map_err(|error| unread(error.to_string()))?;
+                if found.as_deref() != Some(new) {
                     if found.as_deref() != base {
                         return Err(NotSaved::Changed(found));
                     }
-                    write(path, text)?;
+                    match write(path, new, Purpose::Change(&original)) {
+                        Err(error) if files::is_changed(&error) => {
+                            let found = self.found(path).map_err(unread)?;
+                            return Err(NotSaved::Changed(found));
+                        }
+                        written => written?,
+                    }
                 }
             }
             None => {
                 let name = name.unwrap_or_default();
                 check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
-                create(&path, text)?;
+                write(&path, new, Purpose::New)?;
                 self.watch = preview::watch(&path, self.read).ok();
                 self.path = Some(path);
                 self.version += 1;
             }
         }
-        self.hold(Ok(Some(text.to_owned())));
+        self.hold(Ok(Some(new.to_owned())));
         Ok(self.version)
     }
 }
@@ -196,26 +210,42 @@ fn is_device(name: &str) -> bool {
     ["con", "prn", "aux", "nul"].contains(&&*name) || is_port("com") || is_port("lpt")
 }
 
-/// Makes a file, whole or not at all, where there is none.
-fn create(path: &Path, text: &str) -> io::Result<()> {
-    // It holds the name until the text is there; who had it before keeps it.
-    fs::File::create_new(path)?;
-    let written = write(path, text);
-    if written.is_err() {
-        let _ = fs::remove_file(path);
-    }
-    written
-}
-
-fn write(path: &Path, text: &str) -> io::Result<()> {
-    film::write_whole(path, &AtomicBool::new(false), |file| {
+fn write(path: &Path, text: &str, purpose: Purpose) -> io::Result<()> {
+    files::write(path, purpose, &AtomicBool::new(false), |file| {
         file.write_all(text.as_bytes())
     })
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the tests are another program here"
+)]
 mod tests {
+    use std::fs;
+
     use super::*;
+
+    #[test]
+    fn what_is_saved_between_reading_and_writing_is_kept() {
+        /// Reads a file that another program saves right after that, if it holds `mine`.
+        fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
+            let bytes = files::read(path, 99)?;
+            if bytes == b"mine" {
+                fs::write(path, "theirs")?;
+            }
+            Ok(bytes)
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.scn");
+        fs::write(&path, "old").unwrap();
+        let mut file = SceneFile::open(&path, read_and_saved).unwrap();
+        file.watch = None;
+        file.save("mine", Some("old"), None).unwrap();
+        let saved = file.save("more", Some("mine"), None);
+        assert_eq!(saved, Err(NotSaved::Changed(Some("theirs".to_owned()))));
+        assert_eq!(fs::read(&path).unwrap(), b"theirs");
+    }
 
     #[test]
     fn a_name_leads_nowhere_else() {

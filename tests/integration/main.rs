@@ -1,4 +1,8 @@
 //! One test binary, a module per subject.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "tests make the files that the program is tried with"
+)]
 
 #[cfg(feature = "report")]
 mod browser;
@@ -13,6 +17,7 @@ mod effort;
 mod exact;
 mod explain;
 mod extremes;
+mod files;
 mod film;
 mod fixes;
 mod format;

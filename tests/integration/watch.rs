@@ -173,7 +173,7 @@ fn editors_that_save_by_renaming_are_seen() {
     let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
     assert!(made.unwrap().success());
     fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
-    watch.wait("it says so", || watch.count("it is not a file") > 0);
+    watch.wait("it says so", || watch.count("it is a pipe, not a file") > 0);
     watch.replace(&scene("blue"));
     watch.shows("blue");
 }

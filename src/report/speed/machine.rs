@@ -1,6 +1,8 @@
 //! What the times were measured on.
 
-use std::{fs, num::NonZero, thread};
+use std::{num::NonZero, thread};
+
+use crate::files::read_system_text;
 
 /// A machine, as far as it matters for times.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +25,7 @@ impl Machine {
 
 /// What Linux calls the processor; other systems tell only those who link with them.
 fn model() -> Option<String> {
-    let table = fs::read_to_string("/proc/cpuinfo").ok()?;
+    let table = read_system_text("/proc/cpuinfo")?;
     let line = table.lines().find(|line| line.starts_with("model name"))?;
     let name = line.split_once(':')?.1.trim();
     (!name.is_empty()).then(|| name.to_owned())

@@ -5,7 +5,7 @@ use super::{
     notation::{UNKNOWN, asked_error, plural, samples, slope, time},
     results::Measurement,
 };
-use crate::{diagnostic::visible, numbers, scene::Method, suggest};
+use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
 /// A line for each method.
 pub struct Table {
@@ -158,5 +158,5 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
 
 /// Text from outside as it may stand anywhere: with controls made visible, and without the two characters that XML cannot hold even so.
 pub fn printable(text: &str) -> String {
-    visible(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
+    visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -5,12 +5,12 @@
 pub mod any;
 pub mod laws;
 
-use std::{fs, path::Path};
+use std::{fs, path::Path, time::Instant};
 
 use pinhole::{format::format, source::Source};
 
 use self::laws::the_laws_hold;
-use crate::{scenes::scenes, snapshot::assert_file};
+use crate::{program::Folder, scenes::scenes, snapshot::assert_file};
 
 /// The canonical layout, or the codes of the mistakes, of which there is an error.
 pub fn formatted(text: &str) -> Result<String, Vec<String>> {
@@ -60,4 +60,21 @@ fn deep_and_long_values_are_laid_out() {
         formatted
     });
     assert!(sum.lines().all(|line| line.len() <= 100));
+}
+
+#[test]
+fn the_difference_of_long_texts_takes_time_in_proportion() {
+    let lines = 40_000;
+    let blank = "\n".repeat(lines);
+    let mixed = "\n\n\nsphere {}\n\n".repeat(lines);
+    let objects = "sphere{center (1,1,0)   radius 1}\n".repeat(lines);
+    let every_other = "sphere {}\nsphere  {}\n".repeat(lines);
+    for text in [blank, mixed, objects, every_other] {
+        let folder = Folder::with([("a.scn", &*text)]);
+        let start = Instant::now();
+        let told = folder.told("fmt --check a.scn", 1);
+        // Looking at pairs of lines takes minutes.
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+        assert!(told.starts_with("--- a.scn\n+++ a.scn, formatted\n@@ -1"));
+    }
 }

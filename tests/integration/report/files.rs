@@ -50,7 +50,7 @@ fn a_folder_gets_whole_files() {
         0,
     );
     let read = |name: &str| folder.text(&format!("new/speed/{name}"));
-    let all = "error-against-samples.svg error-against-time.svg index.html report.csv report.json";
+    let all = ".pinhole error-against-samples.svg error-against-time.svg index.html report.csv report.json";
     let names = program::names(&folder.path("new/speed"));
     assert_eq!(names.join(" "), all);
     let methods = Method::SAMPLED.map(Method::name);
@@ -164,8 +164,13 @@ fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());
     let made = entries("work/out");
-    assert_eq!(made.len(), names.len() + 1, "{made:?}");
-    for made in made.iter().filter(|name| *name != "index.html") {
+    assert_eq!(
+        made.len(),
+        names.len() + [".pinhole", "index.html"].len(),
+        "{made:?}"
+    );
+    let is_folder = |name: &&String| ![".pinhole", "index.html"].contains(&name.as_str());
+    for made in made.iter().filter(is_folder) {
         for file in ["index.html", "error-against-time.svg"] {
             parsed(&folder.text(&format!("work/out/{made}/{file}")));
         }

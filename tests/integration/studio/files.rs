@@ -155,6 +155,27 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     assert_eq!(outer.text("inner/new one.scn"), "// mine");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_scene_that_becomes_a_pipe_is_told_and_holds_nothing_up() {
+    let (folder, mut studio) = studio();
+    let (mut page, _) = studio.page();
+    let mut mkfifo = std::process::Command::new("mkfifo");
+    assert!(mkfifo.arg(folder.path("pipe")).status().unwrap().success());
+    fs::rename(folder.path("pipe"), folder.path("a.scn")).unwrap();
+    let reason = json!("it is a pipe, not a file");
+    assert_eq!(told(&mut page), [Value::Null, reason]);
+    let error = save(&mut page, "// mine", Some(SCENE))["error"].take();
+    let message = "a.scn cannot be read: it is a pipe, not a file";
+    assert_eq!(error["message"], message);
+    let id = studio.child.id().to_string();
+    let ended = std::process::Command::new("kill")
+        .args(["-INT", &id])
+        .status();
+    assert!(ended.unwrap().success());
+    assert_eq!(studio.child.wait().unwrap().code(), Some(130));
+}
+
 #[test]
 fn what_cannot_be_edited_is_told_at_once() {
     let folder = Folder::with([("a.scn", SCENE)]);
@@ -164,7 +185,7 @@ fn what_cannot_be_edited_is_told_at_once() {
     let port = taken.local_addr().unwrap().port();
     for (arguments, said) in [
         ("missing.scn", "cannot read missing.scn: "),
-        (".", ". is not a file"),
+        (".", "cannot read .: it is a folder, not a file"),
         ("-", "standard input cannot be edited"),
         ("a.png", "a.png is a picture"),
         (

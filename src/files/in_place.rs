@@ -1,0 +1,93 @@
+//! Texts of files that cannot be replaced by renaming another one: in a folder that cannot be
+//! written to, or that something is mounted on.
+
+use std::{
+    env,
+    fs::{self, OpenOptions},
+    io::{self, Write},
+    path::{Path, PathBuf},
+};
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::{
+    kind::{Kind, without_waiting},
+    original::Original,
+};
+
+/// Whether a file that cannot be replaced for this reason may be written in place.
+pub fn is_reason(error: &io::Error) -> bool {
+    use io::ErrorKind as Kind;
+    matches!(
+        error.kind(),
+        Kind::PermissionDenied
+            | Kind::ReadOnlyFilesystem
+            | Kind::ResourceBusy
+            | Kind::CrossesDevices
+    )
+}
+
+/// Writes over a file that is still what was read. A copy of all that is to be in it stands beside
+/// it, or else in the user's folder for such things, until that is done: whatever happens
+/// meanwhile, one of the two is whole. Where no copy can be made, `reason` stays what kept the file
+/// from being replaced.
+pub fn write_in_place(
+    path: &Path,
+    original: &Original,
+    content: &[u8],
+    reason: io::Error,
+) -> io::Result<()> {
+    let Some(mut copy) = copy_beside(path) else {
+        return Err(reason);
+    };
+    copy.write_all(content)?;
+    copy.as_file().sync_all()?;
+    let mut file = without_waiting(OpenOptions::new().write(true)).open(path)?;
+    let found = file.metadata()?;
+    if Kind::of(&found) != Kind::File {
+        return Err(Kind::of(&found).refused());
+    }
+    original.check(path)?;
+    let written = file
+        .write_all(content)
+        .and_then(|()| file.set_len(content.len() as u64))
+        .and_then(|()| file.sync_all());
+    match written {
+        Ok(()) => copy.close(),
+        Err(error) => {
+            let (_, copy) = copy.keep().map_err(|error| error.error)?;
+            let copy = copy.display();
+            let message = format!("{error}; what should be in it is whole in {copy}");
+            Err(io::Error::new(error.kind(), message))
+        }
+    }
+}
+
+/// An empty file for the copy, if there is a place for one.
+fn copy_beside(path: &Path) -> Option<NamedTempFile> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name: String = name.chars().take(50).collect();
+    let prefix = format!("{name}.copy-");
+    let copy_in = |folder: &Path| Builder::new().prefix(&prefix).tempfile_in(folder).ok();
+    copy_in(path.parent()?).or_else(|| {
+        let folder = state_folder()?;
+        fs::create_dir_all(&folder).ok()?;
+        copy_in(&folder)
+    })
+}
+
+/// The folder for what programs keep of a user, where the system has one.
+fn state_folder() -> Option<PathBuf> {
+    let absolute = |name| {
+        env::var_os(name)
+            .map(PathBuf::from)
+            .filter(|p| p.is_absolute())
+    };
+    let base = match cfg!(windows) {
+        true => absolute("LOCALAPPDATA")?,
+        false => {
+            absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
+        }
+    };
+    Some(base.join("pinhole"))
+}

@@ -1,0 +1,355 @@
+//! The one writer: files are written whole or not at all, and only where they are meant to go.
+
+use std::{
+    fs::{self, File, Metadata, OpenOptions},
+    io::{self, BufWriter, Cursor, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::{
+    in_place,
+    kind::{self, Kind, without_waiting},
+    original::{Original, changed},
+};
+
+/// What a file's content is written to.
+pub trait Sink: Write + Seek {}
+
+impl<T: Write + Seek> Sink for T {}
+
+/// What a file is written for, which says what may be at its path.
+#[derive(Clone, Copy, Debug)]
+pub enum Purpose<'a> {
+    /// It has a name that somebody gave: what is there is replaced, a link is followed, and a pipe
+    /// or a device gets the content once it is complete.
+    Named,
+    /// It has a name of our own in this folder, or below it: a file is replaced, also one that a
+    /// link there leads to, but none outside of the folder.
+    Within(&'a Path),
+    /// It is new: whatever is there stays.
+    New,
+    /// The text of a file is changed, if it still is what was read; a link is followed.
+    Change(&'a Original),
+}
+
+/// Has `write` write the content of the file at `path`, which stays as it was until the new content
+/// is complete.
+///
+/// The content goes into a temporary file in the same folder, which then takes the place of the old
+/// one, with its permissions and, where that is allowed, its owner; but it never runs as its owner
+/// (setuid). A hard link is cut: its other names keep the old content. Where the text of a file is
+/// changed that cannot be replaced so, it is written in place, with a complete copy elsewhere
+/// meanwhile. When `cancel` is set, or an error occurs, the temporary file is removed; where this
+/// process is killed, the next one that writes the file does it.
+pub fn write(
+    path: &Path,
+    purpose: Purpose<'_>,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    let place = match place(path, purpose)? {
+        Place::File(place) => place,
+        Place::Stream => return write_device(path, cancel, write),
+    };
+    let Purpose::Change(original) = purpose else {
+        return replace(&place, purpose, cancel, write);
+    };
+    let mut content = Checked {
+        sink: Cursor::new(Vec::new()),
+        cancel,
+    };
+    write(&mut content)?;
+    let content = content.sink.into_inner();
+    let replaced = replace(&place, purpose, cancel, |out| out.write_all(&content));
+    match replaced {
+        Err(error) if place.found.is_some() && in_place::is_reason(&error) => {
+            in_place::write_in_place(&place.path, original, &content, error)
+        }
+        replaced => replaced,
+    }
+}
+
+/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by
+/// then cannot be taken back.
+pub fn write_stream(
+    sink: impl Write,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
+    write(&mut out)?;
+    out.flush()
+}
+
+/// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to
+/// learn it after a long render.
+pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
+    match place(path, purpose)? {
+        Place::File(place) => temporary(&place)?.close(),
+        Place::Stream => Ok(()),
+    }
+}
+
+/// Where the content goes.
+enum Place {
+    File(FilePlace),
+    /// A pipe or a device, which must not be replaced.
+    Stream,
+}
+
+/// A file that is made or replaced, behind all links, and what there is to know about the one that
+/// exists already.
+struct FilePlace {
+    path: PathBuf,
+    found: Option<Metadata>,
+}
+
+fn place(path: &Path, purpose: Purpose<'_>) -> io::Result<Place> {
+    if matches!(purpose, Purpose::New) {
+        let path = path.to_owned();
+        return match fs::symlink_metadata(&path) {
+            Ok(_) => Err(exists()),
+            Err(_) => Ok(Place::File(FilePlace { path, found: None })),
+        };
+    }
+    let place = behind_links(path)?;
+    match (&place, purpose) {
+        (Place::Stream, Purpose::Named) => {}
+        (Place::Stream, _) => return Err(Kind::of(&fs::metadata(path)?).refused()),
+        (Place::File(place), Purpose::Within(outer)) => {
+            let inner = fs::canonicalize(folder(&place.path))?;
+            let outer = match outer == Path::new("") {
+                true => Path::new("."),
+                false => outer,
+            };
+            if !inner.starts_with(fs::canonicalize(outer)?) {
+                let message = "a link leads out of its folder from there";
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+            }
+        }
+        (Place::File(place), Purpose::Change(original))
+            if place.found.is_some() != original.bytes().is_some() =>
+        {
+            return Err(changed());
+        }
+        _ => {}
+    }
+    Ok(place)
+}
+
+fn behind_links(path: &Path) -> io::Result<Place> {
+    match fs::metadata(path) {
+        Ok(found) => match Kind::of(&found) {
+            Kind::File => {
+                // Replacing a file only takes the right to write to its folder; not to touch a file
+                // that is write-protected is what its owner expects.
+                without_waiting(OpenOptions::new().write(true)).open(path)?;
+                Ok(Place::File(FilePlace {
+                    path: fs::canonicalize(path)?,
+                    found: Some(found),
+                }))
+            }
+            Kind::Pipe | Kind::Device => Ok(Place::Stream),
+            kind => Err(kind.refused()),
+        },
+        Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
+            // A link to nothing: the file that it would create. Links in a circle are another
+            // error.
+            Ok(target) => behind_links(&folder(path).join(target)),
+            Err(_) => Ok(Place::File(FilePlace {
+                path: path.to_owned(),
+                found: None,
+            })),
+        },
+        Err(error) => Err(error),
+    }
+}
+
+/// Writes a temporary file, and has it take its place.
+fn replace(
+    place: &FilePlace,
+    purpose: Purpose<'_>,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    let temporary = temporary(place)?;
+    // Not the temporary file itself, whose errors would name it.
+    let sink = temporary.as_file();
+    let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
+    write(&mut out)?;
+    out.flush()?;
+    drop(out);
+    // Only now it is known that there was room for all of it.
+    temporary.as_file().sync_all()?;
+    check(cancel)?;
+    let must_be_new = match purpose {
+        Purpose::Named | Purpose::Within(_) => false,
+        Purpose::New => true,
+        Purpose::Change(original) => {
+            original.check(&place.path)?;
+            original.bytes().is_none()
+        }
+    };
+    let persisted = match must_be_new {
+        true => temporary.persist_noclobber(&place.path),
+        false => temporary.persist(&place.path),
+    };
+    match persisted {
+        Ok(_) => Ok(()),
+        Err(error) => Err(match (purpose, error.error.kind()) {
+            (Purpose::Change(_), io::ErrorKind::AlreadyExists) => changed(),
+            (Purpose::New, io::ErrorKind::AlreadyExists) => exists(),
+            _ => error.error,
+        }),
+    }
+}
+
+fn exists() -> io::Error {
+    let message = "there is something of this name already, which stays as it is";
+    io::Error::new(io::ErrorKind::AlreadyExists, message)
+}
+
+/// Writes to a pipe or a device. Nobody is waited for to open the other end, and what comes after
+/// that is up to whoever did.
+fn write_device(
+    path: &Path,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    let sink = Cursor::new(Vec::new());
+    let mut content = Checked { sink, cancel };
+    write(&mut content)?;
+    let mut device = without_waiting(OpenOptions::new().write(true))
+        .open(path)
+        .map_err(
+            |error| match fs::metadata(path).map(|found| Kind::of(&found)) {
+                Ok(Kind::Pipe) => io::Error::new(error.kind(), "it is a pipe that nobody reads"),
+                _ => error,
+            },
+        )?;
+    match Kind::of(&device.metadata()?) {
+        Kind::Pipe | Kind::Device => {}
+        kind => return Err(io::Error::other(format!("it has become {kind}"))),
+    }
+    kind::wait_for_it(&device)?;
+    device.write_all(content.sink.get_ref())?;
+    device.flush()
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// What the name of a temporary file ends in.
+const SUFFIX: &str = ".tmp";
+
+/// A temporary file, locked as long as it is open: what is not locked belongs to nobody.
+fn temporary(FilePlace { path, found }: &FilePlace) -> io::Result<NamedTempFile> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // In most systems a name has at most 255 bytes, of which each character may take four.
+    let name: String = name.chars().take(50).collect();
+    let prefix = format!(".pinhole-{name}-");
+    remove_leftovers(folder(path), &prefix);
+    let mut builder = Builder::new();
+    builder.prefix(&prefix).suffix(SUFFIX);
+    #[cfg(unix)]
+    if found.is_none() {
+        // The usual permissions of a new file: the system takes the mask off.
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    }
+    let temporary = loop {
+        let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
+        // Where the file system has no locks, nobody finds one that is free.
+        let _ = temporary.as_file().lock();
+        // Before that, another process may have taken it for a leftover.
+        if temporary.path().exists() {
+            break temporary;
+        }
+    };
+    if let Some(found) = found {
+        keep_owner(temporary.as_file(), found)?;
+    }
+    Ok(temporary)
+}
+
+/// Removes temporary files of processes that were killed. It is no matter if that fails.
+fn remove_leftovers(folder: &Path, prefix: &str) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_temporary = name
+            .to_str()
+            .and_then(|name| name.strip_prefix(prefix)?.strip_suffix(SUFFIX))
+            .is_some_and(|random| random.len() == 6);
+        if is_temporary
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = kind::open(&entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Gives a file the owner and the permissions of another one.
+#[cfg(unix)]
+fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
+    use std::{
+        fs::Permissions,
+        os::unix::fs::{MetadataExt, PermissionsExt, fchown},
+    };
+
+    // Only root may give files away, and may edit those of others without taking them over.
+    let _ = fchown(file, Some(found.uid()), Some(found.gid()));
+    file.set_permissions(Permissions::from_mode(found.mode() & 0o777))
+}
+
+#[cfg(not(unix))]
+fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
+    file.set_permissions(found.permissions())
+}
+
+/// The system's own words: nobody wants to know what the temporary file would have been called.
+fn without_path(error: io::Error) -> io::Error {
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((words, _)) => io::Error::new(error.kind(), words),
+        None => error,
+    }
+}
+
+/// A sink that fails once the flag is set.
+struct Checked<'a, S> {
+    sink: S,
+    cancel: &'a AtomicBool,
+}
+
+fn check(cancel: &AtomicBool) -> io::Result<()> {
+    if cancel.load(Ordering::Relaxed) {
+        // Not `Interrupted`, which means "try again" to whoever writes.
+        return Err(io::Error::other("interrupted"));
+    }
+    Ok(())
+}
+
+impl<S: Write> Write for Checked<'_, S> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        check(self.cancel)?;
+        self.sink.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.sink.flush()
+    }
+}
+
+impl<S: Seek> Seek for Checked<'_, S> {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        self.sink.seek(position)
+    }
+}

@@ -1,0 +1,451 @@
+//! Paths that somebody else has prepared: whatever opens or writes one says so at once, in one
+//! line, and leaves every other file as it is.
+
+use std::{
+    fs,
+    os::unix::{ffi::OsStrExt, fs::symlink, net::UnixListener},
+    path::Path,
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::program::{Folder, Said, command};
+
+const SCENE: &str = "image { width 6 height 4 }
+camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
+sphere Ball { center (-1, 1, 0) }
+";
+
+/// What there is at a path, and what is said of it where a file is read.
+const HOSTILE: [(&str, &str); 9] = [
+    ("pipe", "it is a pipe, not a file"),
+    ("link to a pipe", "it is a pipe, not a file"),
+    ("link to a device", "it is a device, not a file"),
+    ("link to a full device", "it is a device, not a file"),
+    ("socket", "it is a socket, not a file"),
+    ("folder", "it is a folder, not a file"),
+    ("dangling link", "No such file or directory"),
+    ("loop of links", "symbolic links"),
+    ("nothing", "No such file or directory"),
+];
+
+/// Puts it there.
+fn put(what: &str, path: &Path, folder: &Folder) {
+    let pipe = |path: &Path| {
+        let made = Command::new("mkfifo").arg(path).status().unwrap();
+        assert!(made.success());
+    };
+    match what {
+        "pipe" => pipe(path),
+        "link to a pipe" => {
+            pipe(&folder.path("elsewhere"));
+            symlink("elsewhere", path).unwrap();
+        }
+        "link to a device" => symlink("/dev/zero", path).unwrap(),
+        "link to a full device" => symlink("/dev/full", path).unwrap(),
+        "socket" => drop(UnixListener::bind(path).unwrap()),
+        "folder" => fs::create_dir(path).unwrap(),
+        "dangling link" => symlink("no/such/file", path).unwrap(),
+        "loop of links" => symlink(path.file_name().unwrap(), path).unwrap(),
+        "nothing" => {}
+        other => panic!("{other}"),
+    }
+}
+
+fn folder() -> Folder {
+    let folder = Folder::with([("a.scn", SCENE), ("b.scn", SCENE)]);
+    folder.told("render a.scn", 0);
+    folder
+}
+
+/// All that is in a folder: each name with where it leads to, or what is in it.
+fn all(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let found = fs::symlink_metadata(&path).unwrap();
+        let name = format!("{path:?} {:?}", found.file_type());
+        if found.is_dir() {
+            all.extend(self::all(&path));
+        }
+        let content = match found.is_symlink() {
+            true => fs::read_link(&path)
+                .unwrap()
+                .as_os_str()
+                .as_bytes()
+                .to_owned(),
+            false if found.is_file() => fs::read(&path).unwrap(),
+            false => Vec::new(),
+        };
+        all.push((name, content));
+    }
+    all.sort();
+    all
+}
+
+/// What a command says that must not wait for anything.
+#[track_caller]
+fn at_once(folder: &Folder, arguments: &[&str]) -> Said {
+    let mut command = command(folder.path("").as_path(), arguments);
+    let mut child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A second on a machine that has nothing else to do.
+    let end = Instant::now() + Duration::from_secs(10);
+    while child.try_wait().unwrap().is_none() {
+        if Instant::now() > end {
+            child.kill().unwrap();
+            panic!("{arguments:?} hangs");
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().unwrap().into()
+}
+
+/// Runs a command that has to refuse something in one line, and to change nothing.
+#[track_caller]
+fn refused(folder: &Folder, arguments: &[&str], about: &str) {
+    let before = all(&folder.path(""));
+    let said = at_once(folder, arguments);
+    let told = (said.status, said.errors.lines().count());
+    assert_eq!(told, (2, 1), "{arguments:?}: {}", said.errors);
+    assert!(said.output.is_empty(), "{arguments:?}");
+    let is_right = said.errors.starts_with("error: ") && said.errors.contains(about);
+    assert!(is_right, "{arguments:?}: {}", said.errors);
+    assert_eq!(all(&folder.path("")), before, "{arguments:?}");
+}
+
+#[test]
+fn what_is_no_file_is_never_read() {
+    for (what, about) in HOSTILE {
+        let folder = folder();
+        for name in ["x.scn", "x.png"] {
+            let _ = fs::remove_file(folder.path("elsewhere"));
+            put(what, &folder.path(name), &folder);
+            for line in [
+                "render X -o out.png",
+                "check X",
+                "check X --format json",
+                "check --fix X",
+                "fmt X",
+                "fmt --check X",
+                "inspect X",
+                "probe X 1 1",
+                "report X --samples 1 --runs 1",
+                "report X --samples 1 --runs 1 -o a",
+                "watch X -o out.png",
+                "studio --no-open X",
+                "diff X a.scn",
+                "diff X a.png -o out.png",
+                "diff a.png X",
+                "grade X a.png",
+            ] {
+                let arguments: Vec<_> = line
+                    .split(' ')
+                    .map(|word| if word == "X" { name } else { word })
+                    .collect();
+                if line.ends_with("-o a") {
+                    fs::create_dir_all(folder.path("a")).unwrap();
+                }
+                refused(&folder, &arguments, about);
+            }
+            let before = all(&folder.path(""));
+            let said = at_once(&folder, &["grade", "a.scn", "a.png", name]);
+            if what != "folder" {
+                assert_eq!(said.status, 2, "{}", said.errors);
+                assert!(said.errors.contains(about), "{}", said.errors);
+                assert_eq!(said.errors.lines().count(), 3, "{}", said.errors);
+            }
+            assert_eq!(all(&folder.path("")), before, "{what}");
+        }
+        if what != "nothing" {
+            refused(&folder, &["new", "x.scn"], "x.scn: ");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_written_where_it_is_not_meant_to_go() {
+    let outside = Folder::with([("secret", "secret"), ("deep/secret", "secret")]);
+    for (what, _) in HOSTILE.into_iter().chain([
+        ("link to a file outside", ""),
+        ("link to a folder outside", ""),
+    ]) {
+        // With the scene's name, which nobody gave for it.
+        let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
+        // In a folder that was given.
+        let grade = "grade a.scn a.png -o out";
+        let report = "report a.scn -o out --samples 1 --runs 1 --methods sobol";
+        let both = "report a.scn b.scn -o out --samples 1 --runs 1 --methods sobol";
+        let in_folder = [
+            (grade, "out/index.html"),
+            (grade, "out/grade.csv"),
+            (grade, "out/grade.jsonl"),
+            (grade, "out/.pinhole"),
+            (report, "out/report.json"),
+            (report, "out/.pinhole"),
+            (both, "out/b"),
+            (both, "out/a/index.html"),
+            (both, "out/index.html"),
+        ];
+        for (line, name) in lines.into_iter().chain(in_folder) {
+            let folder = folder();
+            let path = folder.path(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            match what {
+                "link to a file outside" => symlink(outside.path("secret"), &path).unwrap(),
+                "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
+                _ => put(what, &path, &folder),
+            }
+            // A folder is in the way of a file alone, and nothing in that of nobody.
+            if what == "nothing" || (what, name) == ("folder", "out/b") {
+                continue;
+            }
+            let arguments: Vec<_> = line.split(' ').collect();
+            refused(&folder, &arguments, name);
+        }
+    }
+    assert_eq!(outside.text("secret"), "secret");
+    assert_eq!(outside.text("deep/secret"), "secret");
+}
+
+#[test]
+fn a_name_that_was_given_may_lead_elsewhere_but_is_never_waited_for() {
+    for (what, about) in [
+        ("pipe", "it is a pipe that nobody reads"),
+        ("link to a pipe", "it is a pipe that nobody reads"),
+        ("link to a full device", "No space left on device"),
+        ("socket", "it is a socket, not a file"),
+        ("folder", "it is a folder, not a file"),
+        ("dangling link", "No such file or directory"),
+        ("loop of links", "symbolic links"),
+    ] {
+        let folder = folder();
+        folder.told("render b.scn --set Ball.radius=2", 0);
+        put(what, &folder.path("x.png"), &folder);
+        refused(&folder, &["render", "a.scn", "-o", "x.png"], about);
+        let before = all(&folder.path(""));
+        let said = at_once(&folder, &["diff", "a.png", "b.png", "-o", "x.png"]);
+        assert_eq!(said.status, 2, "{}", said.errors);
+        let last = said.errors.lines().last().unwrap();
+        let is_right = last.starts_with("error: cannot write to x.png: ") && last.contains(about);
+        assert!(is_right, "{}", said.errors);
+        assert_eq!(all(&folder.path("")), before);
+        for line in ["grade a.scn a.png -o x.png", "report a.scn -o x.png"] {
+            let arguments: Vec<_> = line.split(' ').collect();
+            if !["dangling link", "folder"].contains(&what) {
+                refused(&folder, &arguments, "x.png: ");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_large_file_is_refused_by_its_head_and_length() {
+    let folder = folder();
+    let grow = |name: &str, to: u64| {
+        let mut options = fs::OpenOptions::new();
+        let file = options.append(true).create(true).open(folder.path(name));
+        file.unwrap().set_len(to).unwrap();
+    };
+    fs::copy(folder.path("a.png"), folder.path("large.png")).unwrap();
+    grow("large.png", (256 << 20) + 1);
+    grow("none.png", 1 << 40);
+    grow("none.scn", 1 << 40);
+    let black = vec![0; 2500 * 20_000];
+    let one_bit = (png::ColorType::Grayscale, png::BitDepth::One);
+    let huge = crate::images::png([20_000; 2], one_bit.0, one_bit.1, &black);
+    folder.write("huge.png", huge);
+    for (name, about) in [
+        (
+            "large.png",
+            "it has more than 268435456 bytes: `--large` reads it",
+        ),
+        ("none.png", "it is no picture in PNG"),
+        ("none.scn", "256 MiB, too much for a scene"),
+        (
+            "huge.png",
+            "more than the 268435456 bytes that are read: `--large` reads it",
+        ),
+    ] {
+        refused_of_large(&folder, &["diff", "a.png", name], about);
+        if name != "none.scn" {
+            refused_of_large(&folder, &["diff", name, "a.png"], about);
+            let said = at_once(&folder, &["grade", "a.scn", name]);
+            assert!(
+                said.status == 2 && said.errors.contains(about),
+                "{}",
+                said.errors
+            );
+        }
+    }
+    let said = at_once(&folder, &["diff", "--large", "a.png", "large.png"]);
+    assert_eq!(said.status, 0, "{}", said.errors);
+}
+
+/// Runs a command that has to refuse something in one line, in a folder of files that are too large
+/// to be compared.
+#[track_caller]
+fn refused_of_large(folder: &Folder, arguments: &[&str], about: &str) {
+    let said = at_once(folder, arguments);
+    let told = (said.status, said.errors.lines().count());
+    assert_eq!(told, (2, 1), "{arguments:?}: {}", said.errors);
+    assert!(
+        said.errors.contains(about),
+        "{arguments:?}: {}",
+        said.errors
+    );
+}
+
+#[test]
+fn what_a_shell_connects_is_read() {
+    let folder = folder();
+    for line in [
+        "cat a.scn | pinhole render /dev/stdin -o b.png",
+        "cat a.scn | pinhole render /dev/fd/0 -o b.png",
+        "cat a.png | pinhole render /dev/fd/0 -o b.png",
+        "pinhole render /dev/stdin -o b.png < a.scn",
+        "cat a.png | pinhole diff /dev/stdin a.png 2> told && cp a.png b.png",
+    ] {
+        let said = folder.shell(line);
+        assert_eq!((said.status, &*said.errors), (0, ""), "{line}");
+        assert!(folder.read("b.png") == folder.read("a.png"), "{line}");
+        fs::remove_file(folder.path("b.png")).unwrap();
+    }
+}
+
+#[test]
+fn a_picture_is_not_written_over_what_it_is_made_of() {
+    let folder = folder();
+    fs::copy(folder.path("a.png"), folder.path("c.png")).unwrap();
+    symlink("c.png", folder.path("d.png")).unwrap();
+    let about = "is the scene itself: say with `-o FILE` where the picture goes";
+    for line in [
+        "render c.png",
+        "render c.png -o c.png",
+        "render c.png -o d.png",
+        "render ./c.png -o c.png --crop 0,0,2,2",
+    ] {
+        let arguments: Vec<_> = line.split(' ').collect();
+        refused(&folder, &arguments, about);
+    }
+}
+
+#[test]
+fn a_name_forges_no_line_and_no_cell() {
+    let names = [
+        "a\nerror: b",
+        "a\tb",
+        "a\r\x1b[2Kb",
+        "\u{202e}gnp.a",
+        "a\u{2028}b",
+        "=cmd|' /C calc'!A0",
+        "+1",
+        "@a",
+        "-a",
+    ];
+    let forged = ['\t', '\r', '\x1b', '\u{202e}', '\u{2028}'];
+    for name in names {
+        let folder = folder();
+        let [scene, picture, other] =
+            ["scn", "png", "none.png"].map(|ending| format!("./{name}.{ending}"));
+        let dashed = name.replace('-', "m");
+        folder.write(&scene, SCENE);
+        folder.write(&picture, folder.read("a.png"));
+        let calls: &[&[&str]] = &[
+            &["check", &other],
+            &["check", "--fix", &other],
+            &["render", &other, "-o", "b.png"],
+            &["render", &scene, "-o", &other, "--crop", "9,9,9,9"],
+            &["render", &scene, "-o", "no/b.png"],
+            &["render", &scene, "-o", &scene],
+            &["new", &scene],
+            &["fmt", &other],
+            &["inspect", &other],
+            &["probe", &other, "1", "1"],
+            &["watch", &other],
+            &["studio", "--no-open", &other],
+            &["diff", &other, &picture],
+            &["diff", &picture, &other],
+            &["diff", &picture, &picture, "-o", &other, "--set", "a=1"],
+            &["grade", &other, &picture],
+            &["grade", &scene, &picture, "-o", &scene],
+            &["report", &other],
+            &["report", &scene, "-o", &scene],
+            &["explain", &dashed],
+        ];
+        for arguments in calls {
+            let said = at_once(&folder, arguments);
+            assert_eq!(said.status, 2, "{arguments:?}: {}", said.errors);
+            assert_eq!(said.errors.lines().count(), 1, "{:?}", said.errors);
+            assert!(!said.errors.contains(forged), "{:?}", said.errors);
+        }
+        // One line more than usual would be a forged one.
+        for arguments in [
+            &["rendr", name][..],
+            &["render", "a.scn", name],
+            &["render", "a.scn", "--crop", name],
+            &["check", "a.scn", "--format", name],
+        ] {
+            let plain: Vec<_> = arguments
+                .iter()
+                .map(|argument| if *argument == name { "x" } else { argument })
+                .collect();
+            let [said, plain] = [arguments, &plain].map(|line| at_once(&folder, line).errors);
+            assert!(!said.contains(forged), "{said:?}");
+            let lines = [&said, &plain].map(|text| text.lines().count());
+            if name != "-a" {
+                assert_eq!(lines[0], lines[1], "{said:?}");
+            }
+        }
+        let bad = format!("./{name}.bad.scn");
+        folder.write(&bad, "sphere { radus 1 }");
+        for arguments in [
+            &["check", &*bad][..],
+            &["check", "--fix", &bad],
+            &["fmt", "--check", &bad],
+        ] {
+            let said = at_once(&folder, arguments);
+            assert!(!said.errors.contains(forged), "{:?}", said.errors);
+            assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
+        }
+        // Tables and pages.
+        let said = at_once(&folder, &["diff", &picture, "a.scn"]);
+        assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
+        let said = at_once(&folder, &["grade", &scene, &picture, &other, "-o", "out"]);
+        assert_eq!(said.status, 2, "{}", said.errors);
+        assert_eq!(said.errors.lines().count(), 3, "{:?}", said.errors);
+        let told = ["out/index.html", "out/grade.csv"].map(|file| folder.text(file));
+        let report = "--samples 1 --runs 1 --methods sobol -o out".split(' ');
+        let arguments: Vec<_> = ["report", &scene].into_iter().chain(report).collect();
+        fs::remove_dir_all(folder.path("out")).unwrap();
+        let said = at_once(&folder, &arguments);
+        assert_eq!(said.status, 0, "{}", said.errors);
+        let page = folder.text("out/index.html");
+        let csv = folder.text("out/report.csv");
+        for text in [&said.errors, &told[0], &told[1], &page, &csv] {
+            assert!(!text.contains(forged), "{text:?}");
+            assert!(!text.contains("\nerror: b"), "{text:?}");
+        }
+    }
+}
+
+#[test]
+fn a_text_that_a_table_would_calculate_is_a_text() {
+    for start in ["=1+1", "+1", "-1", "@a", "\ta", "\ra", "'a", "a"] {
+        let folder = folder();
+        let name = format!("{start}.png");
+        folder.write(&name, folder.read("a.png"));
+        let arguments = ["grade", "a.scn", "-o", "out", "--", &name];
+        assert_eq!(at_once(&folder, &arguments).status, 0);
+        let csv = folder.text("out/grade.csv");
+        let (_, row) = csv.trim_end().split_once('\n').unwrap();
+        let is_guarded = row.starts_with("\"'");
+        assert_eq!(is_guarded, start != "a", "{row}");
+        let error = row.rsplit(',').nth(3).unwrap();
+        assert!(error.parse::<f64>().is_ok(), "{row}");
+    }
+}

@@ -1,0 +1,155 @@
+//! Files: written whole or not at all and only where they are meant to go, and what is no file is
+//! not waited for.
+
+#[cfg(unix)]
+mod hostile;
+#[cfg(unix)]
+mod meanwhile;
+mod output_folder;
+
+use std::{fs, io, path::Path, sync::atomic::AtomicBool};
+
+use pinhole::files::{self, Original, Purpose, check_writable};
+
+use crate::program::Folder;
+
+/// Writes a file that somebody named.
+fn write(path: &Path, content: &[u8]) -> io::Result<()> {
+    files::write(path, Purpose::Named, &AtomicBool::new(false), |out| {
+        out.write_all(content)
+    })
+}
+
+#[test]
+fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
+    let folder = Folder::with([]);
+    let path = folder.path("a.png");
+    write(&path, b"old").unwrap();
+    let failed = files::write(&path, Purpose::Named, &AtomicBool::new(false), |out| {
+        out.write_all(&[0; 1 << 20])?;
+        assert_eq!(fs::read(&path)?, b"old");
+        Err(io::Error::other("the disk is full"))
+    });
+    assert_eq!(failed.unwrap_err().to_string(), "the disk is full");
+    let cancelled = files::write(&path, Purpose::Named, &AtomicBool::new(true), |out| {
+        out.write_all(b"new")
+    });
+    assert!(cancelled.is_err());
+    assert_eq!(folder.read("a.png"), b"old");
+    write(&path, b"new").unwrap();
+    assert_eq!(folder.read("a.png"), b"new");
+    check_writable(&path, Purpose::Named).unwrap();
+    check_writable(&folder.path("b.png"), Purpose::Named).unwrap();
+    assert_eq!(folder.names(), ["a.png"], "something was left behind");
+}
+
+#[test]
+fn what_killed_runs_leave_is_removed_and_what_is_being_written_is_left_alone() {
+    let folder = Folder::with([]);
+    let path = folder.path("a.png");
+    let (left, others) = (".pinhole-a.png-abcdef.tmp", ".pinhole-b.png-abcdef.tmp");
+    files::write(&path, Purpose::Named, &AtomicBool::new(false), |out| {
+        folder.write(left, "");
+        folder.write(others, "");
+        write(&path, b"inner")?;
+        assert!(!folder.names().contains(&left.to_owned()));
+        out.write_all(b"outer")
+    })
+    .unwrap();
+    assert_eq!(folder.read("a.png"), b"outer");
+    assert_eq!(folder.names(), [others, "a.png"]);
+    write(&folder.path(&("ä".repeat(125) + ".png")), b"long").unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn links_permissions_and_devices_stay_what_they_are() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = Folder::with([]);
+    let mode = |name| {
+        fs::metadata(folder.path(name))
+            .unwrap()
+            .permissions()
+            .mode()
+            & 0o777
+    };
+    folder.write("plain", b"");
+    write(&folder.path("file"), b"old").unwrap();
+    assert_eq!(mode("file"), mode("plain"));
+    fs::set_permissions(folder.path("file"), fs::Permissions::from_mode(0o640)).unwrap();
+    for (link, target) in [("link", "file"), ("dangling", "created")] {
+        symlink(target, folder.path(link)).unwrap();
+        write(&folder.path(link), b"new").unwrap();
+        assert!(folder.path(link).is_symlink());
+        assert_eq!(folder.read(target), b"new");
+    }
+    assert_eq!(mode("file"), 0o640);
+    write("/dev/null".as_ref(), b"new").unwrap();
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[test]
+fn a_new_file_is_whole_or_not_there() {
+    let folder = Folder::with([("there", "old")]);
+    let new = |name: &str| {
+        let path = folder.path(name);
+        files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
+            assert!(!path.exists() || name == "there");
+            out.write_all(b"new")
+        })
+    };
+    new("a").unwrap();
+    assert_eq!(folder.read("a"), b"new");
+    let error = new("there").unwrap_err();
+    assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
+    // Also where it comes while the other one is written.
+    let path = folder.path("b");
+    let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
+        folder.write("b", "theirs");
+        out.write_all(b"new")
+    });
+    assert_eq!(late.unwrap_err().kind(), io::ErrorKind::AlreadyExists);
+    assert_eq!(folder.read("b"), b"theirs");
+    assert_eq!(folder.names(), ["a", "b", "there"]);
+}
+
+#[test]
+fn what_somebody_else_has_saved_meanwhile_is_left_alone() {
+    let folder = Folder::with([]);
+    let path = folder.path("a.scn");
+    let other = folder.path("other");
+    let in_place = || fs::write(&path, "theirs").unwrap();
+    let renamed = || {
+        fs::write(&other, "theirs").unwrap();
+        fs::rename(&other, &path).unwrap();
+    };
+    let gone = || fs::remove_file(&path).unwrap();
+    let came = || fs::write(&path, "theirs").unwrap();
+    let cases: [(_, &dyn Fn(), _); 4] = [
+        (Some("old"), &in_place, Some("theirs")),
+        (Some("old"), &renamed, Some("theirs")),
+        (Some("old"), &gone, None),
+        (None, &came, Some("theirs")),
+    ];
+    for (before, meanwhile, after) in cases {
+        let _ = fs::remove_file(&path);
+        if let Some(before) = before {
+            fs::write(&path, before).unwrap();
+        }
+        let original = match before {
+            Some(_) => Original::read(&path, |path| files::read(path, 9)).unwrap(),
+            None => Original::missing(),
+        };
+        let purpose = Purpose::Change(&original);
+        let changed = || {
+            files::write(&path, purpose, &AtomicBool::new(false), |out| {
+                meanwhile();
+                out.write_all(b"ours")
+            })
+        };
+        assert!(files::is_changed(&changed().unwrap_err()), "{before:?}");
+        assert_eq!(fs::read_to_string(&path).ok().as_deref(), after);
+        assert!(folder.names().iter().all(|name| name == "a.scn"));
+    }
+}
