@@ -14,6 +14,9 @@ FIGURE = EXAMPLES / "figure_9_9.scn"
 # Exact, with the view that figure 9.9 has without a far plane: half of it are squares that become ever smaller.
 TO_THE_HORIZON = ["sampler.method=exact", "camera.fov=40deg"]
 
+# The pictures that are judged.
+SMALL = (96, 54)
+
 
 @dataclass
 class Command:
@@ -100,7 +103,7 @@ def prepare(folder, program, counts):
     (folder / "broken.scn").write_text(broken(spheres(1000)))
     (folder / "session").write_bytes(session())
     for name, sets in [("right", ["sampler.method=regular"]), ("wrong", ["sampler.method=regular", "camera.roll=-9deg"])]:
-        arguments = ["render", FIGURE, "-o", folder / f"{name}.png", *sized(160, 90, *sets)]
+        arguments = ["render", FIGURE, "-o", folder / f"{name}.png", *sized(*SMALL, *sets)]
         subprocess.run([program, *arguments], check=True, stdin=subprocess.DEVNULL)
 
 
@@ -124,7 +127,8 @@ def commands(folder, width, height, counts):
     for count in counts:
         scene = folder / f"{count}.scn"
         yield render(f"{count} spheres", scene)
-        yield render(f"{count} spheres exact", scene, "sampler.method=exact")
+        if count == counts[0]:
+            yield render(f"{count} spheres exact", scene, "sampler.method=exact")
         yield render(f"{count} spheres 1x1", scene, size=(1, 1))
         yield Command(f"check {count} spheres", ["check", scene])
     yield Command("check tour", ["check", EXAMPLES / "language_tour.scn"])
@@ -132,12 +136,12 @@ def commands(folder, width, height, counts):
     yield Command("check broken JSON", ["check", "--format", "json", folder / "broken.scn"], status=1)
     yield Command("fmt", ["fmt", "-"], stdin=folder / f"{counts[0]}.scn")
     yield Command("fmt --check", ["fmt", "--check", folder / f"{counts[0]}.scn"], status=1)
-    small = sized(160, 90)
+    small = sized(*SMALL)
     yield Command("diff right", ["diff", folder / "right.png", FIGURE, *small])
     yield Command("diff wrong", ["diff", folder / "wrong.png", FIGURE, *small], status=1)
     yield Command("diff JPEG", ["diff", ROOT / "benches" / "figure_9_9.jpg", FIGURE, *small])
     yield Command("diff pictures", ["diff", folder / "right.png", folder / "wrong.png"], status=1)
-    yield Command("grade", ["grade", *one, FIGURE, folder / "right.png", folder / "wrong.png", *small], status=1)
+    yield Command("grade", ["grade", *one, FIGURE, folder / "right.png", *small])
     yield Command("editor session", ["lsp"], stdin=folder / "session")
     yield Command("probe", ["probe", FIGURE, "640.5", "360.5"])
     yield Command("inspect", ["inspect", FIGURE])
