@@ -12,7 +12,7 @@ use super::{
     curve::Crossings,
     interval::Range,
     local_form::Patch,
-    quadtree::Nearness,
+    quadtree::{Nearness, Rectangle},
     sub_pixel::SubPixel,
     world::{Precision, World, depth_order},
 };
@@ -28,6 +28,8 @@ pub struct Candidate {
     pub(crate) inverse_depth: Range,
     /// Where it may be seen: not only where rays meet it first if the near plane may cut it there.
     pub(crate) crossings: Crossings,
+    /// Bounds of the object in the view plane: a patch beside them need not ask for more.
+    pub(super) bounds: Rectangle,
 }
 
 impl Candidate {
@@ -40,12 +42,10 @@ impl Candidate {
 /// Of some candidates, in file order, those that may be seen in a part of the picture.
 pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
     let patch = Patch::new(&world.geometry.fast.camera, part);
-    visible_among(
-        world,
-        &patch,
-        among.iter().map(|candidate| candidate.object),
-        out,
-    );
+    let rectangle = world.quadtree.rectangle(&patch).unwrap_or(Rectangle::ALL);
+    let near = among.iter().filter(|among| among.bounds.meets(&rectangle));
+    let objects = near.map(|candidate| (candidate.object, candidate.bounds));
+    visible_of(world, &patch, objects, out);
 }
 
 /// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
@@ -60,12 +60,10 @@ pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) 
     let Some(objects) = world.quadtree.within(&patch, most, behind) else {
         return false;
     };
-    visible_among(
-        world,
-        &patch,
-        objects.iter().map(|&object| object as usize),
-        out,
-    );
+    let objects = objects
+        .iter()
+        .map(|item| (item.object as usize, item.bounds));
+    visible_of(world, &patch, objects, out);
     true
 }
 
@@ -75,20 +73,37 @@ pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
+/// Of some objects, in file order, those that may be seen in a patch.
 pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = usize>,
     out: &mut Vec<Candidate>,
 ) {
+    visible_of(
+        world,
+        patch,
+        among.map(|object| (object, Rectangle::ALL)),
+        out,
+    );
+}
+
+/// The same of objects whose bounds are known.
+fn visible_of(
+    world: &World,
+    patch: &Patch,
+    among: impl Iterator<Item = (usize, Rectangle)>,
+    out: &mut Vec<Candidate>,
+) {
     out.clear();
     let [near, far] = clips_over(world, patch);
     // The nearest of what is met everywhere hides what is farther.
     let mut hidden = f64::NEG_INFINITY;
-    for object in among {
-        let Some(candidate) = cover(world, object, patch, near, far) else {
+    for (object, bounds) in among {
+        let Some(mut candidate) = cover(world, object, patch, near, far) else {
             continue;
         };
+        candidate.bounds = bounds;
         if candidate.inverse_depth.high < hidden {
             continue;
         }
@@ -118,6 +133,7 @@ pub(super) fn cover(
         is_whole: cover.is_whole,
         inverse_depth: cover.inverse_depth.or_all(),
         crossings: Crossings::First,
+        bounds: Rectangle::ALL,
     };
     if let Some(near) = near
         && candidate.inverse_depth.high >= near.low

@@ -26,7 +26,8 @@ pub struct Rectangle {
 /// An object's bounds, and how near it is at most.
 #[derive(Clone, Copy, Debug)]
 pub struct Item {
-    pub(super) bounds: Rectangle,
+    /// Where it may be seen.
+    pub bounds: Rectangle,
     /// Above what its inverse depths may be.
     pub nearest: Nearness,
     /// Its index in the file.
@@ -71,8 +72,15 @@ impl Nearness {
 }
 
 impl Rectangle {
+    /// Meets every rectangle.
+    pub const ALL: Self = Self {
+        low: [0; 2],
+        high: [u32::MAX; 2],
+    };
+
+    /// Whether two rectangles have a unit in common.
     #[inline]
-    pub(super) fn meets(&self, other: &Self) -> bool {
+    pub fn meets(&self, other: &Self) -> bool {
         let meets = |i: usize| (self.low[i] <= other.high[i]) & (other.low[i] <= self.high[i]);
         meets(0) & meets(1)
     }

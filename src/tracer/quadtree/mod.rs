@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 use self::{rectangle_query::Search, tree::Tree};
 use super::{camera::Direction, local_form::Patch};
 
-pub use self::grid::{Grid, Item, Nearness};
+pub use self::grid::{Grid, Item, Nearness, Rectangle};
 pub use self::tree::OBJECTS_A_CELL;
 
 /// The objects that may be seen, by where in the view plane they are.
@@ -53,10 +53,16 @@ impl Quadtree {
         patch: &Patch,
         most: usize,
         behind: impl FnMut(u32) -> Nearness,
-    ) -> Option<Vec<u32>> {
-        match self.grid.rectangle(patch) {
+    ) -> Option<Vec<Item>> {
+        match self.rectangle(patch) {
             Some(rectangle) => Search::new(&self.tree, &rectangle, most, behind).run(),
             None => Some(Vec::new()),
         }
+    }
+
+    /// What holds all rays through a patch; `None` outside of the window.
+    #[inline]
+    pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
+        self.grid.rectangle(patch)
     }
 }

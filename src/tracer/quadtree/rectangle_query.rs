@@ -3,7 +3,7 @@
 //! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those behind one that fills it.
 
 use super::{
-    grid::{Nearness, Rectangle},
+    grid::{Item, Nearness, Rectangle},
     tree::{CellSquare, Tree},
 };
 
@@ -20,7 +20,7 @@ pub(super) struct Search<'a, F> {
     behind: F,
     /// What is not nearer than this is hidden.
     hidden: Nearness,
-    found: Vec<(Nearness, u32)>,
+    found: Vec<Item>,
 }
 
 impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
@@ -36,18 +36,14 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
     }
 
     /// The objects, in file order; none if they are too many.
-    pub(super) fn run(mut self) -> Option<Vec<u32>> {
+    pub(super) fn run(mut self) -> Option<Vec<Item>> {
         self.below(0, CellSquare::ROOT)?;
-        let mut objects: Vec<u32> = self
-            .found
-            .iter()
-            .filter(|(nearest, _)| *nearest > self.hidden)
-            .map(|&(_, object)| object)
-            .collect();
-        objects.sort_unstable();
+        let mut items = self.found;
+        items.retain(|item| item.nearest > self.hidden);
+        items.sort_unstable_by_key(|item| item.object);
         // Those that lie in several cells.
-        objects.dedup();
-        Some(objects)
+        items.dedup_by_key(|item| item.object);
+        Some(items)
     }
 
     /// Adds what a cell lists, and then what those below it do: the large objects come first, which may hide the others. None if that is too much.
@@ -64,7 +60,7 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
                 if self.found.len() == self.most {
                     return None;
                 }
-                self.found.push((item.nearest, item.object));
+                self.found.push(*item);
                 if item.bounds.contains(self.rectangle) {
                     self.hidden = self.hidden.max((self.behind)(item.object));
                 }
