@@ -5,10 +5,12 @@
 
 use std::{
     convert::Infallible,
+    pin::pin,
     sync::{
         Arc, Mutex, TryLockError,
         atomic::{AtomicBool, Ordering},
     },
+    task::{Context, Poll, Waker},
     thread::{self, JoinHandle},
     time::Duration,
 };
@@ -126,19 +128,27 @@ impl Conversation<'_> {
         Err(End(Some(close_code::NORMAL)))
     }
 
-    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for.
+    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for, not even as long as
+    /// the shortest time that a timer knows, which is a millisecond.
     fn read(&mut self) -> Result<Option<SocketMessage>, End> {
-        let wait = match self.server.is_busy() {
-            true => Duration::ZERO,
-            false => WAIT,
-        };
         let socket = &mut self.socket;
-        let read = async { timeout(wait, socket.recv()).await };
-        match self.runtime.block_on(read) {
-            Err(_) => Ok(None),
-            Ok(None) => Err(End(None)),
-            Ok(Some(Ok(message))) => Ok(Some(message)),
-            Ok(Some(Err(error))) => Err(End(fault(error))),
+        let read = match self.server.is_busy() {
+            true => {
+                let mut context = Context::from_waker(Waker::noop());
+                pin!(socket.recv()).poll(&mut context)
+            }
+            false => {
+                let read = async { timeout(WAIT, socket.recv()).await };
+                self.runtime
+                    .block_on(read)
+                    .map_or(Poll::Pending, Poll::Ready)
+            }
+        };
+        match read {
+            Poll::Pending => Ok(None),
+            Poll::Ready(None) => Err(End(None)),
+            Poll::Ready(Some(Ok(message))) => Ok(Some(message)),
+            Poll::Ready(Some(Err(error))) => Err(End(fault(error))),
         }
     }
 
