@@ -3,8 +3,10 @@
 use std::{
     env,
     process::{Command, Stdio},
-    sync::mpsc,
+    sync::Arc,
 };
+
+use tokio::sync::Notify;
 
 use super::{
     Status, Trouble,
@@ -29,20 +31,16 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         Trouble(format!("cannot serve a page{port}: {error}"))
     })?;
     let [address, address_once] = host.addresses();
-    let (sender, ended) = mpsc::channel();
-    interrupt.then(move || {
-        let _ = sender.send(());
-    });
+    let end = Arc::new(Notify::new());
+    let pressed = Arc::clone(&end);
+    interrupt.then(move || pressed.notify_one());
     output::to_people(&format!(
         "editing {name} at this address; Ctrl-C ends it\n{address}\n"
     ));
     if !args.no_open && !open(&address_once) {
         output::warning(&"no browser could be started: open the address in one");
     }
-    let wait = move || {
-        let _ = ended.recv();
-    };
-    host.serve(wait)
+    host.serve(end.notified())
         .map_err(|error| Trouble(format!("cannot serve a page: {error}")))?;
     Ok(Status::Interrupted)
 }

@@ -1,7 +1,7 @@
 //! Messages as JSON.
 
 use lsp_server::{ErrorCode, Message};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Why a text is no message.
@@ -29,7 +29,7 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         Ok(value) => value,
         Err(error) => {
             let message = format!("this is not JSON: {error}");
-            return malformed(Value::Null, ErrorCode::ParseError, message);
+            return malformed(asked(text), ErrorCode::ParseError, message);
         }
     };
     if value.is_array() {
@@ -39,10 +39,7 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let has = |name: &str| value.get(name).is_some();
     // A response is never answered.
     let is_response = !has("method") && (has("result") || has("error"));
-    let id = value
-        .get("id")
-        .filter(|id| id.is_string() || id.is_number());
-    let id = id.cloned().unwrap_or_default();
+    let id = identifier(value.get("id").cloned());
     // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification; the
     // protocol's whole numbers have 32 bits.
     let is_whole = |id: &Value| id.as_i64().is_some_and(|id| i32::try_from(id).is_ok());
@@ -59,6 +56,24 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
+/// Returns the identifier of a request that is no JSON as far as its parameters go, so that whoever asked gets an answer.
+/// Browsers write half of a surrogate pair, which stands for no character, as an escape that no text can be made of.
+fn asked(text: &[u8]) -> Value {
+    #[derive(Deserialize)]
+    struct Asked {
+        id: Value,
+    }
+    // Fields that are not wanted are passed over without making texts and numbers of them.
+    let asked = serde_json::from_slice(text).ok();
+    identifier(asked.map(|asked: Asked| asked.id))
+}
+
+/// Returns what a response can have as its identifier.
+fn identifier(id: Option<Value>) -> Value {
+    id.filter(|id| id.is_string() || id.is_number())
+        .unwrap_or_default()
+}
+
 /// The text of a message.
 pub fn written(message: &Message) -> String {
     #[derive(Serialize)]
@@ -73,4 +88,35 @@ pub fn written(message: &Message) -> String {
     };
     // Nothing in a message cannot be written: its keys are texts.
     serde_json::to_string(&text).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_asks_gets_an_answer_whatever_the_parameters_are() {
+        let deep = format!("{}{}", "[".repeat(1000), "]".repeat(1000));
+        for params in [r#""\ud800""#, r#"{ "text": "x\udc00y" }"#, "1e999", &deep] {
+            for id in ["7", r#""page-7""#] {
+                let text = format!(r#"{{ "id": {id}, "method": "m", "params": {params} }}"#);
+                let Err(Malformed::Answered(response)) = read(text.as_bytes()) else {
+                    panic!("{text:.80}");
+                };
+                assert_eq!(response["id"].to_string(), id, "{text:.80}");
+                assert_eq!(response["error"]["code"], ErrorCode::ParseError as i32);
+            }
+        }
+        for text in [
+            r#"{ "method": "m", "params": "\ud800" }"#,
+            "",
+            "{",
+            r#"{ "id": 7 "#,
+        ] {
+            let Err(Malformed::Answered(response)) = read(text.as_bytes()) else {
+                panic!("{text}");
+            };
+            assert_eq!(response["id"], Value::Null, "{text}");
+        }
+    }
 }

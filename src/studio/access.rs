@@ -1,152 +1,203 @@
-//! Who may have what: the page's files and its web socket, for a browser that was shown the token, and nothing for anybody else.
+//! Who may do what.
 //!
-//! Other pages in the same browser can send requests here, but cannot set the headers that are looked at: `Host` (a name of theirs may lead to this machine),
-//! `Origin`, and the cookie, which is sent with requests of this site alone. Other users of the machine do not know the token.
+//! The page's files hold no secret, and whoever asks this host for them gets them. A conversation, and with it the scene's
+//! file, is for pages that show a token. Other pages in the same browser can connect as well, but they cannot set the
+//! headers that are looked at: `Host` (a name of theirs may lead to this machine) and `Origin`. A token is never a part of
+//! what a browser sends by itself: cookies go to all servers of a machine, so there is none, and the part of an address
+//! that the token stands in stays in the browser.
 
 use std::{
     io,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
 };
 
-use super::http::{Request, Response};
+use axum::http::{
+    HeaderMap, Method, StatusCode, Uri,
+    header::{HOST, HeaderName, ORIGIN},
+};
+use subtle::ConstantTimeEq as _;
 
-/// What a request is allowed.
-#[derive(Debug)]
-pub enum Answer {
-    /// This, and no more.
-    Response(Response),
-    /// A web socket with this key.
-    Socket(String),
+/// Path of the web socket.
+pub const SOCKET: &str = "/socket";
+
+/// Lifetime of the token that a browser is started with: a slow machine starts one in this time.
+const LIFETIME: Duration = Duration::from_secs(60);
+
+/// Returns why a request to the host at this port is refused, whoever sends it.
+pub fn refusal(
+    port: u16,
+    method: &Method,
+    uri: &Uri,
+    headers: &HeaderMap,
+) -> Option<(StatusCode, &'static str)> {
+    let host = only(headers, &HOST).unwrap_or_default();
+    let origin = only(headers, &ORIGIN);
+    let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
+        // Browsers leave the usual port out.
+        host == format!("{name}:{port}") || (port == 80 && host == *name)
+    });
+    if !is_own || uri.authority().is_some() {
+        Some((
+            StatusCode::FORBIDDEN,
+            "This is not the address of this page.",
+        ))
+    } else if origin.is_some_and(|origin| origin != format!("http://{host}")) {
+        Some((StatusCode::FORBIDDEN, "Another page asks for this."))
+    } else if uri.path() == SOCKET && origin.is_none() {
+        Some((
+            StatusCode::FORBIDDEN,
+            "A web socket says which page asks for it.",
+        ))
+    } else if method != Method::GET {
+        Some((StatusCode::METHOD_NOT_ALLOWED, "Use GET."))
+    } else {
+        None
+    }
 }
 
-/// The page's files.
-const INDEX: &str = include_str!("../../studio/page/dist/index.html");
-const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
-const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
+/// Returns the value of a header; an empty one, which is never right, if there are several or it is no text.
+fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
+    let mut values = headers.get_all(name).iter();
+    let value = values.next()?.to_str().unwrap_or_default();
+    Some(if values.next().is_none() { value } else { "" })
+}
 
-/// What a browser has to know.
+/// The tokens of a host.
 #[derive(Debug)]
 pub struct Access {
-    port: u16,
-    /// In the address that is printed.
+    /// In the address that is printed. It lets in any number of pages.
+    printed: String,
+    started: Mutex<Started>,
+}
+
+/// The session of the browser that the host starts. Its first token stands in a command line, which all users can read.
+#[derive(Debug)]
+struct Started {
+    /// In the command line. It serves once.
+    once: String,
+    /// When it stops to serve.
+    until: Instant,
+    /// What the page that has shown it is given in its place.
+    session: Option<Session>,
+}
+
+#[derive(Debug)]
+struct Session {
     token: String,
-    /// In the address that a browser is started with, until it has come. Other users see command lines.
-    token_once: Mutex<Option<String>>,
-    /// In the cookie. The browser sends it to servers at other ports of this machine as well, so it must not be worth anything in an address.
-    secret: String,
+    is_over: Arc<AtomicBool>,
+}
+
+/// The right to a conversation.
+#[derive(Debug)]
+pub struct Pass {
+    /// What the page shows when it connects again.
+    pub token: String,
+    is_over: Arc<AtomicBool>,
+}
+
+impl Pass {
+    /// Whether the conversation has to end, because the address it began with was used twice.
+    pub fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::SeqCst)
+    }
+}
+
+/// Why a page gets no conversation. The web socket is closed with a code that says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotAdmitted {
+    /// The token is not one of this host: it is that of an earlier run, or none.
+    Unknown = 4001,
+    /// The address that a browser was started with comes too late.
+    Late = 4002,
+    /// The address that a browser was started with was used twice.
+    Twice = 4003,
 }
 
 impl Access {
-    /// Makes the secrets of the host at this port.
+    /// Makes the tokens of a host that starts now.
     ///
     /// # Errors
     ///
     /// The system has no randomness to give.
-    pub fn new(port: u16) -> io::Result<Self> {
+    pub fn new() -> io::Result<Self> {
         Ok(Self {
-            port,
-            token: secret()?,
-            token_once: Mutex::new(Some(secret()?)),
-            secret: secret()?,
+            printed: secret()?,
+            started: Mutex::new(Started {
+                once: secret()?,
+                until: Instant::now() + LIFETIME,
+                session: None,
+            }),
         })
     }
 
-    /// The address that lets a browser in, and one that does so once.
-    pub fn addresses(&self) -> [String; 2] {
-        let once = self.once().clone().unwrap_or_default();
-        let port = self.port;
-        [&self.token, &once].map(|token| format!("http://127.0.0.1:{port}/?token={token}"))
+    /// The token of the printed address, and that of the address that a browser is started with.
+    pub fn tokens(&self) -> [String; 2] {
+        let started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
+        [self.printed.clone(), started.once.clone()]
     }
 
-    fn once(&self) -> MutexGuard<'_, Option<String>> {
-        self.token_once
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// What a request gets.
-    pub fn answer(&self, request: &Request) -> Answer {
-        let target = request.target.as_str();
-        Answer::Response(if let Some(refusal) = self.refusal(request) {
-            refusal
-        } else if let Some(token) = target.strip_prefix("/?token=") {
-            self.exchange(token)
-        } else if !self.has_cookie(request) {
-            forbidden("Open the address that `pinhole studio` has printed.")
-        } else {
-            match target {
-                "/" => index(),
-                "/studio.js" => Response::new("200 OK", "text/javascript", SCRIPT.to_vec()),
-                "/studio.css" => Response::new("200 OK", "text/css", STYLE.to_vec()),
-                "/socket" if request.header("origin").is_none() => {
-                    forbidden("A web socket says which page asks for it.")
+    /// Admits whoever shows a right token at this time.
+    ///
+    /// # Errors
+    ///
+    /// Why the token is not, or no longer, right.
+    pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
+        let mut started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
+        if is_equal(token, &self.printed) {
+            return Ok(Pass {
+                token: self.printed.clone(),
+                is_over: Arc::default(),
+            });
+        }
+        if is_equal(token, &started.once) {
+            return match &started.session {
+                // Whoever was first may be somebody who has read the command line.
+                Some(session) => {
+                    session.is_over.store(true, Ordering::SeqCst);
+                    Err(NotAdmitted::Twice)
                 }
-                "/socket" => match socket_key(request) {
-                    Some(key) => return Answer::Socket(key.to_owned()),
-                    None => Response::text("426 Upgrade Required", "This is a web socket.")
-                        .with("Upgrade", "websocket")
-                        .with("Sec-WebSocket-Version", "13"),
-                },
-                _ => Response::text("404 Not Found", "There is no such page."),
+                None if now > started.until => Err(NotAdmitted::Late),
+                None => {
+                    let token = secret().map_err(|_| NotAdmitted::Unknown)?;
+                    let session = started.session.insert(Session {
+                        token,
+                        is_over: Arc::default(),
+                    });
+                    Ok(session.pass())
+                }
+            };
+        }
+        match &started.session {
+            Some(session) if is_equal(token, &session.token) => {
+                if session.is_over.load(Ordering::SeqCst) {
+                    return Err(NotAdmitted::Twice);
+                }
+                Ok(session.pass())
             }
-        })
-    }
-
-    /// Why a request is refused whoever sends it: it is not for this host, not from its page, or not for reading.
-    fn refusal(&self, request: &Request) -> Option<Response> {
-        let host = request.header("host").unwrap_or_default();
-        let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
-            // Browsers leave the usual port out.
-            host == format!("{name}:{}", self.port) || (self.port == 80 && host == *name)
-        });
-        let origin = request.header("origin");
-        if !is_own {
-            Some(forbidden("This is not the address of this page."))
-        } else if origin.is_some_and(|origin| origin != format!("http://{host}")) {
-            Some(forbidden("Another page asks for this."))
-        } else if request.method != "GET" {
-            let refusal = Response::text("405 Method Not Allowed", "Use GET.");
-            Some(refusal.with("Allow", "GET"))
-        } else {
-            None
+            _ => Err(NotAdmitted::Unknown),
         }
-    }
-
-    /// The cookie for a token.
-    fn exchange(&self, token: &str) -> Response {
-        let mut once = self.once();
-        let is_first = once.as_ref().is_some_and(|once| is_equal(token, once));
-        if is_first {
-            *once = None;
-        }
-        if !is_first && !is_equal(token, &self.token) {
-            return forbidden(
-                "This address is from an earlier run, used already, or incomplete. Open the one that `pinhole studio` has printed.",
-            );
-        }
-        let (name, secret) = (self.cookie(), &self.secret);
-        let cookie = format!("{name}={secret}; Path=/; HttpOnly; SameSite=Strict");
-        // The address is left for one without the token, so that it is not shown, copied or kept in the history.
-        Response::text("303 See Other", "This way.")
-            .with("Location", "/")
-            .with("Set-Cookie", cookie)
-    }
-
-    /// The cookie's name: browsers keep those of all ports together.
-    fn cookie(&self) -> String {
-        format!("pinhole-{}", self.port)
-    }
-
-    fn has_cookie(&self, request: &Request) -> bool {
-        let name = self.cookie();
-        let cookies = request.header("cookie").unwrap_or_default().split(';');
-        let mut pairs = cookies.filter_map(|cookie| cookie.trim().split_once('='));
-        pairs.any(|(known, value)| known == name && is_equal(value, &self.secret))
     }
 }
 
-/// 128 random bits as hexadecimal digits.
-fn secret() -> io::Result<String> {
+impl Session {
+    fn pass(&self) -> Pass {
+        Pass {
+            token: self.token.clone(),
+            is_over: Arc::clone(&self.is_over),
+        }
+    }
+}
+
+/// Makes 128 random bits, as hexadecimal digits.
+///
+/// # Errors
+///
+/// The system has no randomness to give.
+pub fn secret() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(|error| io::Error::other(error.to_string()))?;
     Ok(format!("{:032x}", u128::from_ne_bytes(bytes)))
@@ -154,36 +205,40 @@ fn secret() -> io::Result<String> {
 
 /// Compares in a time that does not tell where two texts differ.
 fn is_equal(a: &str, b: &str) -> bool {
-    let pairs = a.bytes().zip(b.bytes());
-    a.len() == b.len() && pairs.fold(0, |different, (a, b)| different | (a ^ b)) == 0
+    a.as_bytes().ct_eq(b.as_bytes()).into()
 }
 
-/// The page. Its styles have a nonce, since the editor makes some of them while it runs.
-fn index() -> Response {
-    let Ok(nonce) = secret() else {
-        return Response::text("500 Internal Server Error", "There is no randomness.");
-    };
-    let policy = format!(
-        "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; img-src 'self' blob: data:; connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-    );
-    let page = INDEX.replace("__NONCE__", &nonce).into_bytes();
-    Response::new("200 OK", "text/html; charset=utf-8", page)
-        .with("Content-Security-Policy", policy)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn forbidden(what: &str) -> Response {
-    Response::text("403 Forbidden", what)
-}
-
-/// The key of a request for a web socket, if it is one.
-fn socket_key(request: &Request) -> Option<&str> {
-    let is = |name, wanted: &str| {
-        let mut words = request.header(name).unwrap_or_default().split(',');
-        words.any(|word| word.trim().eq_ignore_ascii_case(wanted))
-    };
-    let is_socket = is("upgrade", "websocket")
-        && is("connection", "upgrade")
-        && is("sec-websocket-version", "13");
-    let key = request.header("sec-websocket-key");
-    key.filter(|key| is_socket && !key.is_empty())
+    #[test]
+    fn the_address_that_a_browser_is_started_with_serves_once_and_for_a_minute() {
+        let begin = Instant::now();
+        let later = |seconds| begin + Duration::from_secs(seconds);
+        let late = Access::new().unwrap();
+        let [printed, once] = late.tokens();
+        assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
+        // One that came in time is used up, whenever it is shown again: whoever was first may not be the user.
+        let used = Access::new().unwrap();
+        let [_, once] = used.tokens();
+        let first = used.admit(&once, later(50)).unwrap();
+        assert!(first.token != once && !first.is_over());
+        let again = used.admit(&first.token, later(1000)).unwrap();
+        assert_eq!(again.token, first.token);
+        assert_eq!(
+            used.admit(&once, later(900)).err(),
+            Some(NotAdmitted::Twice)
+        );
+        assert!(first.is_over() && again.is_over());
+        for token in [&once, &first.token] {
+            assert_eq!(used.admit(token, begin).err(), Some(NotAdmitted::Twice));
+        }
+        // The printed one always serves, here alone.
+        assert!(late.admit(&printed, later(100_000)).is_ok());
+        assert_eq!(
+            used.admit(&printed, begin).err(),
+            Some(NotAdmitted::Unknown)
+        );
+    }
 }

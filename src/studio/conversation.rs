@@ -4,24 +4,24 @@
 //! for; the scene's file and the picture that another thread makes are looked at a little later.
 
 use std::{
-    io,
-    net::TcpStream,
+    convert::Infallible,
+    pin::pin,
     sync::{
         Arc, Mutex, TryLockError,
         atomic::{AtomicBool, Ordering},
     },
+    task::{Context, Poll, Waker},
     thread::{self, JoinHandle},
     time::Duration,
 };
 
+use axum::extract::ws::{CloseCode, CloseFrame, Message as SocketMessage, WebSocket, close_code};
 use lsp_server::{Message, Notification, Request};
 use serde_json::{Value, json};
-use tungstenite::{
-    Error, Message as SocketMessage, Utf8Bytes, WebSocket,
-    protocol::{CloseFrame, Role, WebSocketConfig, frame::coding::CloseCode},
-};
+use tokio::{runtime::Handle, sync::watch, time::timeout};
 
 use super::{
+    access::{NotAdmitted, Pass},
     download,
     scene_file::{NotSaved, SceneFile, lock},
 };
@@ -35,36 +35,51 @@ use crate::{
 };
 
 /// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
-const LONGEST: usize = 64 << 20;
+pub const LONGEST: usize = 64 << 20;
 
 /// How long the socket is waited for before one looks at the file and the picture: less than anybody notices.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Holds the conversation until the page leaves. Some of it may have been read already.
-pub fn converse(stream: TcpStream, rest: Vec<u8>, file: &Mutex<SceneFile>) -> io::Result<()> {
-    let config = WebSocketConfig::default()
-        .read_buffer_size(1 << 14)
-        .max_message_size(Some(LONGEST))
-        .max_frame_size(Some(LONGEST));
-    stream.set_read_timeout(Some(WAIT))?;
+/// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at once, unless it is stopped.
+const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// How long the page has to answer a goodbye: less than the host waits for its conversations when it ends.
+const FAREWELL: Duration = Duration::from_millis(200);
+
+/// Holds the conversation until the page leaves, its pass is over, or the host ends. The runtime carries the messages.
+pub fn converse(
+    runtime: Handle,
+    socket: WebSocket,
+    pass: &Pass,
+    ending: &watch::Receiver<bool>,
+    file: &Mutex<SceneFile>,
+) {
     let mut conversation = Conversation {
-        socket: WebSocket::from_partially_read(stream, rest, Role::Server, Some(config)),
+        runtime,
+        socket,
+        pass,
+        ending,
         server: Server::new(|_| {}),
         file,
         known: 0,
         download: None,
     };
-    // On threads that are there for each of its pictures.
-    let ended = threads::install(None, || conversation.run()).map_err(io::Error::other)?;
-    conversation.cancel(None);
-    ended.map_err(|error| match error {
-        Error::Io(error) => error,
-        other => io::Error::other(other.to_string()),
-    })
+    // On threads that are there for each of its pictures. Where there are none, the page connects again.
+    let _ = threads::install(None, || {
+        let Err(end) = conversation.run();
+        conversation.cancel(None);
+        conversation.close(end);
+    });
 }
 
+/// The end of a conversation, with the code that the socket is closed with; none if it is closed or broken.
+struct End(Option<CloseCode>);
+
 struct Conversation<'a> {
-    socket: WebSocket<TcpStream>,
+    runtime: Handle,
+    socket: WebSocket,
+    pass: &'a Pass,
+    ending: &'a watch::Receiver<bool>,
     server: Server,
     /// The file that all pages share.
     file: &'a Mutex<SceneFile>,
@@ -81,65 +96,93 @@ struct Download {
 }
 
 impl Conversation<'_> {
-    fn run(&mut self) -> Result<(), Error> {
+    fn run(&mut self) -> Result<Infallible, End> {
+        let params = json!({ "token": self.pass.token });
+        self.say(vec![
+            Notification::new("studio/session".to_owned(), params).into(),
+        ])?;
         while self.server.ended().is_none() {
+            if *self.ending.borrow() {
+                return Err(End(Some(close_code::AWAY)));
+            }
+            if self.pass.is_over() {
+                return Err(End(Some(NotAdmitted::Twice as CloseCode)));
+            }
             self.tell_file()?;
             if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
                 && let Ok(answer) = done.thread.join()
             {
                 self.say(vec![answer])?;
             }
-            match self.read() {
-                Ok(Some(SocketMessage::Text(text))) => self.hear(&text)?,
-                Ok(Some(SocketMessage::Binary(_))) => return self.close(CloseCode::Unsupported),
-                Ok(Some(SocketMessage::Close(_))) => break,
-                // The socket answers pings by itself.
-                Ok(Some(
-                    SocketMessage::Ping(_) | SocketMessage::Pong(_) | SocketMessage::Frame(_),
-                )) => {}
-                Ok(None) => {
+            match self.read()? {
+                Some(SocketMessage::Text(text)) => self.hear(&text)?,
+                Some(SocketMessage::Binary(_)) => return Err(End(Some(close_code::UNSUPPORTED))),
+                Some(SocketMessage::Close(_)) => return Err(End(None)),
+                Some(SocketMessage::Ping(_) | SocketMessage::Pong(_)) => {}
+                None => {
                     let messages = self.server.advance();
                     self.say(messages)?;
                 }
-                Err(Error::Capacity(_)) => return self.close(CloseCode::Size),
-                Err(Error::Utf8(_)) => return self.close(CloseCode::Invalid),
-                Err(error @ Error::Io(_)) => return Err(error),
-                Err(_) => return self.close(CloseCode::Protocol),
             }
         }
-        self.close(CloseCode::Normal)
+        Err(End(Some(close_code::NORMAL)))
     }
 
-    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for.
-    fn read(&mut self) -> Result<Option<SocketMessage>, Error> {
-        self.socket
-            .get_ref()
-            .set_nonblocking(self.server.is_busy())?;
-        let read = self.socket.read();
-        self.socket.get_ref().set_nonblocking(false)?;
+    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for, not even as long as
+    /// the shortest time that a timer knows, which is a millisecond.
+    fn read(&mut self) -> Result<Option<SocketMessage>, End> {
+        let socket = &mut self.socket;
+        let read = match self.server.is_busy() {
+            true => {
+                let mut context = Context::from_waker(Waker::noop());
+                pin!(socket.recv()).poll(&mut context)
+            }
+            false => {
+                let read = async { timeout(WAIT, socket.recv()).await };
+                self.runtime
+                    .block_on(read)
+                    .map_or(Poll::Pending, Poll::Ready)
+            }
+        };
         match read {
-            Err(Error::Io(error)) => match error.kind() {
-                io::ErrorKind::WouldBlock
-                | io::ErrorKind::TimedOut
-                | io::ErrorKind::Interrupted => Ok(None),
-                _ => Err(Error::Io(error)),
-            },
-            read => read.map(Some),
+            Poll::Pending => Ok(None),
+            Poll::Ready(None) => Err(End(None)),
+            Poll::Ready(Some(Ok(message))) => Ok(Some(message)),
+            Poll::Ready(Some(Err(error))) => Err(End(fault(error))),
         }
     }
 
-    fn close(&mut self, code: CloseCode) -> Result<(), Error> {
-        let reason = Utf8Bytes::default();
-        self.socket.close(Some(CloseFrame { code, reason }))
+    fn send(&mut self, message: SocketMessage) -> Result<(), End> {
+        let socket = &mut self.socket;
+        let sent = async { timeout(WRITE_TIMEOUT, socket.send(message)).await };
+        match self.runtime.block_on(sent) {
+            Ok(Ok(())) => Ok(()),
+            Ok(Err(_)) | Err(_) => Err(End(None)),
+        }
     }
 
-    fn say(&mut self, messages: Vec<Message>) -> Result<(), Error> {
+    /// Closes the socket. What the page still says is read for a moment: unread, it would break the connection before the code
+    /// has arrived. The socket answers the page's own goodbye meanwhile.
+    fn close(&mut self, End(code): End) {
+        if let Some(code) = code {
+            let reason = "".into();
+            let frame = CloseFrame { code, reason };
+            let _ = self.send(SocketMessage::Close(Some(frame)));
+        }
+        let socket = &mut self.socket;
+        let rest = async { while let Some(Ok(_)) = socket.recv().await {} };
+        let _ = self
+            .runtime
+            .block_on(async { timeout(FAREWELL, rest).await });
+    }
+
+    fn say(&mut self, messages: Vec<Message>) -> Result<(), End> {
         let mut texts = messages.iter().map(messages::written);
-        texts.try_for_each(|text| self.socket.send(SocketMessage::text(text)))
+        texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
     /// Tells the page about the file, if it is another than the page knows; a little later, while another page has it.
-    fn tell_file(&mut self) -> Result<(), Error> {
+    fn tell_file(&mut self) -> Result<(), End> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
             Err(TryLockError::Poisoned(file)) => file.into_inner(),
@@ -163,7 +206,7 @@ impl Conversation<'_> {
         ])
     }
 
-    fn hear(&mut self, text: &str) -> Result<(), Error> {
+    fn hear(&mut self, text: &str) -> Result<(), End> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if request.method.starts_with("studio/") => {
                 self.answer(request)
@@ -178,14 +221,14 @@ impl Conversation<'_> {
                 self.say(messages)
             }
             Err(Malformed::Answered(response)) => {
-                self.socket.send(SocketMessage::text(response.to_string()))
+                self.send(SocketMessage::text(response.to_string()))
             }
             Err(Malformed::Unanswered(_)) => Ok(()),
         }
     }
 
     /// Answers what is asked of the host.
-    fn answer(&mut self, request: Request) -> Result<(), Error> {
+    fn answer(&mut self, request: Request) -> Result<(), End> {
         if download::is_asked_for(&request) {
             return self.render(request);
         }
@@ -214,7 +257,7 @@ impl Conversation<'_> {
     }
 
     /// Makes a picture's file while the conversation goes on.
-    fn render(&mut self, request: Request) -> Result<(), Error> {
+    fn render(&mut self, request: Request) -> Result<(), End> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
         if self.download.is_some() {
@@ -243,5 +286,16 @@ impl Conversation<'_> {
         {
             download.cancel.store(true, Ordering::SeqCst);
         }
+    }
+}
+
+/// The code that says what is wrong with what the page has sent; none if the connection itself is broken.
+fn fault(error: axum::Error) -> Option<CloseCode> {
+    use tungstenite::Error;
+    match *error.into_inner().downcast().ok()? {
+        Error::Capacity(_) => Some(close_code::SIZE),
+        Error::Utf8(_) => Some(close_code::INVALID),
+        Error::Protocol(_) => Some(close_code::PROTOCOL),
+        _ => None,
     }
 }

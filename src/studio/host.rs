@@ -1,35 +1,61 @@
-//! The host that serves the page: who connects is let in by [`Access`] and gets a file or a conversation.
+//! The host that serves the page: its files to whoever asks, and a conversation to whoever [`Access`] admits.
 
 use std::{
-    io, mem,
-    net::{Ipv4Addr, TcpListener, TcpStream},
+    io,
+    net::{Ipv4Addr, TcpListener},
     sync::{Arc, Mutex},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
+};
+
+use axum::{
+    Router,
+    extract::{
+        ConnectInfo, Request, State, WebSocketUpgrade,
+        ws::{CloseFrame, Message, WebSocket},
+    },
+    http::{HeaderValue, StatusCode, header},
+    middleware::{self, Next},
+    response::{IntoResponse, Response},
+    routing::get,
+};
+use tokio::{
+    runtime::{Builder, Handle},
+    sync::watch,
+    time::timeout,
 };
 
 use super::{
-    access::{Access, Answer},
-    conversation::converse,
-    http::{self, Request, Response},
-    scene_file::{SceneFile, lock},
+    access::{self, Access, Pass},
+    conversation::{self, converse},
+    scene_file::SceneFile,
+    strangers::{Door, Visitor},
 };
 
-/// So many connections are served at once: a page has one, and while it loads one for each of its three files. Each has a thread, and a page threads for its pictures; nobody has so many pages.
-const MOST_CONNECTIONS: usize = 64;
+/// Time that conversations have to finish a save and to take their leave, when the host ends. Whoever needs longer (a save on
+/// a disk that does not answer) is not waited for.
+const FAREWELL: Duration = Duration::from_millis(500);
 
-/// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at once, unless it is stopped.
-const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
-
-/// How long it waits until it tries again to accept a connection: less than anybody notices.
-const RETRY: Duration = Duration::from_millis(20);
+/// The page's files.
+const INDEX: &str = include_str!("../../studio/page/dist/index.html");
+const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
+const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 
 /// A page that is served on this machine, and a scene that it edits.
 #[derive(Debug)]
 pub struct Host {
     listener: TcpListener,
+    port: u16,
+    shared: Arc<Shared>,
+}
+
+/// What all connections share.
+#[derive(Debug)]
+struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
+    /// Whether the host ends. Each conversation listens as long as it goes on.
+    ending: watch::Sender<bool>,
 }
 
 impl Host {
@@ -40,73 +66,151 @@ impl Host {
     /// The port is taken, or the system has no randomness to give.
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
-        let access = Access::new(listener.local_addr()?.port())?;
+        listener.set_nonblocking(true)?;
         Ok(Self {
+            port: listener.local_addr()?.port(),
             listener,
-            access,
-            file: Mutex::new(file),
+            shared: Arc::new(Shared {
+                access: Access::new()?,
+                file: Mutex::new(file),
+                ending: watch::Sender::new(false),
+            }),
         })
     }
 
-    /// The address that lets a browser in, for the user alone; and one that does so once, for a command line: other users of the machine can read those.
+    /// The address that lets a browser in, for the user alone; and one that does so once, for a command line: other users of
+    /// the machine can read those.
     pub fn addresses(&self) -> [String; 2] {
-        self.access.addresses()
+        let port = self.port;
+        let tokens = self.shared.access.tokens();
+        tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `wait` returns; what is being saved then is saved, and nothing more.
+    /// Serves until `end` is there. What is being saved then is saved, unless that takes long, and nothing more.
     ///
     /// # Errors
     ///
-    /// There is no thread to do it.
-    pub fn serve(self, wait: impl FnOnce()) -> io::Result<()> {
-        let host = Arc::new(self);
-        let accepting = Arc::clone(&host);
-        thread::Builder::new()
-            .name("studio".to_owned())
-            .spawn(move || accepting.accept())?;
-        wait();
-        // Whoever would save something waits from now on until the process ends, and nobody looks at the file.
-        mem::forget(lock(&host.file));
+    /// The system does not tell what happens to connections.
+    pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
+        // Its only thread carries messages; what they ask for is done by the threads of the conversations.
+        let runtime = Builder::new_current_thread()
+            .enable_io()
+            .enable_time()
+            .build()?;
+        runtime.block_on(async {
+            let door = Door::new(tokio::net::TcpListener::from_std(self.listener)?);
+            let mut ending = self.shared.ending.subscribe();
+            let serving = axum::serve(door, routes(self.port, Arc::clone(&self.shared)))
+                .with_graceful_shutdown(async move {
+                    let _ = ending.wait_for(|ending| *ending).await;
+                });
+            tokio::spawn(serving.into_future());
+            end.await;
+            self.shared.ending.send_replace(true);
+            let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
+            Ok::<_, io::Error>(())
+        })?;
+        // A conversation that has not ended may still wait for its help.
+        std::mem::forget(runtime);
         Ok(())
     }
+}
 
-    fn accept(self: Arc<Self>) {
-        // Who has the host: whoever waits for the end, this loop, and each connection.
-        let most = MOST_CONNECTIONS + 2;
-        loop {
-            let Ok((stream, _)) = self.listener.accept() else {
-                // As when no more files can be open: somebody will close one, and until then this loop must not keep a processor busy.
-                thread::sleep(RETRY);
-                continue;
-            };
-            let host = Arc::clone(&self);
-            let is_full = Arc::strong_count(&host) > most;
-            // Of one that breaks there is nothing to say, and nobody to say it to.
-            let serve = move || drop(host.answer(stream, is_full));
-            // Where no thread can be started, the connection is closed.
-            let _ = thread::Builder::new()
-                .name("connection".to_owned())
-                .spawn(serve);
+type MakeService = axum::extract::connect_info::IntoMakeServiceWithConnectInfo<Router, Visitor>;
+
+fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
+    let javascript = [(header::CONTENT_TYPE, "text/javascript")];
+    let css = [(header::CONTENT_TYPE, "text/css")];
+    Router::new()
+        .route("/", get(index))
+        .route("/studio.js", get(async move || (javascript, SCRIPT)))
+        .route("/studio.css", get(async move || (css, STYLE)))
+        .route(access::SOCKET, get(socket))
+        .fallback(async || (StatusCode::NOT_FOUND, "There is no such page.\n"))
+        .layer(middleware::from_fn_with_state(port, guard))
+        .with_state(shared)
+        .into_make_service_with_connect_info::<Visitor>()
+}
+
+/// Refuses what is not for this host, and has nothing kept, guessed, or told to others.
+async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
+    let refusal = access::refusal(port, request.method(), request.uri(), request.headers());
+    let mut response = match refusal {
+        None => next.run(request).await,
+        Some((status, why)) => (status, format!("{why}\n")).into_response(),
+    };
+    let mut lines = vec![
+        (header::CACHE_CONTROL, "no-store"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    ];
+    if response.status() == StatusCode::METHOD_NOT_ALLOWED {
+        lines.push((header::ALLOW, "GET"));
+    }
+    if response.status() != StatusCode::SWITCHING_PROTOCOLS {
+        lines.push((header::CONNECTION, "close"));
+    }
+    for (name, value) in lines {
+        let value = HeaderValue::from_static(value);
+        response.headers_mut().insert(name, value);
+    }
+    response
+}
+
+/// The page. Its styles have a nonce, since the editor makes some of them while it runs.
+async fn index() -> Response {
+    let Ok(nonce) = access::secret() else {
+        let why = "There is no randomness.\n";
+        return (StatusCode::INTERNAL_SERVER_ERROR, why).into_response();
+    };
+    let policy = format!(
+        "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; img-src 'self' blob: data:; connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    );
+    let lines = [
+        (header::CONTENT_TYPE, "text/html; charset=utf-8".to_owned()),
+        (header::CONTENT_SECURITY_POLICY, policy),
+    ];
+    (lines, INDEX.replace("__NONCE__", &nonce)).into_response()
+}
+
+async fn socket(
+    State(shared): State<Arc<Shared>>,
+    ConnectInfo(visitor): ConnectInfo<Visitor>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade
+        .read_buffer_size(1 << 14)
+        .max_message_size(conversation::LONGEST)
+        .max_frame_size(conversation::LONGEST)
+        .on_upgrade(async move |socket| admit(&shared, &visitor, socket).await)
+}
+
+/// Begins a conversation with a page whose first message is a token. How long it is waited for is the connection's matter.
+async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
+    let Some(Ok(Message::Text(token))) = socket.recv().await else {
+        return;
+    };
+    match shared.access.admit(&token, Instant::now()) {
+        Ok(pass) => {
+            visitor.admit();
+            begin(Arc::clone(shared), pass, socket);
+        }
+        Err(refusal) => {
+            let code = refusal as u16;
+            let reason = "".into();
+            let goodbye = Message::Close(Some(CloseFrame { code, reason }));
+            let _ = socket.send(goodbye).await;
+            // Unread, what it still says would break the connection before the code has arrived.
+            while let Some(Ok(_)) = socket.recv().await {}
         }
     }
+}
 
-    /// Serves one connection.
-    fn answer(&self, mut stream: TcpStream, is_full: bool) -> io::Result<()> {
-        stream.set_nodelay(true)?;
-        stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
-        if is_full {
-            let refused = Response::text("503 Service Unavailable", "There are too many pages.");
-            return refused.end(stream);
-        }
-        let Some(request) = Request::read(&mut stream) else {
-            return Response::text("400 Bad Request", "This is no request.").end(stream);
-        };
-        match self.access.answer(&request) {
-            Answer::Response(response) => response.end(stream),
-            Answer::Socket(key) => {
-                http::accept_socket(&mut stream, &key)?;
-                converse(stream, request.rest, &self.file)
-            }
-        }
-    }
+/// Has a thread hold the conversation. Where none can be started, the connection is closed.
+fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
+    let runtime = Handle::current();
+    let ending = shared.ending.subscribe();
+    let thread = thread::Builder::new().name("connection".to_owned());
+    // Of one that breaks there is nothing to say, and nobody to say it to.
+    let _ = thread.spawn(move || converse(runtime, socket, &pass, &ending, &shared.file));
 }

@@ -2,8 +2,8 @@
 //!
 //! The page and the engine hold the conversation that `docs/protocol.md` describes: messages of the language server ([`crate::lsp::Server`]), one JSON text
 //! each, and a few of the host's own, about the scene's file and whole pictures ([`download`]). There are two hosts. One is here: `host` serves the page on this machine alone and
-//! carries the conversation over a web socket; `http` reads what a browser asks, `access` says what it may have, `conversation` talks to one page, `scene_file` is the
-//! only file that is read or written, which all pages share. The other one is the crate `studio/engine`, which runs in the browser itself.
+//! carries the conversation over a web socket; `access` says who may do what, `strangers` limits connections without a token, `conversation` talks to one page,
+//! `scene_file` is the only file that is read or written, which all pages share. The other one is the crate `studio/engine`, which runs in the browser itself.
 
 #[cfg(feature = "studio")]
 mod access;
@@ -13,9 +13,9 @@ pub mod download;
 #[cfg(feature = "studio")]
 mod host;
 #[cfg(feature = "studio")]
-mod http;
-#[cfg(feature = "studio")]
 mod scene_file;
+#[cfg(feature = "studio")]
+mod strangers;
 
 #[cfg(feature = "studio")]
 pub use self::{host::Host, scene_file::SceneFile};

@@ -213,13 +213,19 @@ impl Converter<'_> {
     }
 }
 
-/// The changes of a text: each of a range, or of the whole text if there is none.
+/// The changes of a text: each of a range, or of the whole text if there is none. A range that is null is neither, and taken
+/// for the whole text it would put a piece in the place of everything.
 pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {
         let text = at(change, "/text")?;
-        let range: Option<Range> = at(change, "/range")?;
-        let range = range.map(|range| [place(range.start), place(range.end)]);
+        let range = match change.get("range") {
+            None => None,
+            Some(_) => {
+                let range: Range = at(change, "/range")?;
+                Some([place(range.start), place(range.end)])
+            }
+        };
         Ok(Change { range, text })
     };
     changes.iter().map(change).collect()

@@ -1,7 +1,9 @@
 // The connection to the engine: a web socket to the served host, or a web worker, carrying one JSON-RPC message a text. It is the transport of the editor's
-// language client, and carries the page's own requests beside it. A lost connection is opened anew after growing pauses.
+// language client, and carries the page's own requests beside it. A lost connection is opened anew after growing pauses, unless the host has said that it will not
+// have this page any more.
 
 import type { Transport } from "@codemirror/lsp-client";
+import { session } from "./address";
 import { Refusal } from "./protocol";
 
 /** Something that carries texts. */
@@ -9,18 +11,33 @@ interface Wire {
   send(text: string): void;
 }
 
-/** Opens a wire; the three functions are called as it opens, brings a text, and closes. */
-type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void, closed: () => void) => void;
+/** Why there is no connection, and will be none before an address is opened that the host has printed. */
+export type Refused = "keyless" | "unknown" | "restarted" | "late" | "twice";
 
-export type ConnectionState = "connecting" | "open" | "lost";
+/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own word; `failed` is a worker. These are tried again. */
+export type Closed = "lost" | "ended" | "failed" | Refused;
+
+/** `silent` is a connection that is lost for long. */
+export type ConnectionState = "connecting" | "open" | "silent" | Closed;
+
+/** Opens a wire; the three functions are called as it opens, brings a text, and closes. */
+type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void, closed: (why: Closed) => void) => void;
 
 interface Waiting {
   resolve(result: unknown): void;
   reject(error: Error): void;
 }
 
-/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
+/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of them the host is most likely gone. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
+
+const NO_CONNECTION = "This cannot be done without a connection.";
+
+/** The codes with which the host closes a web socket. */
+const ENDED = 1001;
+const UNKNOWN = 4001;
+const LATE = 4002;
+const TWICE = 4003;
 
 export class Connection implements Transport {
   state: ConnectionState = "connecting";
@@ -34,22 +51,37 @@ export class Connection implements Transport {
   private readonly waiting = new Map<string, Waiting>();
   private requests = 0;
   private attempts = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+  /** Counts attempts to connect: of an older one nothing is heard any more. */
+  private current = 0;
 
   constructor(private readonly connector: Connector) {}
 
   open(): void {
+    const attempt = ++this.current;
+    const isCurrent = () => attempt === this.current;
     this.connector(
       wire => {
+        if (!isCurrent()) return;
         this.wire = wire;
         this.enter("open");
       },
-      text => this.receive(text),
-      () => this.lose(),
+      text => isCurrent() && this.receive(text),
+      why => isCurrent() && this.lose(why),
     );
   }
 
+  /** Tries at once where there is no connection: there is a new reason to hope for one. */
+  retry(): void {
+    if (this.state === "open") return;
+    clearTimeout(this.timer);
+    this.attempts = 0;
+    this.enter("connecting");
+    this.open();
+  }
+
   send(text: string): void {
-    if (this.wire === null) throw new Error("The connection is lost.");
+    if (this.wire === null) throw new Error(NO_CONNECTION);
     this.wire.send(text);
   }
 
@@ -63,6 +95,8 @@ export class Connection implements Transport {
 
   /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the connection is lost. */
   async request<Result>(method: string, params: unknown): Promise<Result> {
+    // Without a server nobody is ever ready.
+    if (this.wire === null) throw new Error(NO_CONNECTION);
     await this.ready();
     const id = `page-${++this.requests}`;
     return new Promise<Result>((resolve, reject) => {
@@ -95,13 +129,15 @@ export class Connection implements Transport {
     for (const handler of [...this.handlers]) handler(text);
   }
 
-  private lose(): void {
+  private lose(why: Closed): void {
     this.wire = null;
     for (const waiting of this.waiting.values()) waiting.reject(new Error("The connection was lost."));
     this.waiting.clear();
-    this.enter("lost");
+    if (why !== "lost" && why !== "ended" && why !== "failed") return this.enter(why);
+    // What the host has said holds until it answers again.
+    if (this.state !== "ended") this.enter(why === "lost" && this.attempts >= PAUSES.length ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
-    setTimeout(() => this.open(), pause);
+    this.timer = setTimeout(() => this.open(), pause);
   }
 
   private enter(state: ConnectionState): void {
@@ -111,16 +147,27 @@ export class Connection implements Transport {
   }
 }
 
-/** A web socket on the page's own host. */
+/** A web socket on the page's own host. Its first message is the token; the host's first one is the token for the next time. */
 export function webSocket(path: string): Connector {
   return (opened, receive, closed) => {
+    const { token } = session;
+    if (token === null) return closed("keyless");
     const url = new URL(path, location.href);
     url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
     url.hash = "";
     const socket = new WebSocket(url);
-    socket.addEventListener("open", () => opened(socket));
-    socket.addEventListener("message", event => receive(String(event.data)));
-    socket.addEventListener("close", closed);
+    let isOpen = false;
+    socket.addEventListener("open", () => socket.send(token));
+    socket.addEventListener("message", event => {
+      if (isOpen) return receive(String(event.data));
+      isOpen = true;
+      session.keep(JSON.parse(String(event.data)).params.token);
+      opened(socket);
+    });
+    socket.addEventListener("close", ({ code }) => {
+      if (code === UNKNOWN) closed(session.isFresh ? "unknown" : "restarted");
+      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended" : "lost");
+    });
   };
 }
 
@@ -136,7 +183,7 @@ export function worker(path: string): Connector {
     });
     engine.addEventListener("error", () => {
       engine.terminate();
-      closed();
+      closed("failed");
     });
   };
 }

@@ -6,7 +6,7 @@ import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, StateEffect, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
+import { ChangeSet, Compartment, EditorState, StateEffect, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { gestureHistory } from "./gesture";
@@ -57,6 +57,18 @@ class SceneWorkspace extends Workspace {
   }
 }
 
+/** Halves of surrogate pairs stand for no character; no file can hold them, and no message to the server. */
+const HALVES = /\p{Surrogate}/gu;
+
+/** Has the character for what cannot be shown in the place of halves that are typed or pasted, as a file would. */
+const wholeCharacters = EditorState.transactionFilter.of(transaction => {
+  const changes: ChangeSpec[] = [];
+  transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
+    for (const { index } of inserted.toString().matchAll(HALVES)) changes.push({ from: from + index, to: from + index + 1, insert: "\ufffd" });
+  });
+  return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
+});
+
 /** A text with lines that end by LF, as the editor has them. */
 export function withLf(text: string): string {
   return text.replace(/\r\n?/g, "\n");
@@ -91,6 +103,7 @@ export class SceneEditor {
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
         extensions,
+        wholeCharacters,
         lineNumbers(),
         lintGutter(),
         highlightActiveLine(),
@@ -173,6 +186,9 @@ export class SceneEditor {
     while (start < shorter && old[start] === text[start]) start++;
     let end = 0;
     while (end < shorter - start && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
+    // Characters beyond the first 65536 have two units, and change as one.
+    if (/[\ud800-\udbff]/.test(text.charAt(start - 1))) start--;
+    if (/[\udc00-\udfff]/.test(text.charAt(text.length - end))) end--;
     if (start < old.length - end || start < text.length - end) {
       this.view.dispatch({ changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
     }

@@ -1,5 +1,6 @@
 // Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes the other. This file puts the parts together.
 
+import { session, takeToken } from "./address";
 import { redo, undo } from "@codemirror/commands";
 import { keymap } from "@codemirror/view";
 import { Connection, webSocket, worker } from "./connection";
@@ -91,14 +92,16 @@ picture.onView = () => {
   hands.place();
 };
 
+let isConnected = false;
 connection.onState = state => {
-  status.connection(state);
+  status.connection(state, editor.uri !== "");
   if (state === "open") {
     editor.connected();
     changed();
-  } else {
+  } else if (isConnected) {
     editor.disconnected();
   }
+  isConnected = state === "open";
 };
 
 const linked = sceneInAddress(status);
@@ -111,6 +114,11 @@ connection.onNotification = async (method, params) => {
 };
 
 addEventListener("hashchange", async () => {
+  const token = takeToken();
+  if (token !== null && connection.state !== "open") {
+    session.begin(token);
+    connection.retry();
+  }
   const text = await sceneInAddress(status);
   if (text !== null) editor.replace(text);
 });

@@ -1,5 +1,6 @@
 // Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent anywhere.
 
+import { addressWith, inAddress } from "./address";
 import { byId, createButton, download, fromBase64 } from "./dom";
 import type { Connection } from "./connection";
 import type { SceneEditor } from "./editor";
@@ -8,7 +9,7 @@ import type { Status } from "./status";
 
 /** A scene in a link may have so many characters unpacked. */
 const LONGEST = 1_000_000;
-const KEY = "#scene=";
+const KEY = "scene";
 
 export async function packed(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
@@ -30,11 +31,14 @@ async function unpacked(text: string): Promise<string> {
   }
 }
 
-/** The scene in the page's own address; null if there is none. */
+/** What stood in the address when its scene was read last. */
+let known: string | null = null;
+
+/** The scene in the page's own address; null if there is none, or none that is new. */
 export async function sceneInAddress(status: Status): Promise<string | null> {
-  if (!location.hash.startsWith(KEY)) return null;
-  const held = location.hash.slice(KEY.length);
-  history.replaceState(null, "", location.pathname + location.search);
+  const held = inAddress(KEY);
+  if (held === null || held === known) return null;
+  known = held;
   try {
     return await unpacked(held);
   } catch {
@@ -59,7 +63,9 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
   };
   byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
   byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));
-  byId("download-scene").addEventListener("click", () => download(`${stem()}.scn`, files.textToSave, "text/plain"));
+  for (const id of ["download-scene", "connection-download"]) {
+    byId(id).addEventListener("click", () => download(`${stem()}.scn`, files.textToSave, "text/plain"));
+  }
 
   const dialog = byId<HTMLDialogElement>("share-dialog");
   const field = byId<HTMLInputElement>("share-link");
@@ -75,7 +81,7 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
   );
   byId("share").addEventListener("click", async () => {
     if (editor.text.length > LONGEST) return status.say("The scene is too long for a link: give away its file.", "warning");
-    field.value = `${location.origin}${location.pathname}${KEY}${await packed(editor.text)}`;
+    field.value = addressWith(KEY, await packed(editor.text));
     dialog.showModal();
     field.select();
   });

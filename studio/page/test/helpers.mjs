@@ -32,9 +32,12 @@ export async function host(context, text = FIGURE) {
 }
 
 /** A host of a file, or of a new scene in a folder, at a port of its own choice if none is named. */
-export async function serve(file, { port, folder } = {}) {
+export async function serve(file, { port, folder, browser } = {}) {
   const scene = file === null ? [] : [file];
-  const child = spawn(PINHOLE, ["studio", ...scene, "--no-open", ...(port === undefined ? [] : ["--port", port])], { cwd: folder, stdio: ["ignore", "ignore", "pipe"] });
+  const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port])];
+  // What starts a browser is found on the path.
+  const env = browser === undefined ? process.env : { ...process.env, PATH: `${browser}:${process.env.PATH}` };
+  const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {
     child.stderr.on("data", data => {
@@ -44,7 +47,8 @@ export async function serve(file, { port, folder } = {}) {
     });
     child.on("exit", () => reject(new Error(`the host ended: ${said}`)));
   });
-  return { address, stop: () => child.kill(), pid: child.pid };
+  const ended = new Promise(resolve => child.on("exit", resolve));
+  return { address, stop: signal => (child.kill(signal), ended), pid: child.pid };
 }
 
 /** A site: a folder served as files, as any web host does. It collects what it is asked for. */

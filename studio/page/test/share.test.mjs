@@ -17,7 +17,8 @@ test("a link holds the scene, and asks nobody else", async t => {
   assert.deepEqual(requests, []);
   assert.ok(address.startsWith(`${new URL(started.address).origin}/#scene=`), address);
   const other = await page.context().newPage();
-  await other.goto(address);
+  const { hash } = new URL(started.address);
+  await other.goto(`${address}&${hash.slice(1)}`);
   await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final");
   assert.equal(await text(other), scene);
   // The file is not touched, and undo brings its text.
@@ -25,6 +26,11 @@ test("a link holds the scene, and asks nobody else", async t => {
   await other.click(".cm-content");
   await other.keyboard.press("Control+z");
   assert.equal(await text(other), FIGURE);
+  // The link stays in the address, and reloading opens it again.
+  assert.equal(other.url(), address);
+  await other.reload();
+  await finished(other);
+  assert.equal(await text(other), scene);
 });
 
 test("a link that is pasted into an open page changes it, too", async t => {

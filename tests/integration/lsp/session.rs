@@ -61,6 +61,28 @@ fn nonsense_is_passed_over() {
     assert!(log.contains("is not open"), "{log}");
 }
 
+/// A range that is null says neither which part changes nor that all of it does.
+#[test]
+fn a_change_without_a_right_range_leaves_the_text_as_it_is() {
+    let mut client = Client::start();
+    client.open(json!({}), SCENE);
+    assert_eq!(client.diagnostics()["diagnostics"], json!([]));
+    for range in [json!(null), json!(1), json!({}), json!({ "start": null })] {
+        client.change(2, json!({ "range": range, "text": "x" }));
+        let position = json!({ "line": 1, "character": 32 });
+        let found = client.ask("textDocument/definition", json!({ "position": position }));
+        assert_ne!(found, Value::Null, "{range}");
+    }
+    // Where it is left out, the text is a whole one.
+    client.change(2, json!({ "text": "x" }));
+    assert_ne!(client.diagnostics()["diagnostics"], json!([]));
+    client.ask("shutdown", Value::Null);
+    client.tell("exit", Value::Null);
+    let (_, log) = client.end();
+    let refused = log.matches("textDocument/didChange: invalid type: null");
+    assert_eq!(refused.count(), 2, "{log}");
+}
+
 #[test]
 fn what_is_no_json_gets_an_answer() {
     let mut client = Client::start();

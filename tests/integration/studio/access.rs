@@ -1,10 +1,15 @@
 //! Who is let in, and to what.
 
 use std::{
-    io::{Read, Write},
-    net::TcpStream,
+    io::{ErrorKind, Read, Write},
+    net::{Shutdown, TcpStream},
+    thread,
     time::{Duration, Instant},
 };
+
+use pinhole::scene::SMALLEST;
+use serde_json::json;
+use tungstenite::{Message, protocol::frame::coding::CloseCode};
 
 use super::client::{Studio, studio};
 use crate::lsp::client::PATIENCE;
@@ -22,70 +27,80 @@ fn header<'a>(response: &'a str, name: &str) -> &'a str {
     values[0].1
 }
 
-/// The line of the head that lets a browser in.
-fn cookie(studio: &Studio) -> String {
-    format!("Cookie: {}\r\n", studio.cookie())
-}
-
-#[test]
-fn the_token_is_exchanged_for_a_cookie() {
-    let (_folder, first) = studio();
-    let exchange = |token: &str| first.get(&format!("/?token={token}"), "");
-    assert_eq!(first.token.len(), 32);
-    let response = exchange(&first.token);
-    assert_eq!(status(&response), "303");
-    assert_eq!(header(&response, "Location"), "/");
-    let attributes = "Path=/; HttpOnly; SameSite=Strict";
-    let cookie = format!("{}; {attributes}", first.cookie());
-    assert_eq!(header(&response, "Set-Cookie"), cookie);
-    // What browsers send to other servers of this machine, too, opens nothing in an address.
-    assert_ne!(first.token, first.secret);
-    let longer = format!("{}0", first.token);
-    let zeros = "0".repeat(32);
-    for token in ["", "x", &first.token[1..], &longer, &zeros, &first.secret] {
-        let response = exchange(token);
-        assert_eq!(status(&response), "403", "{token}");
-        assert!(!response.contains(&first.secret));
+/// Waits until the other end closes a connection. Returns what it says before that.
+fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
+    let mut said = Vec::new();
+    match stream.read_to_end(&mut said) {
+        Err(error) if error.kind() != ErrorKind::ConnectionReset => panic!("{error}"),
+        _ => said,
     }
-    // Another run has another token.
-    let (_folder, other) = studio();
-    assert!(first.token != other.token && first.secret != other.secret);
+}
+
+/// The head of a request for a web socket. The key is the example of RFC 6455.
+fn upgrade(studio: &Studio) -> String {
+    let host = studio.host();
+    format!(
+        "GET /socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: keep-alive, Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+    )
+}
+
+/// A page shows the token, and gets what it asks for.
+fn a_page_works(studio: &Studio) {
+    let (mut page, _) = studio.page();
+    page.open(json!({}), SMALLEST);
+    assert_eq!(page.diagnostics()["diagnostics"], json!([]));
+    page.ask("pinhole/frame", json!({ "scale": 16, "samples": 1 }));
+    for path in ["/", "/studio.js", "/studio.css"] {
+        assert_eq!(status(&studio.get(path, "")), "200");
+    }
 }
 
 #[test]
-fn nothing_is_given_out_without_the_cookie() {
+fn the_page_may_use_what_is_its_own_and_nothing_else() {
     let (_folder, studio) = studio();
-    let (cookie, secret) = (studio.cookie(), &studio.secret);
-    let (name, _) = cookie.split_once('=').unwrap();
-    let origin = format!("Origin: http://{}", studio.host());
-    for path in ["/", "/studio.js", "/studio.css", "/socket", "/a.scn", "/x"] {
-        for wrong in [
-            String::new(),
-            format!("{name}="),
-            format!("{name}={}", "0".repeat(32)),
-            format!("{name}={}", &secret[1..]),
-            format!("pinhole-1={secret}"),
-            format!("x={cookie}"),
-            // Two headers: a browser sends one.
-            format!("{cookie}\r\nCookie: {cookie}"),
+    let nonces = [0, 1].map(|_| {
+        let response = studio.get("/", "");
+        assert!(!response.contains("__NONCE__"));
+        let policy = header(&response, "content-security-policy");
+        let (_, nonce) = policy.split_once("'nonce-").unwrap();
+        let nonce = nonce[..32].to_owned();
+        assert_eq!(
+            policy,
+            format!(
+                "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; img-src 'self' blob: data:; connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+            )
+        );
+        nonce
+    });
+    assert_ne!(nonces[0], nonces[1]);
+    for (path, kind) in [
+        ("/", "text/html; charset=utf-8"),
+        ("/studio.js", "text/javascript"),
+        ("/studio.css", "text/css"),
+        ("/x", "text/plain; charset=utf-8"),
+    ] {
+        // Whatever other servers of this machine have set, it says nothing here, and nothing is added to it.
+        let response = studio.get(path, &format!("Cookie: token={}\r\n", studio.token));
+        for (name, value) in [
+            ("content-type", kind),
+            ("cache-control", "no-store"),
+            ("referrer-policy", "no-referrer"),
+            ("x-content-type-options", "nosniff"),
+            ("connection", "close"),
         ] {
-            let response = studio.get(path, &format!("{origin}\r\nCookie: {wrong}\r\n"));
-            assert_eq!(status(&response), "403", "{path} {wrong}");
+            assert_eq!(header(&response, name), value, "{path}");
         }
-    }
-    let others = [format!("a=b; {cookie}; c"), format!("{name}=x;{cookie}")];
-    for right in others.iter().chain([&cookie]) {
-        let response = studio.get("/", &format!("Cookie: {right}\r\n"));
-        assert_eq!(status(&response), "200", "{right}");
+        assert!(!response.to_ascii_lowercase().contains("set-cookie"));
+        assert!(!response.contains(&studio.token), "{path}");
     }
 }
 
 #[test]
 fn other_hosts_and_pages_are_refused() {
     let (_folder, studio) = studio();
-    let (port, cookie, token) = (studio.port, cookie(&studio), &studio.token);
+    let port = studio.port;
     let ask = |path: &str, headers: &str| {
-        studio.response(&format!("GET {path} HTTP/1.1\r\n{cookie}{headers}\r\n\r\n"))
+        studio.response(&format!("GET {path} HTTP/1.1\r\n{headers}\r\n\r\n"))
     };
     for host in ["127.0.0.1", "localhost"] {
         let host = format!("{host}:{port}");
@@ -105,137 +120,217 @@ fn other_hosts_and_pages_are_refused() {
         &format!("{own}\r\nOrigin: null"),
         &format!("{own}\r\nOrigin: http://example.org"),
         &format!("{own}\r\nOrigin: http://127.0.0.1"),
+        &format!("{own}\r\nOrigin: http://127.0.0.1:1"),
         &format!("{own}\r\nOrigin: https://127.0.0.1:{port}"),
         &format!("{own}\r\nOrigin: http://localhost:{port}"),
         &format!("{own}\r\nOrigin: "),
+        &format!("{own}\r\nOrigin: http://127.0.0.1:{port}\r\nOrigin: http://example.org"),
     ] {
-        for path in ["/", "/studio.js", "/socket", &format!("/?token={token}")] {
-            let response = ask(path, headers);
-            assert_eq!(status(&response), "403", "{path} {headers}");
-            assert!(!response.contains(&studio.secret));
+        for path in ["/", "/studio.js", "/socket"] {
+            assert_eq!(status(&ask(path, headers)), "403", "{path} {headers}");
         }
+        // The same where all else of a web socket is right.
+        let upgrade = upgrade(&studio);
+        let socket = upgrade.lines().filter(|line| {
+            let own = ["Connection", "Upgrade", "Sec-"];
+            own.iter().any(|name| line.starts_with(name))
+        });
+        let socket = socket.collect::<Vec<_>>().join("\r\n");
+        let response = ask("/socket", &format!("{headers}\r\n{socket}"));
+        assert_eq!(status(&response), "403", "{headers}");
     }
 }
 
 #[test]
 fn there_is_no_other_path_and_no_other_method() {
     let (_folder, studio) = studio();
-    let (host, cookie) = (studio.host(), cookie(&studio));
-    let paths = r"/a.scn /index.html /studio.js/ /studio.js?x /?x // /.. /../a.scn /..%2fa.scn /%2e%2e/a.scn /..\a.scn
-        /./studio.js //etc/passwd /%2Fetc%2Fpasswd file:///etc/passwd http://127.0.0.1/studio.js *";
+    let host = studio.host();
+    let paths = r"/a.scn /index.html /studio.js/ // /.. /../a.scn /..%2fa.scn /%2e%2e/a.scn /..\a.scn
+        /./studio.js //etc/passwd /%2Fetc%2Fpasswd";
     for path in paths.split_whitespace() {
-        let response = studio.get(path, &cookie);
+        let response = studio.get(path, "");
         assert_eq!(status(&response), "404", "{path}");
         assert!(!response.contains("camera") && !response.contains("root:"));
     }
-    for method in ["HEAD", "POST", "PUT", "DELETE", "OPTIONS", "CONNECT", "get"] {
-        let request = format!("{method} / HTTP/1.1\r\nHost: {host}\r\n{cookie}");
+    // The address of another host, as a proxy is asked.
+    for target in ["http://127.0.0.1/studio.js", "http://example.org/"] {
+        assert_eq!(status(&studio.get(target, "")), "403", "{target}");
+    }
+    for method in ["HEAD", "POST", "PUT", "DELETE", "OPTIONS", "get"] {
+        let request = format!("{method} / HTTP/1.1\r\nHost: {host}\r\n");
         let body = "Content-Length: 4\r\n\r\nabcd";
         let response = studio.response(&format!("{request}{body}"));
         assert_eq!(status(&response), "405", "{method}");
-        assert_eq!(header(&response, "Allow"), "GET");
-    }
-}
-
-#[test]
-fn the_page_may_use_what_is_its_own_and_nothing_else() {
-    let (_folder, studio) = studio();
-    let cookie = cookie(&studio);
-    let nonces = [0, 1].map(|_| {
-        let response = studio.get("/", &cookie);
-        assert!(!response.contains("__NONCE__"));
-        let policy = header(&response, "Content-Security-Policy");
-        let (_, nonce) = policy.split_once("'nonce-").unwrap();
-        let nonce = nonce[..32].to_owned();
-        assert_eq!(
-            policy,
-            format!(
-                "default-src 'none'; script-src 'self'; style-src 'self' 'nonce-{nonce}'; img-src 'self' blob: data:; connect-src 'self'; worker-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-            )
-        );
-        assert_ne!(nonce, studio.secret);
-        nonce
-    });
-    assert_ne!(nonces[0], nonces[1]);
-    for (path, kind) in [
-        ("/", "text/html; charset=utf-8"),
-        ("/studio.js", "text/javascript"),
-        ("/studio.css", "text/css"),
-        ("/x", "text/plain; charset=utf-8"),
-    ] {
-        let response = studio.get(path, &cookie);
-        assert_eq!(header(&response, "Content-Type"), kind);
-        assert_eq!(header(&response, "Cache-Control"), "no-store");
-        assert_eq!(header(&response, "Referrer-Policy"), "no-referrer");
-        assert_eq!(header(&response, "X-Content-Type-Options"), "nosniff");
+        assert_eq!(header(&response, "allow"), "GET");
     }
 }
 
 #[test]
 fn a_web_socket_names_its_page_and_is_one() {
     let (_folder, studio) = studio();
-    let host = studio.host();
-    // The key is the example of RFC 6455.
-    let lines = [
-        (&*cookie(&studio), "403"),
-        (&*format!("Origin: http://{host}\r\n"), "403"),
-        ("Connection: keep-alive, Upgrade\r\n", "426"),
-        ("Upgrade: websocket\r\n", "426"),
-        ("Sec-WebSocket-Version: 13\r\n", "426"),
-        ("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n", "426"),
-    ];
-    let but = |missing: &str| {
-        let kept = lines.iter().filter(|(line, _)| *line != missing);
-        kept.map(|(line, _)| *line).collect::<String>()
-    };
-    for (missing, wanted) in lines {
-        let response = studio.get("/socket", &but(missing));
-        assert_eq!(status(&response), wanted, "{missing}");
+    let all = upgrade(&studio);
+    for line in all.lines().skip(1).filter(|line| !line.is_empty()) {
+        let without = all.replace(&format!("{line}\r\n"), "");
+        let wanted = match line.split_once(':') {
+            Some(("Host" | "Origin", _)) => "403",
+            _ => "400",
+        };
+        assert_eq!(status(&studio.response(&without)), wanted, "{line}");
     }
     let mut stream = studio.stream();
-    let all = but("");
-    write!(stream, "GET /socket HTTP/1.1\r\nHost: {host}\r\n{all}\r\n").unwrap();
-    let mut start = [0; 129];
-    stream.read_exact(&mut start).unwrap();
-    let start = String::from_utf8_lossy(&start).into_owned();
+    stream.write_all(all.as_bytes()).unwrap();
+    let mut start = String::new();
+    while !start.ends_with("\r\n\r\n") {
+        let mut byte = [0];
+        stream.read_exact(&mut byte).unwrap();
+        start.push(char::from(byte[0]));
+    }
     assert_eq!(status(&start), "101");
-    let accepted = header(&start, "Sec-WebSocket-Accept");
+    let accepted = header(&start, "sec-websocket-accept");
     assert_eq!(accepted, "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+}
+
+#[test]
+fn there_is_no_conversation_without_the_token() {
+    let (_folder, studio) = studio();
+    let token = &studio.token;
+    assert_eq!(token.len(), 32);
+    let unknown = CloseCode::from(4001);
+    let asked =
+        json!({ "jsonrpc": "2.0", "id": 1, "method": "studio/save", "params": { "text": "" } });
+    for wrong in [
+        "",
+        "x",
+        &token[1..],
+        &format!("{token}0"),
+        &format!(" {token}"),
+        &token.to_ascii_uppercase(),
+        &"0".repeat(32),
+        &format!("token={token}"),
+        &asked.to_string(),
+    ] {
+        assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
+    }
+    // No message but a text, and no other end is told anything.
+    for wrong in [
+        Message::binary(token.clone().into_bytes()),
+        Message::Close(None),
+    ] {
+        let mut socket = studio.socket();
+        socket.send(wrong).unwrap();
+        let said = socket.read();
+        assert!(!matches!(said, Ok(Message::Text(_))), "{said:?}");
+    }
+    // Another run has another token.
+    let (_folder, other) = self::studio();
+    assert_eq!(other.admitted(token).err(), Some(unknown));
+    a_page_works(&studio);
+}
+
+/// What strangers say, and then no more.
+#[test]
+fn whoever_shows_no_token_in_five_seconds_is_not_waited_for() {
+    let (_folder, studio) = studio();
+    let upgrade = upgrade(&studio);
+    // A ping, as a client sends it; and the start of a text that is 100 bytes long.
+    let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
+    let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
+    thread::scope(|scope| {
+        for (start, every, is_early) in [
+            (&b""[..], None, false),
+            (b"GET / HT", None, false),
+            (b"GET / HTTP/1.1\r\nX: ", Some(b"y"), false),
+            (upgrade.as_bytes(), None, false),
+            (&ping, None, true),
+            (&text, Some(b"y"), false),
+            (b"GET / HT", None, true),
+            (upgrade.as_bytes(), None, true),
+        ] {
+            let (mut stream, ping) = (studio.stream(), &ping);
+            scope.spawn(move || {
+                let begun = Instant::now();
+                stream.write_all(start).unwrap();
+                if is_early && start != ping.as_slice() {
+                    stream.shutdown(Shutdown::Write).unwrap();
+                }
+                if let Some(more) = every {
+                    let mut slow = stream.try_clone().unwrap();
+                    thread::spawn(move || {
+                        while slow.write_all(more).is_ok() {
+                            thread::sleep(Duration::from_millis(100));
+                        }
+                    });
+                }
+                until_closed(&mut stream);
+                let time = begun.elapsed();
+                let start = String::from_utf8_lossy(start);
+                assert!(time < Duration::from_secs(8), "{start}: {time:?}");
+                // Whoever has said that nothing more comes, or something else, is not waited for.
+                assert!(
+                    is_early || time > Duration::from_secs(4),
+                    "{start}: {time:?}"
+                );
+            });
+        }
+    });
+    a_page_works(&studio);
+}
+
+#[test]
+fn those_who_wait_without_the_token_keep_nobody_out() {
+    let (_folder, studio) = studio();
+    let (mut before, _) = studio.page();
+    for count in [64, 200] {
+        let idle: Vec<TcpStream> = (0..count).map(|_| studio.stream()).collect();
+        a_page_works(&studio);
+        let sockets: Vec<_> = (0..count).map(|_| studio.socket()).collect();
+        a_page_works(&studio);
+        drop((idle, sockets));
+    }
+    // More pages than there are places for strangers, and each works on.
+    let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
+    for page in pages.iter_mut().chain([&mut before]) {
+        page.open(json!({}), SMALLEST);
+        page.diagnostics();
+    }
 }
 
 #[test]
 fn what_is_no_request_does_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
+    let upgrade = upgrade(&studio);
+    // The head of a frame of text that is 64 MiB long, and such a text.
+    let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
+    let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [
-        &*format!("{start}X: {}\r\n\r\n", "y".repeat(20_000)),
-        &*format!("{start}{}\r\n", "X: y\r\n".repeat(100)),
-        "\r\n\r\n\0\r\n\r\n",
-        "GET\r\n\r\n",
-        "GET / HTTP/1.1\r\n\u{e9}\r\n\r\n",
+        format!("{start}X: {}\r\n\r\n", "y".repeat(40_000)).as_bytes(),
+        format!("{start}{}\r\n", "X: y\r\n".repeat(200)).as_bytes(),
+        b"\r\n\r\n\0\r\n\r\n",
+        b"GET\r\n\r\n",
+        b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
+        b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+        // A reserved operation, a frame without a mask, a frame that goes on without a start, a text that is no UTF-8.
+        &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
+        &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
+        &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),
+        &[upgrade.as_bytes(), &[0x81, 0x81, 0, 0, 0, 0, 0xff]].concat(),
+        &huge,
     ] {
-        assert_eq!(status(&studio.response(wrong)), "400", "{wrong:.40}");
+        let begun = Instant::now();
+        let mut stream = studio.stream();
+        // It may be closed before all is written.
+        let _ = stream.write_all(wrong);
+        let said = until_closed(&mut stream);
+        let (said, wrong) = (
+            String::from_utf8_lossy(&said),
+            String::from_utf8_lossy(wrong),
+        );
+        assert!(begun.elapsed() < PATIENCE / 10, "{wrong:.60}");
+        let is_refused = said.is_empty() || matches!(status(&said), "400" | "431" | "101");
+        assert!(is_refused, "{wrong:.60}: {said}");
     }
-    // Who says nothing more is not waited for.
-    let begun = Instant::now();
-    assert_eq!(status(&studio.response("GET / HT")), "400");
-    let time = begun.elapsed();
-    assert!(time < PATIENCE / 2 && time > Duration::from_secs(3));
-    assert_eq!(status(&studio.get("/", &cookie(&studio))), "200");
-}
-
-#[test]
-fn so_many_connections_are_served_at_once() {
-    let (_folder, studio) = studio();
-    let waiting: Vec<TcpStream> = (0..64).map(|_| studio.stream()).collect();
-    // Whoever comes too early finds the last of them not yet counted.
-    while status(&studio.get("/", "")) != "503" {}
-    drop(waiting);
-    let mut after = studio.get("/", "");
-    while status(&after) == "503" {
-        after = studio.get("/", "");
-    }
-    assert_eq!(status(&after), "403");
+    a_page_works(&studio);
 }
 
 /// All of 127.0.0.0/8 leads to this machine, where Linux is concerned, and what listens at any address is found there.

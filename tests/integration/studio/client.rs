@@ -11,6 +11,7 @@ use serde_json::Value;
 use tungstenite::{
     Message, WebSocket,
     client::{IntoClientRequest, client},
+    protocol::frame::coding::CloseCode,
 };
 
 use crate::{
@@ -29,8 +30,8 @@ pub fn studio() -> (Folder, Studio) {
 pub struct Studio {
     pub child: Child,
     pub port: u16,
+    /// In the printed address.
     pub token: String,
-    pub secret: String,
 }
 
 impl Studio {
@@ -41,28 +42,15 @@ impl Studio {
             let line = line.unwrap();
             let (port, token) = line
                 .strip_prefix("http://127.0.0.1:")?
-                .split_once("/?token=")?;
+                .split_once("/#token=")?;
             Some((port.parse().unwrap(), token.to_owned()))
         });
         let (port, token) = address.expect("it prints an address");
-        let mut studio = Self {
-            child,
-            port,
-            token,
-            secret: String::new(),
-        };
-        let response = studio.get(&format!("/?token={}", studio.token), "");
-        let (_, secret) = response.split_once(&format!("pinhole-{port}=")).unwrap();
-        studio.secret = secret[..32].to_owned();
-        studio
+        Self { child, port, token }
     }
 
     pub fn host(&self) -> String {
         format!("127.0.0.1:{}", self.port)
-    }
-
-    pub fn cookie(&self) -> String {
-        format!("pinhole-{}={}", self.port, self.secret)
     }
 
     pub fn stream(&self) -> TcpStream {
@@ -89,18 +77,34 @@ impl Studio {
         ))
     }
 
-    /// A page, to which nothing but the file was told yet.
-    pub fn page(&self) -> (Client<Page>, Value) {
+    /// A web socket on which nothing was said yet.
+    pub fn socket(&self) -> WebSocket<TcpStream> {
         let host = self.host();
         let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
-        for (name, value) in [
-            ("Origin", format!("http://{host}")),
-            ("Cookie", self.cookie()),
-        ] {
-            request.headers_mut().insert(name, value.parse().unwrap());
-        }
-        let (socket, _) = client(request, self.stream()).unwrap();
-        let mut page = Client::new(Page(socket));
+        let origin = format!("http://{host}").parse().unwrap();
+        request.headers_mut().insert("Origin", origin);
+        client(request, self.stream()).unwrap().0
+    }
+
+    /// A page that shows a token, and the token that it gets; or the code with which it is turned away.
+    pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
+        let mut socket = self.socket();
+        socket.send(Message::text(token)).unwrap();
+        let said = match socket.read().unwrap() {
+            Message::Text(said) => said,
+            Message::Close(Some(frame)) => return Err(frame.code),
+            other => panic!("{other:?}"),
+        };
+        let said: Value = serde_json::from_str(&said).unwrap();
+        assert_eq!(said["method"], "studio/session");
+        let token = said["params"]["token"].as_str().unwrap().to_owned();
+        Ok((Client::new(Page(socket)), token))
+    }
+
+    /// A page with the printed token, to which nothing but the file was told yet.
+    pub fn page(&self) -> (Client<Page>, Value) {
+        let (mut page, token) = self.admitted(&self.token).unwrap();
+        assert_eq!(token, self.token);
         let file = page.told("studio/file");
         (page, file)
     }
@@ -126,5 +130,18 @@ impl Carrier for Page {
     fn read(&mut self) -> String {
         let message = self.0.read().unwrap();
         message.into_text().unwrap().as_str().to_owned()
+    }
+}
+
+impl Client<Page> {
+    /// The code with which the host closes the web socket, whatever it says before that.
+    pub fn closed(&mut self) -> CloseCode {
+        loop {
+            match self.carrier.0.read().unwrap() {
+                Message::Close(Some(frame)) => return frame.code,
+                Message::Text(_) => {}
+                other => panic!("{other:?}"),
+            }
+        }
     }
 }

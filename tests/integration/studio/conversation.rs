@@ -43,6 +43,14 @@ fn what_is_no_message_gets_an_answer_and_the_conversation_goes_on() {
         let found = page.respond(method, params);
         assert_eq!(found["error"]["code"], code, "{method}");
     }
+    // Half of a surrogate pair is no text: whoever has asked hears of it.
+    let text = r#"{ "id": "page-7", "method": "studio/save", "params": { "text": "\ud800" } }"#;
+    page.carrier.write(text);
+    let answer = page.read();
+    assert_eq!(
+        (&answer["id"], &answer["error"]["code"]),
+        (&json!("page-7"), &json!(-32700))
+    );
     let socket = &mut page.carrier.0;
     socket.send(Message::Ping("x".into())).unwrap();
     assert_eq!(socket.read().unwrap(), Message::Pong("x".into()));

@@ -205,14 +205,15 @@ fn what_cannot_be_edited_is_told_at_once() {
 
 #[cfg(unix)]
 #[test]
-fn a_browser_is_started_unless_it_is_not_wanted_and_an_interrupt_ends_it() {
+fn a_browser_is_started_unless_it_is_not_wanted() {
     use std::{
         env,
         os::unix::fs::PermissionsExt,
-        process::{Command, Stdio},
+        process::Stdio,
         thread,
         time::{Duration, Instant},
     };
+    use tungstenite::protocol::frame::coding::CloseCode;
 
     let folder = Folder::with([]);
     for name in ["bin/xdg-open", "bin/open"] {
@@ -228,27 +229,77 @@ fn a_browser_is_started_unless_it_is_not_wanted_and_an_interrupt_ends_it() {
     for (arguments, is_opened) in [("studio --no-open", false), ("studio", true)] {
         let mut command = folder.command(arguments);
         command.env("PATH", &path).stdout(Stdio::null());
-        let mut studio = Studio::start(command);
-        if is_opened {
-            let end = Instant::now() + PATIENCE;
-            while !opened.exists() && Instant::now() < end {
-                thread::sleep(Duration::from_millis(10));
-            }
-            // Others can read it: it has a token of its own, which serves once.
-            let address = folder.text("opened");
-            let (host, token) = address.trim().split_once("/?token=").unwrap();
-            assert_eq!(host, format!("http://{}", studio.host()));
-            assert!(token != studio.token && token != studio.secret);
-            for status in ["303", "403"] {
-                let response = studio.get(&format!("/?token={token}"), "");
-                assert!(response.starts_with(&format!("HTTP/1.1 {status} ")));
-            }
+        let studio = Studio::start(command);
+        if !is_opened {
+            studio.page();
+            assert!(!opened.exists());
+            continue;
         }
-        let (_page, _) = studio.page();
+        let end = Instant::now() + PATIENCE;
+        while !opened.exists() && Instant::now() < end {
+            thread::sleep(Duration::from_millis(10));
+        }
+        // Others can read it: it has a token of its own, which serves once.
+        let address = folder.text("opened");
+        let (host, once) = address.trim().split_once("/#token=").unwrap();
+        assert_eq!(host, format!("http://{}", studio.host()));
+        assert_ne!(once, studio.token);
+        let (mut first, session) = studio.admitted(once).unwrap();
+        assert!(session != once && session != studio.token);
+        // The page connects again with what it was given.
+        let (mut again, token) = studio.admitted(&session).unwrap();
+        assert_eq!(token, session);
+        let (mut other, _) = studio.page();
+        // Whoever opens it a second time ends the session, and has none.
+        let twice = CloseCode::from(4003);
+        for token in [once, &session, once] {
+            assert_eq!(studio.admitted(token).err(), Some(twice));
+        }
+        assert_eq!([first.closed(), again.closed()], [twice; 2]);
+        // Pages with the printed address are not concerned.
+        other.open(json!({}), SCENE);
+        other.diagnostics();
+        studio.page();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
+    use std::{
+        io::Write,
+        process::Command,
+        thread,
+        time::{Duration, Instant},
+    };
+    use tungstenite::protocol::frame::coding::CloseCode;
+
+    for (signal, is_pipe) in [("INT", false), ("TERM", false), ("INT", true)] {
+        let (folder, mut studio) = studio();
+        let (mut page, _) = studio.page();
+        page.open(json!({}), SCENE);
+        page.diagnostics();
+        let (mut idle, _socket) = (studio.stream(), studio.socket());
+        idle.write_all(b"GET / HT").unwrap();
+        if is_pipe {
+            // Whoever opens it waits for somebody to write.
+            fs::remove_file(folder.path("a.scn")).unwrap();
+            let made = Command::new("mkfifo").arg(folder.path("a.scn")).status();
+            assert!(made.unwrap().success());
+            // By then it was looked at.
+            thread::sleep(Duration::from_millis(2500));
+        }
+        let begun = Instant::now();
         let id = studio.child.id().to_string();
-        let killed = Command::new("kill").args(["-INT", &id]).status();
+        let killed = Command::new("kill")
+            .args([&format!("-{signal}"), &id])
+            .status();
         assert!(killed.unwrap().success());
         assert_eq!(studio.child.wait().unwrap().code(), Some(130));
-        assert_eq!(opened.exists(), is_opened);
+        let time = begun.elapsed();
+        assert!(time < Duration::from_secs(1), "{signal} {is_pipe} {time:?}");
+        if !is_pipe {
+            assert_eq!(page.closed(), CloseCode::Away);
+        }
     }
 }

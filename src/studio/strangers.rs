@@ -1,0 +1,205 @@
+//! Connections of whoever has not shown a token: they have little time, few bytes and few places.
+//!
+//! Any program on this machine can connect, and keep a connection open without a word. Since the oldest such connection is
+//! closed when there are too many, those that wait keep nobody out.
+
+use std::{
+    collections::VecDeque,
+    io,
+    net::SocketAddr,
+    pin::Pin,
+    sync::{
+        Arc, Weak,
+        atomic::{AtomicBool, Ordering},
+    },
+    task::{Context, Poll},
+    time::Duration,
+};
+
+use axum::{
+    extract::connect_info::Connected,
+    serve::{IncomingStream, Listener},
+};
+use tokio::{
+    io::{AsyncRead, AsyncWrite, ReadBuf},
+    net::{TcpListener, TcpStream},
+    sync::Notify,
+    time::timeout,
+};
+
+/// Maximum number of strangers' connections. A page has up to three while it loads, and one until it has shown its token.
+const MOST: usize = 64;
+
+/// Lifetime of a stranger's connection: the head of a request, its response, or the handshake of a web socket and the token.
+/// On one machine that takes milliseconds.
+const LIFETIME: Duration = Duration::from_secs(5);
+
+/// Maximum number of bytes that a stranger may send. A browser's head has about one KiB, unless other programs on this
+/// machine have set many cookies.
+const LONGEST: usize = 32 << 10;
+
+/// Who has connected, as both the connection and those who answer it know it.
+#[derive(Clone, Debug, Default)]
+pub struct Visitor(Arc<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    is_admitted: AtomicBool,
+    give_place: Notify,
+}
+
+impl Visitor {
+    /// Lifts the limits: the visitor has shown a token.
+    pub fn admit(&self) {
+        self.0.is_admitted.store(true, Ordering::SeqCst);
+    }
+
+    fn is_admitted(&self) -> bool {
+        self.0.is_admitted.load(Ordering::SeqCst)
+    }
+}
+
+impl Connected<IncomingStream<'_, Door>> for Visitor {
+    fn connect_info(stream: IncomingStream<'_, Door>) -> Self {
+        stream.io().visitor.clone()
+    }
+}
+
+/// A listener whose connections are those of strangers at first.
+#[derive(Debug)]
+pub struct Door {
+    listener: TcpListener,
+    /// The strangers, the oldest first.
+    strangers: VecDeque<Weak<State>>,
+}
+
+impl Door {
+    /// Lets in whoever connects to this listener.
+    pub fn new(listener: TcpListener) -> Self {
+        Self {
+            listener,
+            strangers: VecDeque::new(),
+        }
+    }
+
+    fn make_place(&mut self) {
+        let is_stranger = |state: &Weak<State>| {
+            let state = state.upgrade();
+            state.is_some_and(|state| !state.is_admitted.load(Ordering::SeqCst))
+        };
+        self.strangers.retain(is_stranger);
+        while self.strangers.len() >= MOST {
+            if let Some(oldest) = self.strangers.pop_front().and_then(|it| it.upgrade()) {
+                oldest.give_place.notify_one();
+            }
+        }
+    }
+}
+
+impl Listener for Door {
+    type Io = Connection;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> (Connection, SocketAddr) {
+        let (stream, address) = Listener::accept(&mut self.listener).await;
+        // Without it, small messages are only slower.
+        let _ = stream.set_nodelay(true);
+        self.make_place();
+        let visitor = Visitor::default();
+        self.strangers.push_back(Arc::downgrade(&visitor.0));
+        (Connection::new(stream, visitor), address)
+    }
+
+    fn local_addr(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+}
+
+/// A connection that breaks as soon as a stranger has used up what strangers have.
+pub struct Connection {
+    stream: TcpStream,
+    visitor: Visitor,
+    /// Bytes that a stranger may still send.
+    left: usize,
+    /// Ends with the time or the place of a stranger; none when it has ended.
+    stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
+}
+
+impl Connection {
+    fn new(stream: TcpStream, visitor: Visitor) -> Self {
+        let state = Arc::clone(&visitor.0);
+        let stay = async move {
+            let _ = timeout(LIFETIME, state.give_place.notified()).await;
+        };
+        Self {
+            stream,
+            visitor,
+            left: LONGEST,
+            stay: Some(Box::pin(stay)),
+        }
+    }
+
+    /// Fails if this is the connection of a stranger who has to go.
+    fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
+        if self.visitor.is_admitted() {
+            return Ok(());
+        }
+        let stay = self.stay.as_mut();
+        if stay.is_none_or(|stay| stay.as_mut().poll(context).is_ready()) {
+            self.stay = None;
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        Ok(())
+    }
+}
+
+impl AsyncRead for Connection {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        self.check(context)?;
+        let before = buffer.filled().len();
+        let polled = Pin::new(&mut self.stream).poll_read(context, buffer);
+        if !self.visitor.is_admitted() {
+            let Some(left) = self.left.checked_sub(buffer.filled().len() - before) else {
+                return Poll::Ready(Err(io::ErrorKind::InvalidData.into()));
+            };
+            self.left = left;
+        }
+        polled
+    }
+}
+
+impl AsyncWrite for Connection {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        self.check(context)?;
+        Pin::new(&mut self.stream).poll_write(context, bytes)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        slices: &[io::IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        self.check(context)?;
+        Pin::new(&mut self.stream).poll_write_vectored(context, slices)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.stream.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_shutdown(context)
+    }
+}
