@@ -63,6 +63,9 @@ const MORE_CURVES: usize = 4;
 /// So many computed pieces of a pixel are quartered at most, the worst first, where the bound is above what is asked for. Near a point that a few curves share
 /// each takes the bound to a quarter, so that 16 take it to 2^−32 of itself.
 const MOST_QUARTERINGS: usize = 16;
+/// Maximum memory of the open pieces of a pixel, in bytes. A pixel that needs more is not divided any further, and its
+/// bound says how little is known.
+const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
 /// Units of work of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves. What they are is
@@ -126,6 +129,13 @@ impl Piece {
     /// How far it may put the pixel off.
     fn bound(&self) -> f64 {
         self.area() * self.shares.bound
+    }
+
+    /// Its memory in bytes.
+    fn memory(&self) -> usize {
+        let candidates = self.candidates.capacity() * size_of::<Candidate>();
+        let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
+        size_of::<ByKey<Self>>() + candidates + shares
     }
 }
 
@@ -232,15 +242,18 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
         let mut together = Shares::default();
+        let mut memory = whole.memory();
         let mut open = BinaryHeap::from([ByKey(bound, whole)]);
         let mut quarterings = 0;
         while let Some(ByKey(_, worst)) = open.pop() {
+            let is_full = memory > MOST_MEMORY;
+            memory -= worst.memory();
             let may_be_better = match worst.state {
                 State::Crowded => worst.sub_pixel.side > SMALLEST,
                 State::Computed => quarterings < MOST_QUARTERINGS,
                 State::Final => false,
             };
-            if bound <= self.tolerance || !may_be_better || budget.is_spent() {
+            if bound <= self.tolerance || !may_be_better || is_full || budget.is_spent() {
                 together.add_part(&worst.shares, worst.area());
                 continue;
             }
@@ -263,6 +276,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 }
             }
             bound += after - worst.bound();
+            memory += quarters.iter().map(Piece::memory).sum::<usize>();
             open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
         }
         self.work.fetch_add(budget.spent() as u64, Relaxed);

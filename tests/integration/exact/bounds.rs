@@ -3,7 +3,7 @@
 use pinhole::film;
 
 use super::*;
-use crate::culling::spheres;
+use crate::{culling::spheres, program::Folder};
 
 #[test]
 fn bounds_keep_their_promise() {
@@ -93,6 +93,33 @@ fn heaps_in_a_small_part_of_a_pixel() {
              {boxes}"
         ));
     }
+}
+
+/// A pixel in the middle of which nearly everything is seen at once, so that ever more pieces of it are open: `ulimit` ends
+/// the program where it takes a gigabyte, and the pixel takes twenty without a limit of its own.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_pixel_takes_bounded_memory() {
+    let folder = Folder::with([(
+        "scene.scn",
+        "image { width 1 height 40 background olive }
+        camera { eye (3, 2, 0) lookat (-2.9634416336477738, 1.5641245946478231, -4.2344985898528513) fov 179.999999deg }
+        triangle { centroid (-0.750461877, 2.27379639, -6.67434178) normal (-5.1451145992126213, -3, -0.475)
+          sides (1.37312, 0.585539, 1.32783) color teal }
+        triangle { v0 (-1.72639095, 2.11492612, -5.76924793) v1 (-3.4982674, 3.50673188, -3.80347503)
+          v2 (-5.80395387, 3.71750855, -6.6929346) color black }
+        checkerboard { y -2.4 square 55444.382797137223 colors (white, orange) }
+        checkerboard { y 0 square 1.82221 colors (red, teal) }
+        box { center (-3.48494606, 2.35211205, -1.3395185) size (0.27574, 1.62986, 0.389944) color blue }
+        sampler { method exact }",
+    )]);
+    let limited = "ulimit -v 1000000; exec \"$0\" render scene.scn --threads 1 --crop 0,19,1,1";
+    let status = std::process::Command::new("sh")
+        .args(["-c", limited, env!("CARGO_BIN_EXE_pinhole")])
+        .current_dir(folder.path("."))
+        .status();
+    assert!(status.unwrap().success());
+    assert_eq!(folder.names(), ["scene.png", "scene.scn"]);
 }
 
 /// The scenes of `tests/exact`: the pixels of the crop that a comment asks for, or all, are known to a thousand-millionth, and their quarters are they.
