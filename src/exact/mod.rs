@@ -64,7 +64,7 @@ const MORE_CURVES: usize = 4;
 /// each takes the bound to a quarter, so that 16 take it to 2^−32 of itself.
 const MOST_QUARTERINGS: usize = 16;
 /// Maximum memory of the open pieces of a pixel, in bytes. A pixel that needs more is not divided any further, and its
-/// bound says how little is known.
+/// bound says how much of it is in doubt.
 const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
@@ -244,9 +244,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut together = Shares::default();
         let mut memory = whole.memory();
         let mut open = BinaryHeap::from([ByKey(bound, whole)]);
-        let mut quarterings = 0;
+        let (mut quarterings, mut is_full) = (0, false);
         while let Some(ByKey(_, worst)) = open.pop() {
-            let is_full = memory > MOST_MEMORY;
+            is_full |= memory > MOST_MEMORY;
             memory -= worst.memory();
             let may_be_better = match worst.state {
                 State::Crowded => worst.sub_pixel.side > SMALLEST,
