@@ -67,7 +67,8 @@ pub fn parse_in_parts<'s>(
                 results
             })
             .collect();
-        (0..parts.len()).all(|part| match parsed[part % count].recv() {
+        let mut in_order = parsed.iter().cycle().take(parts.len());
+        in_order.all(|results| match results.recv() {
             Ok(Some(items)) => each(items),
             _ => false,
         })
