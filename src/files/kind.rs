@@ -9,6 +9,10 @@ use std::{
 };
 
 /// What there can be at a path, links followed.
+#[cfg_attr(
+    not(unix),
+    allow(dead_code, reason = "other systems do not tell these kinds")
+)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A file with bytes.
