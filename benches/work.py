@@ -10,6 +10,7 @@ writes `work.csv` anew."""
 import csv
 import os
 import pathlib
+import queue
 import re
 import subprocess
 import sys
@@ -25,14 +26,22 @@ SPHERES = [1000, 10_000]
 # By how much a command may exceed its row. Counts repeat within 0.2 %; peak memory, within 5 %, so the least of some runs counts.
 MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
 MEMORY_RUNS = 5
-# One thread where a command has no `--threads`.
-ENVIRONMENT = {**os.environ, "RAYON_NUM_THREADS": "1", "NO_COLOR": "1"}
+ENVIRONMENT = {**os.environ, "NO_COLOR": "1"}
+# The processors that no command runs on. A command has one to itself, so that it starts as many threads on every machine.
+PROCESSORS = queue.SimpleQueue()
+for processor in os.sched_getaffinity(0):
+    PROCESSORS.put(processor)
 
 
 def run(command, line):
-    """Runs a command line and returns what it wrote to standard error."""
-    with open(command.stdin, "rb") as stdin:
-        done = subprocess.run(line, stdin=stdin, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=ENVIRONMENT)
+    """Runs a command line on one processor and returns what it wrote to standard error."""
+    processor = PROCESSORS.get()
+    try:
+        line = ["taskset", "--cpu-list", str(processor), *line]
+        with open(command.stdin, "rb") as stdin:
+            done = subprocess.run(line, stdin=stdin, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=ENVIRONMENT)
+    finally:
+        PROCESSORS.put(processor)
     said = done.stderr.decode(errors="replace")
     if done.returncode != command.status:
         sys.exit(f"{command.name}: status {done.returncode}, not {command.status}\n{said[-2000:]}")
@@ -61,7 +70,7 @@ def version(program):
 
 def measure_all(program):
     """A row for each command, in their order; as many are measured at once as there are processors."""
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(PROCESSORS.qsize()) as pool:
         folder = pathlib.Path(folder)
         commands.prepare(folder, program, SPHERES)
         versions = [version("rustc"), version("valgrind")]

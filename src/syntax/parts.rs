@@ -69,7 +69,7 @@ pub fn parse_in_parts<'s>(
             .collect();
         let mut in_order = parsed.iter().cycle().take(parts.len());
         in_order.all(|results| match results.recv() {
-            Ok(Some(items)) => each(items),
+            Ok(Some(items)) => !cancel::is_set(cancel) && each(items),
             _ => false,
         })
     })

@@ -67,6 +67,16 @@ pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) 
     true
 }
 
+/// How many candidates a ray through a part of the picture meets the bounds of, on average.
+pub fn bounds_a_ray(world: &World, part: Area, candidates: &[Candidate]) -> f64 {
+    let patch = Patch::new(&world.geometry.fast.camera, part);
+    let rectangle = world.quadtree.rectangle(&patch).unwrap_or(Rectangle::ALL);
+    let shares = candidates
+        .iter()
+        .map(|candidate| candidate.bounds.share_of(&rectangle));
+    shares.sum()
+}
+
 /// The inverse depths of the near and the far plane over a patch, where there are any.
 pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
     [&world.geometry.fast.near, &world.geometry.fast.far]

@@ -75,7 +75,7 @@ impl Rectangle {
     /// Meets every rectangle.
     pub const ALL: Self = Self {
         low: [0; 2],
-        high: [u32::MAX; 2],
+        high: [u32::MAX - 1; 2],
     };
 
     /// Whether two rectangles have a unit in common.
@@ -89,6 +89,18 @@ impl Rectangle {
     pub(super) fn holds(&self, at: [u32; 2]) -> bool {
         let holds = |i: usize| (self.low[i] <= at[i]) & (at[i] <= self.high[i]);
         holds(0) & holds(1)
+    }
+
+    /// What share of another rectangle this one covers.
+    pub fn share_of(&self, other: &Self) -> f64 {
+        let share = |i: usize| {
+            let (low, high) = (
+                self.low[i].max(other.low[i]),
+                self.high[i].min(other.high[i]),
+            );
+            f64::from((high + 1).saturating_sub(low)) / f64::from(other.high[i] + 1 - other.low[i])
+        };
+        share(0) * share(1)
     }
 
     #[inline]
