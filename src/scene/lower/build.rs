@@ -56,6 +56,9 @@ impl<'s> Lowering<'s> {
             && !objects.is_empty()
         {
             self.unseen(block, camera, image, &objects);
+            if sampler.is_some_and(|sampler| sampler.method != Method::Exact) {
+                self.lost_squares(camera, image);
+            }
         }
         Parts {
             image,

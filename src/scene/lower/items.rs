@@ -7,7 +7,10 @@ use super::{
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
-    scene::error::{error, twice},
+    scene::{
+        error::{error, twice},
+        model::Shape,
+    },
     schema::{self, predefined},
     source::{SourceId, Span},
     suggest,
@@ -114,6 +117,9 @@ impl<'s> Lowering<'s> {
         if row.is_object {
             self.missing_fields(&lowered);
             let object = self.object(&lowered);
+            if let Some(Shape::Checkerboard(board)) = object.as_ref().map(|object| object.shape) {
+                self.boards.push((board, lowered.place("square")));
+            }
             self.objects.extend(object);
         } else if !is_duplicate {
             self.blocks.push(lowered);

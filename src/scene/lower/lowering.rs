@@ -6,7 +6,10 @@ use super::block::Block;
 use crate::{
     cancel,
     diagnostic::Diagnostic,
-    scene::{eval::Names, model::Object},
+    scene::{
+        eval::Names,
+        model::{Checkerboard, Object},
+    },
     source::{Sources, Span},
 };
 
@@ -21,6 +24,8 @@ pub(super) struct Lowering<'s> {
     pub(super) blocks: Vec<Block<'s>>,
     /// The objects.
     pub(super) objects: Vec<Object>,
+    /// The checkerboards, each with the number of its squares' side, or its keyword.
+    pub(super) boards: Vec<(Checkerboard, Span)>,
     /// Whether there is anything in the file but comments.
     pub(super) has_items: bool,
     /// Whether there is an object, built or not.
@@ -45,6 +50,7 @@ impl<'s> Lowering<'s> {
             names,
             blocks: Vec::new(),
             objects: Vec::new(),
+            boards: Vec::new(),
             has_items: false,
             has_objects: false,
             first_names: HashMap::new(),
