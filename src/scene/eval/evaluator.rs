@@ -39,6 +39,25 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     evaluator.value(&tree, Some(takes))
 }
 
+/// Whether a value is of the type that a field takes, and keeps its conditions.
+pub fn suits<'s>(
+    field: &schema::Field,
+    tree: &tree::Value<'s>,
+    sources: &'s Sources,
+    names: &Names<'s>,
+) -> bool {
+    if let (Type::Method, ValueKind::Name(word)) = (field.takes, &tree.kind) {
+        return schema::method(word).is_some();
+    }
+    let mut evaluator = Evaluator {
+        sources,
+        names,
+        problems: &mut Vec::new(),
+    };
+    let value = evaluator.value(tree, Some(field.takes));
+    value.is_some_and(|value| value.kind() == field.takes && field.allows(value))
+}
+
 impl<'s> Evaluator<'_, 's> {
     /// The value of an expression; `wanted` is the type that would fit, if one is known.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
@@ -157,7 +176,7 @@ impl<'s> Evaluator<'_, 's> {
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
 /// A colour from its code; the parser checked the number of digits.
-fn color_code(written: &str) -> Option<Color> {
+pub(super) fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;
     let code = u32::from_str_radix(digits, 16).ok()?;
     Some(Color::from_bytes(if digits.len() == 3 {

@@ -40,7 +40,9 @@ impl<'s> Lowering<'s> {
     fn definition(&mut self, definition: &Definition<'s>) {
         let name = definition.name;
         let first = name.and_then(|name| self.names.place(name.text));
-        let value = self.evaluate(&definition.value, None);
+        let value = self.trying(definition.value.span, |it| {
+            it.evaluate(&definition.value, None)
+        });
         let Some(name) = name else { return };
         // A name without its `let` was reported.
         let reported = definition.keyword.range().is_empty();

@@ -67,7 +67,7 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     if !all {
         return None;
     }
-    lowering.problems = overrides::add(overrides, &mut last, lowering.names.budget());
+    lowering.problems = overrides::add(overrides, &mut last, sources, lowering.names.budget());
     lowering.items(&last);
     let objects = &mut lowering.objects;
     objects.sort_unstable_by_key(|object| object.span.start);
@@ -104,7 +104,7 @@ fn whole<'s>(
     let mut items = parsed.tree.items.clone();
     let mut overrides = overrides::read(sources, &mut lowering.found);
     overrides::apply(&mut overrides, &mut items);
-    lowering.problems = overrides::add(overrides, &mut items, lowering.names.budget());
+    lowering.problems = overrides::add(overrides, &mut items, sources, lowering.names.budget());
     // The value of a field that is set sees all names.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
