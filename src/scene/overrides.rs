@@ -8,7 +8,7 @@ use super::{
     eval::{Evaluator, Names, suits},
 };
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     schema,
     source::{SourceId, Sources, Span},
     suggest::{self, Budget},
@@ -30,11 +30,14 @@ pub struct Override<'s> {
 }
 
 /// Reads the arguments.
-pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Override<'s>> {
+pub fn read<'s>(
+    sources: &'s Sources,
+    diagnostics: &mut impl Extend<Diagnostic>,
+) -> Vec<Override<'s>> {
     let mut overrides: Vec<Override<'s>> = Vec::new();
     for (id, source) in sources.sets() {
         match one(source.text(), id) {
-            Err(problem) => diagnostics.push(*problem),
+            Err(problem) => diagnostics.extend([*problem]),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
                 diagnostics.extend(problems);
@@ -114,8 +117,8 @@ pub fn add<'s>(
     items: &mut Vec<Item<'s>>,
     sources: &'s Sources,
     budget: &Budget,
-) -> Vec<Diagnostic> {
-    let mut problems = Vec::new();
+) -> Problems {
+    let mut problems = Problems::default();
     for it in overrides {
         match it.block {
             // Its block was added just now.
@@ -205,7 +208,7 @@ fn value_of<'s>(
     let mut evaluator = Evaluator {
         sources,
         names,
-        problems: &mut Vec::new(),
+        problems: &mut Problems::default(),
     };
     evaluator.value(value, None)
 }

@@ -3,7 +3,7 @@
 use super::names::Names;
 use crate::{
     color::Color,
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     scene::error::{error, warning},
     schema::{self, Type, Value},
     source::{Source, SourceId, Sources, Span},
@@ -21,7 +21,7 @@ pub struct Evaluator<'a, 's> {
     /// The names that can be used.
     pub names: &'a Names<'s>,
     /// What is wrong.
-    pub problems: &'a mut Vec<Diagnostic>,
+    pub problems: &'a mut Problems,
 }
 
 /// The value of a text that stands for a value by itself, such as a default of the schema.
@@ -34,7 +34,7 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     let mut evaluator = Evaluator {
         sources: &sources,
         names: &Names::default(),
-        problems: &mut Vec::new(),
+        problems: &mut Problems::default(),
     };
     evaluator.value(&tree, Some(takes))
 }
@@ -52,7 +52,7 @@ pub fn suits<'s>(
     let mut evaluator = Evaluator {
         sources,
         names,
-        problems: &mut Vec::new(),
+        problems: &mut Problems::default(),
     };
     let value = evaluator.value(tree, Some(field.takes));
     value.is_some_and(|value| value.kind() == field.takes && field.allows(value))

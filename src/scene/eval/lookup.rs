@@ -6,7 +6,7 @@ use super::{
     suggestion::{Meaning, Suggestion},
 };
 use crate::{
-    diagnostic::{Diagnostic, Edit, Label},
+    diagnostic::{Diagnostic, Edit, Label, MOST_PROBLEMS},
     scene::error::error,
     schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
@@ -71,6 +71,8 @@ impl<'s> Evaluator<'_, 's> {
                 }
                 suggested
             }
+            // More than are kept are not remembered, either.
+            None if problems.is_full() => None,
             None => {
                 let (problem, suggested) = match self.names.definition(name) {
                     Some(definition) => (self.used_before(name, span, definition), None),
@@ -229,6 +231,7 @@ fn and_here(problem: &mut Diagnostic, span: Span) {
         let message = "and here".to_owned();
         problem.labels.push(Label { span, message });
     }
+    problem.fixes.retain(|fix| fix.edits.len() < MOST_PROBLEMS);
     for fix in &mut problem.fixes {
         let text = fix.edits.first().map(|edit| edit.text.clone());
         fix.edits.extend(text.map(|text| Edit::new(span, text)));

@@ -7,7 +7,7 @@ use std::{
 
 use super::suggestion::{Meaning, Suggestions};
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::Problems,
     schema::Value,
     source::{SourceId, Span},
     suggest::Budget,
@@ -33,7 +33,7 @@ pub struct Names<'s> {
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// What was reported of names, apart from the other problems, some of which are dropped again.
-    pub(in crate::scene) problems: RefCell<Vec<Diagnostic>>,
+    pub(in crate::scene) problems: RefCell<Problems>,
     /// The names that were reported: the next use of the same name is another label of its problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
     /// What is suggested in place of names.

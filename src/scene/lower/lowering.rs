@@ -5,7 +5,7 @@ use std::{collections::HashMap, sync::atomic::AtomicBool};
 use super::block::Block;
 use crate::{
     cancel,
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     scene::{
         eval::Names,
         model::{Checkerboard, Object},
@@ -36,7 +36,7 @@ pub(super) struct Lowering<'s> {
     pub(super) bad: Vec<&'s str>,
     /// What was found before: wrong with the syntax, and with the targets of arguments.
     pub(super) found: Vec<Diagnostic>,
-    pub(super) problems: Vec<Diagnostic>,
+    pub(super) problems: Problems,
     /// The values of unknown fields, in the order of the text.
     pub(super) unknown: Vec<Span>,
 }
@@ -56,7 +56,7 @@ impl<'s> Lowering<'s> {
             first_names: HashMap::new(),
             bad: Vec::new(),
             found: Vec::new(),
-            problems: Vec::new(),
+            problems: Problems::default(),
             unknown: Vec::new(),
         }
     }

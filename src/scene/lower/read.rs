@@ -135,12 +135,12 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let mut of_names = self.names.problems.take();
+        let mut of_names = Vec::from(self.names.problems.take());
         // The uses of a name are not always found in the order of the text.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             fix.edits.sort_by_key(|edit| edit.span);
         }
-        let found = std::mem::take(&mut self.problems).into_iter();
+        let found = Vec::from(std::mem::take(&mut self.problems)).into_iter();
         diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);

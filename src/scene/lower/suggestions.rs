@@ -35,7 +35,7 @@ impl<'s> Lowering<'s> {
     fn withdraw(&mut self, suggestion: Suggestion<'s>) {
         self.names.withdraw(suggestion.name);
         let mut of_names = self.names.problems.borrow_mut();
-        let mut all = of_names.iter_mut().chain(&mut self.problems);
+        let mut all = of_names.iter_mut().chain(self.problems.iter_mut());
         let problem = all.find(|problem| {
             let first = problem.labels.first();
             problem.is_of_suggestion() && first.is_some_and(|it| it.span == suggestion.report)
