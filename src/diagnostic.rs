@@ -4,12 +4,14 @@
 //! them or as lines of JSON. Where to print them, and in which style, is the caller's decision.
 
 mod fix;
+mod problems;
 #[cfg(feature = "cli")]
 mod report;
 #[cfg(any(feature = "cli", feature = "report"))]
 mod visible;
 
 pub use fix::{Edit, Fix, apply};
+pub use problems::{MOST_PROBLEMS, Problems};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
 #[cfg(any(feature = "cli", feature = "report"))]

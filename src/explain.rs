@@ -84,6 +84,6 @@ groups! {
         argument_count argument_type not_finite too_deep;
     "The camera": view_undefined up_parallel empty_depth nothing_seen;
     "Triangles and boxes": not_a_triangle on_one_line empty_box box_too_large;
-    "Samples": unknown_method few_samples too_many_samples;
+    "Samples": unknown_method few_samples too_many_samples squares_too_small;
     "Overrides with --set": bad_set bad_target no_such_target;
 }

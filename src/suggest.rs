@@ -34,6 +34,18 @@ pub fn nearest<'c>(
     nearest_of(written, &mut candidates.into_iter())
 }
 
+/// The same of names of values and functions. One or two letters are seldom a slip, so that such a name becomes none of other letters.
+pub fn nearest_name<'c>(
+    written: &str,
+    candidates: impl IntoIterator<Item = &'c str>,
+) -> Option<&'c str> {
+    let mut candidates = candidates.into_iter();
+    match written.len() {
+        0..=2 => candidates.find(|candidate| candidate.eq_ignore_ascii_case(written)),
+        _ => nearest_of(written, &mut candidates),
+    }
+}
+
 /// Apart from what is generic, so that it is compiled once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
     // A name that nobody would mistype so: comparing it would only take long.

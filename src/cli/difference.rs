@@ -20,74 +20,135 @@ const CONTEXT: usize = 3;
 /// shown: lines can differ in them alone.
 pub fn difference(source: &Source, formatted: &str) -> String {
     let text = source.text();
-    let (before, after) = (lines(text), lines(formatted));
-    let changes = changes(&before, &after);
     let printer = Printer {
         color: output::style().color,
         is_mixed: text.matches('\n').count() != text.matches("\r\n").count(),
     };
     let name = visible_line(source.name());
     let mut out = format!("--- {name}\n+++ {name}, formatted\n");
-    let is_near = |a: &Change, b: &Change| b.before.start - a.before.end <= 2 * CONTEXT;
-    for hunk in changes.chunk_by(is_near) {
-        printer.hunk(&mut out, hunk, &before, &after);
+    let mut hunk: Vec<Change> = Vec::new();
+    for change in Changes::of(text, formatted) {
+        let is_near = |last: &Change| change.before.first - last.before.end() <= 2 * CONTEXT;
+        if !hunk.last().is_none_or(is_near) {
+            printer.hunk(&mut out, &hunk, text, formatted);
+            hunk.clear();
+        }
+        hunk.push(change);
     }
+    printer.hunk(&mut out, &hunk, text, formatted);
     out
 }
 
-/// A line with its line end, and the number of characters before it that are no blanks.
-struct Line<'t> {
-    text: &'t str,
-    place: usize,
+/// Lines of a text that follow each other: the number of the first, how many they are, and their bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Lines {
+    first: usize,
+    count: usize,
+    bytes: Range<usize>,
 }
 
-fn lines(text: &str) -> Vec<Line<'_>> {
-    let mut next = 0;
-    let lines = text.split_inclusive('\n').map(|text| {
-        let place = next;
-        next += text.chars().filter(|c| !c.is_whitespace()).count();
-        Line { text, place }
-    });
-    lines.collect()
+impl Lines {
+    fn end(&self) -> usize {
+        self.first + self.count
+    }
 }
 
 /// Lines that are replaced by others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Change {
-    before: Range<usize>,
-    after: Range<usize>,
+    before: Lines,
+    after: Lines,
 }
 
-/// The changes that make one text of the other.
-fn changes(before: &[Line], after: &[Line]) -> Vec<Change> {
-    let mut changes: Vec<Change> = Vec::new();
-    let (mut i, mut j) = (0, 0);
-    while i < before.len() || j < after.len() {
-        let (old, new) = (before.get(i), after.get(j));
-        let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
-        if let (Some(old), Some(new)) = (old, new) {
-            if old.place == new.place && old.text == new.text {
-                (i, j) = (i + 1, j + 1);
-                continue;
-            }
-            // An empty line has no place of its own, so it goes before the other one.
-            let is_empty = |line: &Line| line.text.trim().is_empty();
-            let (old, new) = ((old.place, !is_empty(old)), (new.place, !is_empty(new)));
-            (is_removed, is_added) = (old <= new, new <= old);
+/// A text that is read line by line.
+struct Reader<'t> {
+    text: &'t str,
+    /// The number of the next line, where it starts, and the number of characters before it that are no blanks.
+    next: usize,
+    at: usize,
+    place: usize,
+}
+
+impl<'t> Reader<'t> {
+    fn new(text: &'t str) -> Self {
+        Self {
+            text,
+            next: 0,
+            at: 0,
+            place: 0,
         }
-        let (to_i, to_j) = (i + usize::from(is_removed), j + usize::from(is_added));
-        match changes.last_mut() {
-            Some(last) if (last.before.end, last.after.end) == (i, j) => {
-                (last.before.end, last.after.end) = (to_i, to_j);
-            }
-            _ => changes.push(Change {
-                before: i..to_i,
-                after: j..to_j,
-            }),
-        }
-        (i, j) = (to_i, to_j);
     }
-    changes
+
+    /// The next line, with its line end.
+    fn line(&self) -> Option<&'t str> {
+        self.text[self.at..].split_inclusive('\n').next()
+    }
+
+    /// Goes on behind a line.
+    fn pass(&mut self, line: &str) {
+        self.next += 1;
+        self.at += line.len();
+        self.place += line.chars().filter(|c| !c.is_whitespace()).count();
+    }
+}
+
+/// The changes that make one text of the other, in their order.
+struct Changes<'t> {
+    before: Reader<'t>,
+    after: Reader<'t>,
+}
+
+impl<'t> Changes<'t> {
+    fn of(before: &'t str, after: &'t str) -> Self {
+        let [before, after] = [before, after].map(Reader::new);
+        Self { before, after }
+    }
+}
+
+impl Iterator for Changes<'_> {
+    type Item = Change;
+
+    fn next(&mut self) -> Option<Change> {
+        let Self { before, after } = self;
+        let is_same = |before: &Reader<'_>, after: &Reader<'_>| match (before.line(), after.line())
+        {
+            (None, None) => true,
+            (old, new) => before.place == after.place && old == new,
+        };
+        while let Some(line) = before.line().filter(|_| is_same(before, after)) {
+            before.pass(line);
+            after.pass(line);
+        }
+        let start = [(before.next, before.at), (after.next, after.at)];
+        while !is_same(before, after) {
+            let (old, new) = (before.line(), after.line());
+            let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
+            if let (Some(old), Some(new)) = (old, new) {
+                // An empty line has no place of its own, so it goes before the other one.
+                let is_empty = |line: &str| line.trim().is_empty();
+                let [old, new] = [
+                    (before.place, !is_empty(old)),
+                    (after.place, !is_empty(new)),
+                ];
+                (is_removed, is_added) = (old <= new, new <= old);
+            }
+            for (reader, is_passed) in [(&mut *before, is_removed), (&mut *after, is_added)] {
+                if let Some(line) = reader.line().filter(|_| is_passed) {
+                    reader.pass(line);
+                }
+            }
+        }
+        let lines = |(first, at): (usize, usize), reader: &Reader<'_>| Lines {
+            first,
+            count: reader.next - first,
+            bytes: at..reader.at,
+        };
+        let change = Change {
+            before: lines(start[0], before),
+            after: lines(start[1], after),
+        };
+        (change.before.count + change.after.count > 0).then_some(change)
+    }
 }
 
 /// How lines are printed.
@@ -99,41 +160,53 @@ struct Printer {
 
 impl Printer {
     /// Prints changes that lie near each other.
-    fn hunk(&self, out: &mut String, changes: &[Change], before: &[Line], after: &[Line]) {
+    fn hunk(&self, out: &mut String, changes: &[Change], before: &str, after: &str) {
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
             return;
         };
-        let lead = first.before.start.min(CONTEXT);
-        let trail = (before.len() - last.before.end).min(CONTEXT);
-        let old = range(first.before.start - lead..last.before.end + trail);
-        let new = range(first.after.start - lead..last.after.end + trail);
+        let lead = first.before.first.min(CONTEXT);
+        let start = lines_back(before, first.before.bytes.start, lead);
+        let context = before[last.before.bytes.end..].split_inclusive('\n');
+        let context: Vec<&str> = context.take(CONTEXT).collect();
+        let trail = context.len();
+        let old = range(first.before.first - lead..last.before.end() + trail);
+        let new = range(first.after.first - lead..last.after.end() + trail);
         let _ = writeln!(out, "@@ -{old} +{new} @@");
-        let mut at = first.before.start - lead;
+        let mut at = start;
         for change in changes {
-            self.lines(out, ' ', &before[at..change.before.start]);
-            self.lines(out, '-', &before[change.before.clone()]);
-            self.lines(out, '+', &after[change.after.clone()]);
-            at = change.before.end;
+            self.lines(out, ' ', &before[at..change.before.bytes.start]);
+            self.lines(out, '-', &before[change.before.bytes.clone()]);
+            self.lines(out, '+', &after[change.after.bytes.clone()]);
+            at = change.before.bytes.end;
         }
-        self.lines(out, ' ', &before[at..at + trail]);
+        self.lines(out, ' ', &context.concat());
     }
 
-    fn lines(&self, out: &mut String, sign: char, lines: &[Line]) {
+    fn lines(&self, out: &mut String, sign: char, lines: &str) {
         let (paint, end) = match sign {
             '-' if self.color => ("\x1b[31m", "\x1b[0m"),
             '+' if self.color => ("\x1b[32m", "\x1b[0m"),
             _ => ("", ""),
         };
-        for line in lines {
-            let shown = visible(line.text.trim_end_matches(['\n', '\r']));
-            let is_marked = self.is_mixed && line.text.trim_end_matches('\n').ends_with('\r');
+        for line in lines.split_inclusive('\n') {
+            let shown = visible(line.trim_end_matches(['\n', '\r']));
+            let is_marked = self.is_mixed && line.trim_end_matches('\n').ends_with('\r');
             let mark = if is_marked { "␍" } else { "" };
             let _ = writeln!(out, "{paint}{sign}{shown}{mark}{end}");
-            if !line.text.ends_with('\n') {
+            if !line.ends_with('\n') {
                 out.push_str("\\ No newline at end of file\n");
             }
         }
     }
+}
+
+/// Where the line starts that is so many lines before one that starts at a byte.
+fn lines_back(text: &str, start: usize, lines: usize) -> usize {
+    (0..lines).fold(start, |start, _| {
+        let before = &text[..start];
+        let before = before.strip_suffix('\n').unwrap_or(before);
+        before.rfind('\n').map_or(0, |at| at + 1)
+    })
 }
 
 /// Lines as diffs name them: the first one from 1, and how many there are unless it is one. An

@@ -154,7 +154,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
             more => format!("{} pixels are", numbers::grouped(more)),
         };
         text += &format!(
-            "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}\n"
+            "exact: {pixels} known less well than to a millionth, least of all the one at column {x}, row {y}: within {}\n",
+            numbers::at_most(exact.bound())
         );
     }
     text

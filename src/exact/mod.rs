@@ -30,6 +30,7 @@ mod region;
 mod slabs;
 
 use std::{
+    array,
     collections::BinaryHeap,
     ops::ControlFlow,
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
@@ -281,7 +282,35 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
         self.work.fetch_add(budget.spent() as u64, Relaxed);
         let rounding = rounding(together.by_slot.len());
-        self.mean(&together.by_slot, (together.bound + rounding).min(1.0))
+        let pixel = self.mean(&together.by_slot, (together.bound + rounding).min(1.0));
+        match pixel.bound <= self.tolerance {
+            true => pixel,
+            false => self.centered(&pixel, candidates),
+        }
+    }
+
+    /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between the least and the greatest number of all colours that may be
+    /// seen there.
+    fn centered(&self, pixel: &ExactPixel<N>, candidates: &[Candidate]) -> ExactPixel<N> {
+        let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
+        let background = (!is_covered).then(|| self.world.background());
+        let slots = candidates.iter();
+        let slots = slots.flat_map(|candidate| self.world.slots(candidate.object));
+        let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
+        for slot in slots.chain(background) {
+            let color = self.colors[slot];
+            low = array::from_fn(|i| low[i].min(color[i]));
+            high = array::from_fn(|i| high[i].max(color[i]));
+        }
+        let ExactPixel { mean, bound } = *pixel;
+        let least: [f64; N] = array::from_fn(|i| (mean[i] - bound).max(low[i]));
+        let greatest: [f64; N] = array::from_fn(|i| (mean[i] + bound).min(high[i]));
+        let widths = (0..N).map(|i| greatest[i] - least[i]);
+        ExactPixel {
+            mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
+            // The numbers are at most 1, and have been rounded twice.
+            bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
+        }
     }
 
     /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.

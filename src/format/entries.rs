@@ -2,13 +2,12 @@
 //!
 //! It is decided here which line a comment belongs to, and which blocks stay on one line.
 
+use std::borrow::Borrow;
+
 use super::token_stream::{Before, Gap, Reader, WIDTH, Word, width};
 use crate::{
     source::{Source, Span},
-    syntax::{
-        Parsed,
-        tree::{self, Item},
-    },
+    syntax::tree::{self, Item},
 };
 
 /// A line, or several, of a file or of a block.
@@ -82,11 +81,15 @@ impl Entry<'_> {
     }
 }
 
-/// The entries of a file.
-pub fn of_file<'s>(source: &'s Source, parsed: &Parsed<'_>) -> Vec<Entry<'s>> {
-    let mut reader = Reader::new(source, &parsed.comments);
+/// The entries of a file. Items that are handed over are gone as soon as their entries are made: trees take much memory.
+pub fn of_file<'s, 't>(
+    source: &'s Source,
+    comments: &[Span],
+    items: impl IntoIterator<Item = impl Borrow<Item<'t>>>,
+) -> Vec<Entry<'s>> {
+    let mut reader = Reader::new(source, comments);
     let end = source.text().len();
-    let (entries, _) = reader.entries(&parsed.tree.items, In::File, end, Item::span, Reader::item);
+    let (entries, _) = reader.entries(items, In::File, end, Item::span, Reader::item);
     entries
 }
 
@@ -101,15 +104,17 @@ impl<'s> Reader<'_, 's> {
     /// The entries up to an offset, and the comments behind the `{` before them.
     fn entries<N>(
         &mut self,
-        nodes: &[N],
+        nodes: impl IntoIterator<Item = impl Borrow<N>>,
         place: In,
         end: usize,
         span: fn(&N) -> Span,
         what: fn(&mut Self, &N) -> Option<What<'s>>,
     ) -> (Vec<Entry<'s>>, Vec<&'s str>) {
-        let mut entries = Vec::with_capacity(nodes.len());
+        let nodes = nodes.into_iter();
+        let mut entries = Vec::with_capacity(nodes.size_hint().0);
         let mut after_open = Vec::new();
         for node in nodes {
+            let node = node.borrow();
             let gap = self.gap(span(node).start);
             let breaks = gap.breaks;
             let lines = comments(gap, place, &mut entries, &mut after_open);

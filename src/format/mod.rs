@@ -29,22 +29,38 @@ use crate::{
 /// The canonical layout of a scene's text; or, if it has mistakes of syntax, these.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let parsed = syntax::parse(source, SourceId::File);
-    format_parsed(source, &parsed).ok_or_else(|| mistakes(source))
+    if !is_right(source, &parsed) {
+        return Err(mistakes(source));
+    }
+    let Parsed { tree, comments, .. } = parsed;
+    Ok(laid_out(
+        source,
+        entries::of_file(source, &comments, tree.items),
+    ))
 }
 
 /// The canonical layout of a text that is parsed already; none if it has mistakes of syntax.
 pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
-    let right = parsed.problems.is_empty() && source.invalid_utf8().is_empty();
-    if !right || !is_whole(&parsed.tree) {
-        return None;
-    }
-    let mut entries = entries::of_file(source, parsed);
+    is_right(source, parsed).then(|| {
+        let entries = entries::of_file(source, &parsed.comments, &parsed.tree.items);
+        laid_out(source, entries)
+    })
+}
+
+/// Whether a text has no mistakes of syntax.
+fn is_right(source: &Source, parsed: &Parsed<'_>) -> bool {
+    parsed.problems.is_empty() && source.invalid_utf8().is_empty() && is_whole(&parsed.tree)
+}
+
+/// The text of what stands on lines by itself.
+fn laid_out(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     columns::align(&mut entries);
     let written = writer::written(&entries);
+    drop(entries);
     let text = source.text();
     let formatted = with_line_ends(&written, text, source.bom_len());
     debug_assert!(ink(text).eq(ink(&formatted)), "only white space changes");
-    Some(formatted)
+    formatted
 }
 
 /// Whether every item was understood, and every field has a value: where it is missing, nothing was reported yet.

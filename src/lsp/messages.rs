@@ -4,6 +4,10 @@ use lsp_server::{ErrorCode, Message};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+/// Maximum number of values in a message. An object takes some 400 bytes of memory, of which its text may have eight; this is 40 000 changes of a text at
+/// once.
+const MOST_VALUES: usize = 1 << 19;
+
 /// Why a text is no message.
 #[derive(Debug)]
 pub enum Malformed {
@@ -25,6 +29,10 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
     };
+    if most_values(text) > MOST_VALUES {
+        let message = format!("this message has more than {MOST_VALUES} values");
+        return malformed(asked(text), ErrorCode::InvalidRequest, message);
+    }
     let value: Value = match serde_json::from_slice(text) {
         Ok(value) => value,
         Err(error) => {
@@ -54,6 +62,21 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
             malformed(id, ErrorCode::InvalidRequest, message)
         }
     }
+}
+
+/// Returns how many values a text in JSON may have: each but the first follows one of these signs. Nothing is built of the text, which may have any number.
+fn most_values(text: &[u8]) -> usize {
+    let (mut values, mut is_in_text, mut is_escaped) = (1, false, false);
+    for byte in text {
+        match byte {
+            _ if is_escaped => is_escaped = false,
+            b'\\' => is_escaped = is_in_text,
+            b'"' => is_in_text = !is_in_text,
+            b'[' | b',' | b':' if !is_in_text => values += 1,
+            _ => {}
+        }
+    }
+    values
 }
 
 /// Returns the identifier of a request that is no JSON as far as its parameters go, so that whoever asked gets an answer.
@@ -93,6 +116,31 @@ pub fn written(message: &Message) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_too_many_values_nothing_is_built() {
+        let message = |params: &str| format!(r#"{{ "id": 7, "method": "m", "params": {params} }}"#);
+        for value in ["[]", "{}", "1", r#"{"a":1}"#, r#"[{"a":[]}]"#] {
+            let many = format!("[{value}{}]", format!(",{value}").repeat(MOST_VALUES));
+            let Err(Malformed::Answered(response)) = read(message(&many).as_bytes()) else {
+                panic!("{value}");
+            };
+            assert_eq!(response["id"], 7);
+            assert_eq!(response["error"]["code"], ErrorCode::InvalidRequest as i32);
+        }
+        // A text is one value, whatever it holds.
+        let text = r#"\"[,:\\"#.repeat(MOST_VALUES);
+        let place = r#"{ "line": 1, "character": 2 }"#;
+        let change =
+            format!(r#"{{ "range": {{ "start": {place}, "end": {place} }}, "text": "a" }},"#);
+        let changes = change.repeat(40_000);
+        for params in [
+            format!(r#"{{ "text": "{text}" }}"#),
+            format!("[{changes} 1]"),
+        ] {
+            assert!(read(message(&params).as_bytes()).is_ok(), "{params:.80}");
+        }
+    }
 
     #[test]
     fn whoever_asks_gets_an_answer_whatever_the_parameters_are() {

@@ -68,6 +68,11 @@ impl Diagnostic {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
+    /// Whether it suggests a name, or a call, in place of one that stands for nothing.
+    pub(super) fn is_of_suggestion(&self) -> bool {
+        self.is_of_name() || self.is("function_without_arguments")
+    }
+
     /// Whether it is about a name that stands for nothing.
     pub(super) fn is_of_name(&self) -> bool {
         const CODES: [&str; 4] = [

@@ -3,9 +3,12 @@
 //! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the items with their values in them. What a value is in its place is for lowering to find
 //! out.
 
-use super::error::error;
+use super::{
+    error::error,
+    eval::{Evaluator, Names, suits},
+};
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     schema,
     source::{SourceId, Sources, Span},
     suggest::{self, Budget},
@@ -27,11 +30,14 @@ pub struct Override<'s> {
 }
 
 /// Reads the arguments.
-pub fn read<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Vec<Override<'s>> {
+pub fn read<'s>(
+    sources: &'s Sources,
+    diagnostics: &mut impl Extend<Diagnostic>,
+) -> Vec<Override<'s>> {
     let mut overrides: Vec<Override<'s>> = Vec::new();
     for (id, source) in sources.sets() {
         match one(source.text(), id) {
-            Err(problem) => diagnostics.push(*problem),
+            Err(problem) => diagnostics.extend([*problem]),
             Ok((block, name, start)) => {
                 let (value, problems) = syntax::parse_value(source, id, start);
                 diagnostics.extend(problems);
@@ -109,14 +115,15 @@ pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
+    sources: &'s Sources,
     budget: &Budget,
-) -> Vec<Diagnostic> {
-    let mut problems = Vec::new();
+) -> Problems {
+    let mut problems = Problems::default();
     for it in overrides {
         match it.block {
             // Its block was added just now.
             _ if it.put_into(items) => {}
-            None => problems.push(no_such_let(&it.name, items, budget)),
+            None => problems.push(no_such_let(&it, items, sources, budget)),
             Some(target) if setting(target.text).is_some() => {
                 let mut block = Block {
                     kind: Some(target),
@@ -127,7 +134,7 @@ pub fn add<'s>(
                 set_field(&mut block, it.name, it.value);
                 items.push(Item::Block(block));
             }
-            Some(target) => problems.push(no_such_block(&target, items, budget)),
+            Some(target) => problems.push(no_such_block(&it, &target, items, sources, budget)),
         }
     }
     problems
@@ -163,6 +170,58 @@ impl<'s> Override<'s> {
         }
         false
     }
+
+    /// Whether the value means something where it would stand: in a field, or in the definition of a name, which sees those before it.
+    fn suits(
+        &self,
+        place: Result<&schema::Field, &str>,
+        items: &[Item<'s>],
+        sources: &'s Sources,
+        budget: &Budget,
+    ) -> bool {
+        if !budget.spend(items.len()) {
+            return false;
+        }
+        let mut names = Names::default();
+        let definitions = items.iter().filter_map(|item| match item {
+            Item::Definition(definition) => Some((definition.name?, &definition.value)),
+            Item::Block(_) | Item::Bad(_) => None,
+        });
+        let own = place.err();
+        for (name, value) in definitions.take_while(|(name, _)| own != Some(name.text)) {
+            let value = value_of(value, sources, &names);
+            names.define(name, value, SourceId::File);
+        }
+        match place {
+            Ok(field) => suits(field, &self.value, sources, &names),
+            Err(_) => value_of(&self.value, sources, &names).is_some(),
+        }
+    }
+}
+
+/// What a value is, without a report.
+fn value_of<'s>(
+    value: &Value<'s>,
+    sources: &'s Sources,
+    names: &Names<'s>,
+) -> Option<schema::Value> {
+    let mut evaluator = Evaluator {
+        sources,
+        names,
+        problems: &mut Problems::default(),
+    };
+    evaluator.value(value, None)
+}
+
+/// The field of a block, by both names.
+fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::Field> {
+    let object = || {
+        items.iter().find_map(|item| match item {
+            Item::Block(it) if it.name?.text == block => row(it),
+            _ => None,
+        })
+    };
+    setting(block).or_else(object)?.field(name)
 }
 
 /// The row of a block of which a scene has one.
@@ -206,7 +265,13 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
 }
 
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
-fn no_such_block(block: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnostic {
+fn no_such_block<'s>(
+    it: &Override<'s>,
+    block: &Name<'s>,
+    items: &[Item<'s>],
+    sources: &'s Sources,
+    budget: &Budget,
+) -> Diagnostic {
     let objects = objects(items);
     let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let names = objects
@@ -228,11 +293,23 @@ fn no_such_block(block: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagn
             Some(near) => format!("did you mean `{near}`? {known}"),
             None => format!("{known} image, camera and sampler can be set too"),
         })
-        .writing(block.span, near)
+        .writing(
+            block.span,
+            near.filter(|near| {
+                let field = field(near, it.name.text, items);
+                field.is_some_and(|field| it.suits(Ok(field), items, sources, budget))
+            }),
+        )
 }
 
 /// What is wrong with a target that is no `let` of the file, but may be a block.
-fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnostic {
+fn no_such_let<'s>(
+    it: &Override<'s>,
+    items: &[Item<'s>],
+    sources: &'s Sources,
+    budget: &Budget,
+) -> Diagnostic {
+    let name = &it.name;
     let lets = items.iter().filter_map(|item| match item {
         Item::Definition(definition) => Some(definition.name?.text),
         Item::Block(_) | Item::Bad(_) => None,
@@ -240,7 +317,7 @@ fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnost
     let is_block = setting(name.text).is_some() || objects(items).contains(&name.text);
     let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = blocks.find(|block| block.field(name.text).is_some());
-    let near = || suggest::nearest(name.text, lets).map(str::to_owned);
+    let near = || suggest::nearest_name(name.text, lets).map(str::to_owned);
     let meant = match of_block {
         _ if is_block => None,
         Some(block) => Some(format!("{}.{}", block.name, name.text)),
@@ -254,5 +331,11 @@ fn no_such_let(name: &Name<'_>, items: &[Item<'_>], budget: &Budget) -> Diagnost
             Some(meant) => format!("did you mean `{meant}`?"),
             None => "name a `let` of the scene, or a field by `BLOCK.FIELD=…`".to_owned(),
         })
-        .writing(name.span, meant)
+        .writing(
+            name.span,
+            meant.filter(|meant| {
+                let field = of_block.and_then(|block| block.field(name.text));
+                it.suits(field.ok_or(meant), items, sources, budget)
+            }),
+        )
 }

@@ -9,7 +9,7 @@ use super::{
     model::{Camera, Image, Object, Sampler, Scene},
 };
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     schema::{Type, Value},
     source::Sources,
     syntax::{
@@ -92,7 +92,7 @@ impl<'s> SemanticModel<'s> {
     /// What a value of the tree is; `wanted` is the type that would fit, if one is known. None if it failed, or means nothing by itself, such as
     /// the word of a method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
-        let mut problems = Vec::new();
+        let mut problems = Problems::default();
         let mut evaluator = Evaluator {
             sources: self.sources,
             names: &self.names,

@@ -1,13 +1,14 @@
-//! Whether the camera sees anything at all.
+//! Whether the camera sees anything at all, and can tell the squares of a board apart.
 //!
-//! In: a camera and the objects. Out: why all of them are out of its sight, if a sphere around each shows that they are. What is in doubt counts as
+//! In: a camera and the objects. Out: why all of them are out of its sight, if a sphere around each shows that they are; and whether a board's squares are
+//! too small for the numbers that samples are computed with. What is in doubt counts as
 //! seen, and so does what another object hides: a warning is never false. Errors: numbers here are rounded `f64`s, and each comparison leaves
 //! [`MARGIN`] of the sizes in it.
 
 use glam::DVec3;
 
-use super::model::{Camera, Image, Lens, Object, Outline, Shape, View};
-use crate::math::trig;
+use super::model::{Camera, Checkerboard, Image, Lens, Object, Outline, Shape, View};
+use crate::math::{Big, trig};
 
 /// By so much of the lengths that are compared a comparison has to be clear. With up and the view direction at [`LEAST_SINE`] or more the
 /// axes are good to 2^−52/10^−6, about 2·10⁻¹⁰, and all else is better.
@@ -53,6 +54,15 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
         true => Unseen::Behind,
         false => Unseen::Outside,
     })
+}
+
+/// Whether samples show squares of a board that they cannot tell apart, so that all have one colour.
+pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
+    let Some(frustum) = Frustum::new(camera, image) else {
+        return false;
+    };
+    let far = camera.far.unwrap_or(f64::INFINITY);
+    frustum.may_see_plane(board.y, camera.near, far) && frustum.are_lost(board)
 }
 
 /// Centre and radius of a sphere that holds an object; none of a checkerboard.
@@ -160,6 +170,18 @@ impl Frustum {
             false => f64::INFINITY,
         };
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
+    }
+
+    /// Whether nearly all rays meet a board so many squares from the eye that the number is even whatever it is.
+    ///
+    /// The ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x, and as much along z. In the window |r_x| goes up to
+    /// its extent, and is below 2^−10 of that in less than a hundredth of the picture. Where the numbers here overflow or vanish, it is not so.
+    fn are_lost(&self, board: &Checkerboard) -> bool {
+        let [across, up] = self.window;
+        let extent = self.forward.abs() + across.abs() + up.abs();
+        let height = (board.y - self.eye.y).abs();
+        let most = libm::ldexp(1.0, Big::BITS + 11);
+        board.square * most * extent.y < height * extent.x.min(extent.z)
     }
 }
 

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     cancel,
-    diagnostic::{Diagnostic, Edit, Fix},
+    diagnostic::{Diagnostic, Edit, Fix, MOST_PROBLEMS},
     source::{Source, SourceId, Span},
 };
 
@@ -53,7 +53,9 @@ impl Scan {
                     scan.comments.push(token.start..token.end);
                     scan.open_comment = Some(token.start);
                 }
-                TokenKind::OddSpace => scan.odd_spaces.push(token.start..token.end),
+                TokenKind::OddSpace if scan.odd_spaces.len() < MOST_PROBLEMS => {
+                    scan.odd_spaces.push(token.start..token.end);
+                }
                 TokenKind::Sign => match text.as_bytes().get(token.start) {
                     Some(b'-') => minuses += 1,
                     Some(b'(') => {
@@ -139,6 +141,10 @@ impl Scan {
             // What has no width, as a rule, is not meant to keep words apart.
             if !sort.chars().all(char::is_whitespace) {
                 found.fixes.insert(0, all("take it away", ""));
+            }
+            if self.odd_spaces.len() == MOST_PROBLEMS {
+                // There may be others.
+                found.fixes.clear();
             }
             problems.push(found);
         }

@@ -12,7 +12,7 @@ use crate::{
     tracer::Random,
 };
 use pinhole::{
-    diagnostic::{self, Diagnostic, Drawing, Edit, Report, Style},
+    diagnostic::{self, Diagnostic, Drawing, Edit, MOST_PROBLEMS, Report, Style},
     format::format,
     scene,
     source::{Source, Sources, Span},
@@ -107,6 +107,34 @@ fn one_thing_many_times(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
+}
+
+/// Of very many mistakes the first ten thousand are reported, and that there are others, however they are spread.
+#[test]
+fn the_rest_of_very_many_mistakes_is_left_out() {
+    let many = |piece: &str| piece.repeat(20_000);
+    let names: String = (0..20_000)
+        .map(|index| format!("let a = b{index}\n"))
+        .collect();
+    for text in [
+        many("{}"),
+        many("sphere {}\n"),
+        many("spere {}\n"),
+        many(","),
+        names,
+        format!("{CAMERA} sphere {{ {} }}", many("a 1  ")),
+        format!("{CAMERA} let a = {}1", many("sin(1) + ")),
+    ] {
+        assert!(!read(&*text));
+        let found = scene::read(&sources(&text)).diagnostics;
+        assert!(
+            found.len() <= 3 * (MOST_PROBLEMS + 1),
+            "{} of {text:.40}",
+            found.len()
+        );
+        let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
+        assert!(found.iter().any(is_told), "{text:.40}");
+    }
 }
 
 #[test]

@@ -1,6 +1,9 @@
 //! Functions and their arguments.
 
-use super::evaluator::{Evaluator, LARGEST};
+use super::{
+    evaluator::{Evaluator, LARGEST},
+    suggestion::{Meaning, Suggestion},
+};
 use crate::{
     color::Color,
     numbers,
@@ -24,7 +27,12 @@ impl<'s> Evaluator<'_, 's> {
             arguments,
             parentheses,
         } = call;
-        let row = schema::function(function.text);
+        let row = schema::function(function.text).or_else(|| {
+            match self.names.suggestions.meaning(function.text) {
+                Some(Meaning::Function(row)) => Some(row),
+                _ => None,
+            }
+        });
         let mut values = Vec::with_capacity(arguments.len());
         for (index, argument) in arguments.iter().enumerate() {
             let takes = row.and_then(|row| row.parameter(index));
@@ -68,6 +76,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
+        if self.names.suggestions.is_trying() {
+            return;
+        }
         let name = function.text;
         let is_value = self.names.place(name).is_some() || predefined(name).is_some();
         let fits = |row: &&Function| {
@@ -78,20 +89,26 @@ impl<'s> Evaluator<'_, 's> {
             are_right && !is_value
         };
         let rows = schema::FUNCTIONS.iter().filter(fits);
-        let near = suggest::nearest(name, rows.map(|row| row.name));
+        let near = suggest::nearest_name(name, rows.map(|row| row.name));
+        let all = format!(
+            "the functions are {}",
+            suggest::list(schema::FUNCTIONS.iter().map(|row| row.name))
+        );
+        if let Some(row) = near.and_then(schema::function) {
+            self.names.suggestions.push(Suggestion {
+                name,
+                means: Meaning::Function(row),
+                report: function.span,
+                otherwise: all.clone(),
+            });
+        }
         let (label, help) = match near {
             _ if is_value => (
                 "a value, not a function",
                 format!("write an operator between, such as `{name} * (…)`"),
             ),
             Some(near) => ("not a function", format!("did you mean `{near}`?")),
-            None => (
-                "not a function",
-                format!(
-                    "the functions are {}",
-                    suggest::list(schema::FUNCTIONS.iter().map(|row| row.name))
-                ),
-            ),
+            None => ("not a function", all),
         };
         self.problems.push(
             error("unknown_function", format!("there is no function `{name}`"))

@@ -3,7 +3,7 @@
 use super::names::Names;
 use crate::{
     color::Color,
-    diagnostic::Diagnostic,
+    diagnostic::{Diagnostic, Problems},
     scene::error::{error, warning},
     schema::{self, Type, Value},
     source::{Source, SourceId, Sources, Span},
@@ -21,7 +21,7 @@ pub struct Evaluator<'a, 's> {
     /// The names that can be used.
     pub names: &'a Names<'s>,
     /// What is wrong.
-    pub problems: &'a mut Vec<Diagnostic>,
+    pub problems: &'a mut Problems,
 }
 
 /// The value of a text that stands for a value by itself, such as a default of the schema.
@@ -34,9 +34,28 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     let mut evaluator = Evaluator {
         sources: &sources,
         names: &Names::default(),
-        problems: &mut Vec::new(),
+        problems: &mut Problems::default(),
     };
     evaluator.value(&tree, Some(takes))
+}
+
+/// Whether a value is of the type that a field takes, and keeps its conditions.
+pub fn suits<'s>(
+    field: &schema::Field,
+    tree: &tree::Value<'s>,
+    sources: &'s Sources,
+    names: &Names<'s>,
+) -> bool {
+    if let (Type::Method, ValueKind::Name(word)) = (field.takes, &tree.kind) {
+        return schema::method(word).is_some();
+    }
+    let mut evaluator = Evaluator {
+        sources,
+        names,
+        problems: &mut Problems::default(),
+    };
+    let value = evaluator.value(tree, Some(field.takes));
+    value.is_some_and(|value| value.kind() == field.takes && field.allows(value))
 }
 
 impl<'s> Evaluator<'_, 's> {
@@ -157,7 +176,7 @@ impl<'s> Evaluator<'_, 's> {
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
 /// A colour from its code; the parser checked the number of digits.
-fn color_code(written: &str) -> Option<Color> {
+pub(super) fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;
     let code = u32::from_str_radix(digits, 16).ok()?;
     Some(Color::from_bytes(if digits.len() == 3 {

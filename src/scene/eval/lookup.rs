@@ -1,8 +1,12 @@
 //! What a name stands for, and what is wrong with one that stands for nothing.
 
-use super::{evaluator::Evaluator, names::Defined};
+use super::{
+    evaluator::{Evaluator, color_code, literal},
+    names::{Defined, Reported},
+    suggestion::{Meaning, Suggestion},
+};
 use crate::{
-    diagnostic::{Diagnostic, Edit, Label},
+    diagnostic::{Diagnostic, Edit, Label, MOST_PROBLEMS},
     scene::error::error,
     schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
@@ -17,6 +21,9 @@ impl<'s> Evaluator<'_, 's> {
         span: Span,
         wanted: Option<Type>,
     ) -> Option<Value> {
+        if let Some(Meaning::Value(value)) = self.names.suggestions.meaning(name) {
+            return value;
+        }
         let defined = self.names.defined.get(name);
         // A block that an argument changes is read after all definitions.
         let is_above =
@@ -27,30 +34,69 @@ impl<'s> Evaluator<'_, 's> {
         match predefined(name) {
             Some(Predefined::Value(value)) => return Some(value),
             Some(Predefined::Function(function)) => {
+                let call = function.call();
+                self.names.suggestions.push(Suggestion {
+                    name,
+                    means: Meaning::Value(literal(&call, function.gives)),
+                    report: span,
+                    otherwise: "write a value, or a function with its arguments".to_owned(),
+                });
                 let message =
                     format!("`{name}` is a function, and stands here without its arguments");
                 self.problems.push(
                     error("function_without_arguments", message)
                         .at(span, "a function")
-                        .help(format!("write `{}`", function.call()))
-                        .writing(span, [function.call()]),
+                        .help(format!("write `{call}`"))
+                        .writing(span, [call]),
                 );
                 return None;
             }
             None if self.names.parts.contains(name) => return None,
+            None if self.names.suggestions.is_trying() => return None,
             None => {}
         }
+        self.report(name, span, wanted);
+        None
+    }
+
+    /// Reports a name that stands for nothing, or adds this place to the report.
+    fn report(&self, name: &'s str, span: Span, wanted: Option<Type>) {
         let mut problems = self.names.problems.borrow_mut();
         let mut reported = self.names.reported.borrow_mut();
-        let index = *reported.entry(name).or_insert(problems.len());
-        match problems.get_mut(index) {
-            Some(problem) => and_here(problem, span),
-            None => problems.push(match self.names.definition(name) {
-                Some(definition) => self.used_before(name, span, definition),
-                None => self.unknown_name(name, span, wanted),
-            }),
+        let known = reported.get(name).copied();
+        let suggested = match known {
+            Some(Reported { index, suggested }) => {
+                if let Some(problem) = problems.get_mut(index) {
+                    and_here(problem, span);
+                }
+                suggested
+            }
+            // More than are kept are not remembered, either.
+            None if problems.is_full() => None,
+            None => {
+                let (problem, suggested) = match self.names.definition(name) {
+                    Some(definition) => (self.used_before(name, span, definition), None),
+                    None => self.unknown_name(name, span, wanted),
+                };
+                let index = problems.len();
+                reported.insert(name, Reported { index, suggested });
+                problems.push(problem);
+                suggested
+            }
+        };
+        let index = known.map_or(problems.len().saturating_sub(1), |known| known.index);
+        let first = problems.get(index).and_then(|it| it.labels.first());
+        if let (Some(means), Some(label)) = (suggested, first) {
+            self.names.suggestions.push(Suggestion {
+                name,
+                means,
+                report: label.span,
+                otherwise: no_other(
+                    name,
+                    problems.get(index).is_some_and(|it| it.is("unknown_color")),
+                ),
+            });
         }
-        None
     }
 
     fn used_before(&self, name: &str, span: Span, definition: Span) -> Diagnostic {
@@ -71,7 +117,13 @@ impl<'s> Evaluator<'_, 's> {
             })
     }
 
-    fn unknown_name(&self, name: &str, span: Span, wanted: Option<Type>) -> Diagnostic {
+    /// The problem of a name that is not defined, and what the name stands for that is suggested in its place.
+    fn unknown_name(
+        &self,
+        name: &str,
+        span: Span,
+        wanted: Option<Type>,
+    ) -> (Diagnostic, Option<Meaning>) {
         let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
         let near = self.nearest(name, wanted, is_color);
         let problem = match is_color {
@@ -86,18 +138,33 @@ impl<'s> Evaluator<'_, 's> {
         let is_object = self.names.objects.contains(name);
         let help = match &near {
             _ if is_object && !is_color => {
-                return problem.help(
+                let problem = problem.help(
                     "an object is no value: define its place with `let`, and use that in both",
                 );
+                return (problem, None);
             }
             Some(near) => format!("did you mean `{near}`?"),
-            None if is_color => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
-            None => format!("define it before it is used: `let {name} = …`"),
+            None => no_other(name, is_color),
         };
-        problem.help(help).writing(span, near)
+        let means = near
+            .as_deref()
+            .map(|near| Meaning::Value(self.meaning(near)));
+        (problem.help(help).writing(span, near), means)
     }
 
-    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed with.
+    /// The value of a name that is suggested, or of a colour's code.
+    fn meaning(&self, name: &str) -> Option<Value> {
+        if let Some(defined) = self.names.defined.get(name) {
+            return defined.value;
+        }
+        match predefined(name) {
+            Some(Predefined::Value(value)) => Some(value),
+            _ => color_code(name).map(Value::Color),
+        }
+    }
+
+    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed with. What is known to be of another type
+    /// than the one that is wanted is passed over.
     fn nearest(&self, name: &str, wanted: Option<Type>, is_color: bool) -> Option<String> {
         // `ff0000`, the code of a colour without its sign.
         let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());
@@ -110,15 +177,19 @@ impl<'s> Evaluator<'_, 's> {
         {
             return Some(first.to_owned());
         }
+        let is_of_type = |name: &&str| match (self.meaning(name), wanted) {
+            (Some(value), Some(wanted)) => value.kind() == wanted,
+            _ => true,
+        };
         let lets = self.names.to_compare()?.iter().copied();
         let colors = css::names().map(|name| name as &str);
         let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
         let near = match is_color {
-            true => suggest::nearest(name, lets.chain(colors)),
-            false => suggest::nearest(name, lets.chain(constants)),
+            true => suggest::nearest_name(name, lets.chain(colors).filter(is_of_type)),
+            false => suggest::nearest_name(name, lets.chain(constants).filter(is_of_type)),
         };
         let near = near.or_else(|| match wanted {
-            None => suggest::nearest(name, css::names()),
+            None => suggest::nearest_name(name, css::names()),
             Some(_) => None,
         });
         near.map(str::to_owned)
@@ -144,6 +215,14 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
+/// What to do about a name if no other one was meant.
+fn no_other(name: &str, is_color: bool) -> String {
+    match is_color {
+        true => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
+        false => format!("define it before it is used: `let {name} = …`"),
+    }
+}
+
 /// Adds another place where the same name is used.
 fn and_here(problem: &mut Diagnostic, span: Span) {
     // More places than these would hide the first.
@@ -152,6 +231,7 @@ fn and_here(problem: &mut Diagnostic, span: Span) {
         let message = "and here".to_owned();
         problem.labels.push(Label { span, message });
     }
+    problem.fixes.retain(|fix| fix.edits.len() < MOST_PROBLEMS);
     for fix in &mut problem.fixes {
         let text = fix.edits.first().map(|edit| edit.text.clone());
         fix.edits.extend(text.map(|text| Edit::new(span, text)));

@@ -11,7 +11,9 @@ mod lists;
 mod lookup;
 mod names;
 mod operators;
+mod suggestion;
 
 pub use calls::in_bytes;
-pub use evaluator::{Evaluator, literal};
+pub use evaluator::{Evaluator, literal, suits};
 pub use names::Names;
+pub use suggestion::Suggestion;

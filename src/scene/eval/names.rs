@@ -5,8 +5,9 @@ use std::{
     collections::{HashMap, HashSet, hash_map::Entry},
 };
 
+use super::suggestion::{Meaning, Suggestions};
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::Problems,
     schema::Value,
     source::{SourceId, Span},
     suggest::Budget,
@@ -32,9 +33,20 @@ pub struct Names<'s> {
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// What was reported of names, apart from the other problems, some of which are dropped again.
-    pub(in crate::scene) problems: RefCell<Vec<Diagnostic>>,
-    /// The names that were reported, with the problem's index: the next use of the same name is another label of it.
-    pub(super) reported: RefCell<HashMap<&'s str, usize>>,
+    pub(in crate::scene) problems: RefCell<Problems>,
+    /// The names that were reported: the next use of the same name is another label of its problem.
+    pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
+    /// What is suggested in place of names.
+    pub(in crate::scene) suggestions: Suggestions<'s>,
+}
+
+/// A name that was reported.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reported {
+    /// The index of its problem.
+    pub index: usize,
+    /// What the name stands for that is suggested in its place, unless none is.
+    pub suggested: Option<Meaning>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +115,13 @@ impl<'s> Names<'s> {
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
+    }
+
+    /// Forgets what is suggested in place of a name.
+    pub fn withdraw(&self, name: &str) {
+        if let Some(reported) = self.reported.borrow_mut().get_mut(name) {
+            reported.suggested = None;
+        }
     }
 
     /// The comparisons that are left in search of the nearest name.

@@ -14,6 +14,7 @@ use crate::{
 };
 
 /// A block with what it was given.
+#[derive(Clone)]
 pub(super) struct Block<'s> {
     pub row: &'static schema::Block,
     /// The word that it starts with.
@@ -67,6 +68,16 @@ impl Block<'_> {
     pub fn given(&self, name: &str) -> Option<Given> {
         let index = self.row.fields.iter().position(|row| row.name == name)?;
         self.given.get(index).copied().flatten()
+    }
+
+    /// The same with one more field.
+    pub fn with(&self, row: &Field, given: Given) -> Self {
+        let mut block = self.clone();
+        let rows = block.row.fields.iter().zip(&mut block.given);
+        for (_, slot) in rows.filter(|(other, _)| other.name == row.name) {
+            *slot = Some(given);
+        }
+        block
     }
 
     /// The value that stands for a field, or the block's keyword.

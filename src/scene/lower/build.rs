@@ -56,6 +56,9 @@ impl<'s> Lowering<'s> {
             && !objects.is_empty()
         {
             self.unseen(block, camera, image, &objects);
+            if sampler.is_some_and(|sampler| sampler.method != Method::Exact) {
+                self.lost_squares(camera, image);
+            }
         }
         Parts {
             image,
@@ -118,7 +121,7 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    fn sampler(&mut self, block: &Block<'s>, image: Option<Image>) -> Option<Sampler> {
+    pub(super) fn sampler(&mut self, block: &Block<'s>, image: Option<Image>) -> Option<Sampler> {
         let (total, per_pixel) = (block.given("total"), block.given("per_pixel"));
         let count = match total {
             Some(_) => Count::Total(block.number("total")? as u64),

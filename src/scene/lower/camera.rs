@@ -12,8 +12,8 @@ use crate::{
     numbers,
     scene::{
         error::{error, warning},
-        model::{Camera, Image, Lens, Object, View, level_direction},
-        unseen::{LEAST_SINE, Unseen, sphere_around, why_unseen},
+        model::{Camera, Checkerboard, Image, Lens, Object, View, level_direction},
+        unseen::{LEAST_SINE, Unseen, are_squares_lost, sphere_around, why_unseen},
     },
 };
 
@@ -203,6 +203,39 @@ impl<'s> Lowering<'s> {
                 .writing(given.span, [towards]),
             (_, None) => problem.help("turn the camera, or move it"),
         });
+    }
+}
+
+impl Lowering<'_> {
+    /// Warns of boards whose squares samples cannot tell apart.
+    pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
+        let boards = std::mem::take(&mut self.boards);
+        for (board, place) in boards {
+            let is_lost =
+                |square| are_squares_lost(camera, image, &Checkerboard { square, ..board });
+            if board.colors[0] == board.colors[1] || !is_lost(board.square) {
+                continue;
+            }
+            // As many squares as people can see: of a metre, or of the eye's height over the board.
+            let height = (board.y - camera.eye.y).abs();
+            let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
+            let larger = larger.map(numbers::short);
+            let exact = "or `method exact`, which shows the mean of all squares in a pixel";
+            let help = match &larger {
+                Some(larger) => format!("write a larger `square`, such as {larger}, {exact}"),
+                None => format!("move the camera nearer, {exact}"),
+            };
+            let is_given = self.sources.text(place) != "checkerboard";
+            self.problems.push(
+                warning(
+                    "squares_too_small",
+                    "samples cannot tell the squares of this board apart",
+                )
+                .at(place, "so small from here that all of them get one colour")
+                .help(help)
+                .writing(place, larger.filter(|_| is_given)),
+            );
+        }
     }
 }
 

@@ -22,6 +22,10 @@ use crate::{
 impl<'s> Lowering<'s> {
     /// The value of a field, if it is of the field's type and keeps its conditions.
     pub(super) fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+        self.trying(tree.span, |it| it.typed_once(row, tree))
+    }
+
+    fn typed_once(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
         let before = self.problems.len();
         let value = match (row.takes, &tree.kind) {
             (Type::Method, ValueKind::Name(written)) => return self.method(written, tree),

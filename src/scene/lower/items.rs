@@ -7,7 +7,10 @@ use super::{
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix},
-    scene::error::{error, twice},
+    scene::{
+        error::{error, twice},
+        model::Shape,
+    },
     schema::{self, predefined},
     source::{SourceId, Span},
     suggest,
@@ -37,7 +40,9 @@ impl<'s> Lowering<'s> {
     fn definition(&mut self, definition: &Definition<'s>) {
         let name = definition.name;
         let first = name.and_then(|name| self.names.place(name.text));
-        let value = self.evaluate(&definition.value, None);
+        let value = self.trying(definition.value.span, |it| {
+            it.evaluate(&definition.value, None)
+        });
         let Some(name) = name else { return };
         // A name without its `let` was reported.
         let reported = definition.keyword.range().is_empty();
@@ -114,6 +119,9 @@ impl<'s> Lowering<'s> {
         if row.is_object {
             self.missing_fields(&lowered);
             let object = self.object(&lowered);
+            if let Some(Shape::Checkerboard(board)) = object.as_ref().map(|object| object.shape) {
+                self.boards.push((board, lowered.place("square")));
+            }
             self.objects.extend(object);
         } else if !is_duplicate {
             self.blocks.push(lowered);

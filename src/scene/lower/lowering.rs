@@ -5,8 +5,11 @@ use std::{collections::HashMap, sync::atomic::AtomicBool};
 use super::block::Block;
 use crate::{
     cancel,
-    diagnostic::Diagnostic,
-    scene::{eval::Names, model::Object},
+    diagnostic::{Diagnostic, Problems},
+    scene::{
+        eval::Names,
+        model::{Checkerboard, Object},
+    },
     source::{Sources, Span},
 };
 
@@ -21,6 +24,8 @@ pub(super) struct Lowering<'s> {
     pub(super) blocks: Vec<Block<'s>>,
     /// The objects.
     pub(super) objects: Vec<Object>,
+    /// The checkerboards, each with the number of its squares' side, or its keyword.
+    pub(super) boards: Vec<(Checkerboard, Span)>,
     /// Whether there is anything in the file but comments.
     pub(super) has_items: bool,
     /// Whether there is an object, built or not.
@@ -31,7 +36,7 @@ pub(super) struct Lowering<'s> {
     pub(super) bad: Vec<&'s str>,
     /// What was found before: wrong with the syntax, and with the targets of arguments.
     pub(super) found: Vec<Diagnostic>,
-    pub(super) problems: Vec<Diagnostic>,
+    pub(super) problems: Problems,
     /// The values of unknown fields, in the order of the text.
     pub(super) unknown: Vec<Span>,
 }
@@ -45,12 +50,13 @@ impl<'s> Lowering<'s> {
             names,
             blocks: Vec::new(),
             objects: Vec::new(),
+            boards: Vec::new(),
             has_items: false,
             has_objects: false,
             first_names: HashMap::new(),
             bad: Vec::new(),
             found: Vec::new(),
-            problems: Vec::new(),
+            problems: Problems::default(),
             unknown: Vec::new(),
         }
     }

@@ -14,6 +14,7 @@ mod lowering;
 mod missing;
 mod objects;
 mod read;
+mod suggestions;
 mod unknown;
 
 pub use read::{analyze, read, read_in_parts, read_unless};

@@ -67,7 +67,7 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     if !all {
         return None;
     }
-    lowering.problems = overrides::add(overrides, &mut last, lowering.names.budget());
+    lowering.problems = overrides::add(overrides, &mut last, sources, lowering.names.budget());
     lowering.items(&last);
     let objects = &mut lowering.objects;
     objects.sort_unstable_by_key(|object| object.span.start);
@@ -104,7 +104,7 @@ fn whole<'s>(
     let mut items = parsed.tree.items.clone();
     let mut overrides = overrides::read(sources, &mut lowering.found);
     overrides::apply(&mut overrides, &mut items);
-    lowering.problems = overrides::add(overrides, &mut items, lowering.names.budget());
+    lowering.problems = overrides::add(overrides, &mut items, sources, lowering.names.budget());
     // The value of a field that is set sees all names.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
@@ -135,12 +135,12 @@ impl<'s> Lowering<'s> {
         let mut diagnostics = std::mem::take(&mut self.found);
         // How a value is written does not matter where its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
-        let mut of_names = self.names.problems.take();
+        let mut of_names = Vec::from(self.names.problems.take());
         // The uses of a name are not always found in the order of the text.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             fix.edits.sort_by_key(|edit| edit.span);
         }
-        let found = std::mem::take(&mut self.problems).into_iter();
+        let found = Vec::from(std::mem::take(&mut self.problems)).into_iter();
         diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
         diagnostic::sort(&mut diagnostics);

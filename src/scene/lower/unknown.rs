@@ -3,14 +3,26 @@
 //! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
 //! or can be made to be.
 
-use super::{block::Block, fixes::quoted, lowering::Lowering};
+use super::{
+    block::{Block, Given},
+    fixes::quoted,
+    lowering::Lowering,
+};
 use crate::{
+    color::Color,
     diagnostic::{Diagnostic, Fix},
-    scene::{error::error, examples::example_beside},
-    schema::{self, Field, Type, Value, css},
+    scene::{error::error, eval::literal, examples::example_beside, model::Image},
+    schema::{self, Field, Kind, Type, Value, css},
     source::{SourceId, Span},
     suggest,
     syntax::tree::{self, Name, ValueKind},
+};
+
+/// The largest picture.
+const LARGEST: Image = Image {
+    width: 1 << 20,
+    height: 1 << 20,
+    background: Color::BLACK,
 };
 
 /// What a word that is no field of a block was to be.
@@ -152,7 +164,7 @@ impl<'s> Lowering<'s> {
             }
         }
         let before = self.problems.len();
-        let found = self.evaluate(value, wanted);
+        let found = self.trying(value.span, |it| it.evaluate(value, wanted));
         let problems = self.problems.split_off(before).into_iter();
         self.problems
             .extend(problems.filter(Diagnostic::is_of_name));
@@ -171,17 +183,48 @@ impl<'s> Lowering<'s> {
             return None;
         }
         let text = self.sources.text(value.span);
-        match (found, &value.kind) {
+        let (written, means) = match (found, &value.kind) {
             (None, ValueKind::Missing) => {
                 let example = || example_beside(row, &|other| block.given(other)?.value);
-                (value.span.source == SourceId::File).then(example)
+                return (value.span.source == SourceId::File).then(example);
             }
             (Some(value), _) if value.kind() == row.takes => {
-                row.allows(value).then(|| text.to_owned())
+                (row.allows(value).then(|| text.to_owned())?, Some(value))
             }
-            (Some(found), _) => self.converted(row, value, found),
-            (None, _) => None,
+            (Some(found), _) => {
+                let written = self.converted(row, value, found)?;
+                let means = literal(&written, row.takes);
+                (written, means)
+            }
+            (None, _) => return None,
+        };
+        let given = Given {
+            name: value.span,
+            span: value.span,
+            value: means,
+        };
+        let with_it = block.with(row, given);
+        (self.errors_of(&with_it) <= self.errors_of(block)).then_some(written)
+    }
+
+    /// The number of errors that a block's fields make together, none of which is reported here.
+    fn errors_of(&mut self, block: &Block<'s>) -> usize {
+        let before = self.problems.len();
+        match block.row.kind {
+            Kind::Camera => {
+                self.camera(block);
+            }
+            // A picture that may be larger is not known yet.
+            Kind::Sampler => {
+                self.sampler(block, Some(LARGEST));
+            }
+            Kind::Image => {}
+            Kind::Sphere | Kind::Triangle | Kind::Box | Kind::Checkerboard => {
+                self.object(block);
+            }
         }
+        let problems = self.problems.split_off(before);
+        problems.iter().filter(|problem| problem.is_error()).count()
     }
 
     /// Several fields with the parts of a value.

@@ -28,7 +28,7 @@ use super::{
     vocabulary::Vocabulary,
 };
 use crate::{
-    diagnostic::{Diagnostic, Edit, Fix},
+    diagnostic::{Edit, Fix, MOST_PROBLEMS, Problems},
     schema::Type,
     source::{Source, SourceId, Span},
 };
@@ -49,7 +49,7 @@ pub struct Recovery<'w, 's> {
     /// The items so far, those that pest read among them.
     pub(super) items: Vec<Item<'s>>,
     /// What was wrong so far.
-    pub(super) problems: Vec<Diagnostic>,
+    pub(super) problems: Problems,
     /// Where a mistake took the rest of the text.
     cut: Option<usize>,
     /// Where the item ended that was read here last.
@@ -97,7 +97,7 @@ impl<'w, 's> Recovery<'w, 's> {
             next: 0,
             last_end: 0,
             items: Vec::new(),
-            problems: Vec::new(),
+            problems: Problems::default(),
             cut: None,
             read_to: 0,
             within: Within::default(),
@@ -119,7 +119,10 @@ impl<'w, 's> Recovery<'w, 's> {
         if self.last_end == start {
             self.bump();
         }
-        self.read_to = self.last_end;
+        self.read_to = match self.problems.is_full() {
+            true => self.text.len(),
+            false => self.last_end,
+        };
         self.read_to
     }
 
@@ -174,10 +177,11 @@ impl<'w, 's> Recovery<'w, 's> {
     /// All that was read, with what the scan found.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_slips(self.problems.len());
+        let cut = self.problems.is_full().then_some(self.read_to);
         let mut parsed = Parsed {
             tree: Tree { items: self.items },
-            problems: self.problems,
-            cut: self.cut,
+            cut: self.cut.or(cut),
+            problems: self.problems.into(),
             ..Parsed::default()
         };
         scan.report(self.source, self.id, &mut parsed);
@@ -200,7 +204,8 @@ impl<'w, 's> Recovery<'w, 's> {
         }
         let end = self.text.len();
         let token = self.tokens.get(self.next + ahead).copied();
-        token.unwrap_or(Token {
+        // With more mistakes than are kept, the text ends.
+        token.filter(|_| !self.problems.is_full()).unwrap_or(Token {
             kind: TokenKind::End,
             start: end,
             end,
@@ -395,7 +400,11 @@ impl<'w, 's> Recovery<'w, 's> {
 
     fn slip(&mut self, sign: Span) {
         let word = self.written(sign);
-        self.within.slips.entry(word).or_default().push(sign);
+        let places = self.within.slips.entry(word).or_default();
+        match places.len() < MOST_PROBLEMS {
+            true => places.push(sign),
+            false => self.problems.end(sign),
+        }
     }
 
     /// Where a problem since so many has no fix, it is doubtful what the signs belong to.

@@ -5,6 +5,7 @@ import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
 import type { Published, ServerDiagnostic, TextEdit } from "./protocol";
+import { setText, visible } from "./visible";
 
 interface CodeAction {
   title: string;
@@ -34,7 +35,7 @@ function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: Cod
       from: editor.offset(diagnostic.range.start),
       to: editor.offset(diagnostic.range.end),
       severity: diagnostic.severity === 2 ? "warning" : "error",
-      message: diagnostic.message,
+      message: visible(diagnostic.message),
       actions: [...fixes, ...all].map(action => fix(editor, action)),
     };
   });
@@ -49,7 +50,7 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit.changes?.[editor.uri] ?? [];
   return {
-    name: action.title,
+    name: visible(action.title),
     apply(view) {
       // The edits are for the text that was judged; a newer one is being judged now.
       if (view.state.doc === doc) view.dispatch({ changes: editor.changes(edits), userEvent: "input.fix" });
@@ -89,7 +90,7 @@ export class Problems {
       items.push(item);
     });
     const count = items.length;
-    this.button.textContent = count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`;
+    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`);
     this.button.toggleAttribute("data-some", count > 0);
     // While it is closed nobody sees it: a drag changes the text many times a second.
     this.list.replaceChildren(...(this.list.hidden ? [] : items));

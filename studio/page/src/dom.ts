@@ -1,5 +1,7 @@
 // Elements of the page, made and found.
 
+import { setText } from "./visible";
+
 /** The element with this id, which stands in index.html. */
 export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   const element = document.getElementById(id);
@@ -11,7 +13,7 @@ export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
 export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "", text = ""): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   if (className !== "") element.className = className;
-  if (text !== "") element.textContent = text;
+  if (text !== "") setText(element, text);
   return element;
 }
 

@@ -6,6 +6,7 @@ import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
 import type { HostedFile, Saved } from "./protocol";
 import type { Status } from "./status";
+import { setText, visibleLine } from "./visible";
 
 /** What browsers that can save into files offer for it. */
 interface FileHandle {
@@ -47,6 +48,11 @@ export class Files {
     addEventListener("beforeunload", event => {
       if (this.isUnsaved) event.preventDefault();
     });
+  }
+
+  /** The name as people may see it. */
+  private get shownName(): string {
+    return visibleLine(this.name);
   }
 
   get isUnsaved(): boolean {
@@ -95,7 +101,7 @@ export class Files {
       this.conflict.close();
       this.seen = text;
       this.editor.replace(text);
-      this.status.say(`${this.name} was changed outside; the page follows.`);
+      this.status.say(`${this.shownName} was changed outside; the page follows.`);
     } else {
       this.ask(text);
     }
@@ -104,15 +110,15 @@ export class Files {
 
   private tellGone(reason?: string | null): void {
     this.isGone = true;
-    this.status.say(reason ? `${this.name} cannot be read: ${reason}` : `${this.name} is gone; Save writes it anew.`, "warning");
+    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}` : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
   /** Shows whether everything is saved. */
   show(): void {
-    byId("file-name").textContent = this.name;
+    setText(byId("file-name"), this.shownName);
     const { isUnsaved } = this;
-    byId("file-state").textContent = isUnsaved ? "not saved" : "";
-    const title = `${isUnsaved ? "• " : ""}${this.name} – Pinhole Studio`;
+    setText(byId("file-state"), isUnsaved ? "not saved" : "");
+    const title = `${isUnsaved ? "• " : ""}${this.shownName} – Pinhole Studio`;
     if (document.title !== title) document.title = title;
   }
 
@@ -144,7 +150,7 @@ export class Files {
     this.seen = text;
     this.isGone = false;
     this.untouched = null;
-    this.status.say(`${name} is saved.`);
+    this.status.say(`${this.shownName} is saved.`);
   }
 
   /** The name that a new file shall have; null if it shall not be saved. */
@@ -205,7 +211,7 @@ export class Files {
       this.seen = text;
       this.untouched = null;
     } catch {
-      this.status.say(`${file.name} is no text in UTF-8.`, "warning");
+      this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning");
     }
     this.show();
   }
@@ -214,7 +220,7 @@ export class Files {
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), this.editor.text).map(({ sign, text }) => create("div", sign === "-" ? "removed" : sign === "+" ? "added" : "", `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
-    byId("conflict-name").textContent = this.name;
+    setText(byId("conflict-name"), this.shownName);
     const choose = (act: () => void) => () => {
       this.conflict.close();
       act();

@@ -4,6 +4,7 @@
 import { createSvg, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
 import type { DrawnObject, Overlays, Point, Polyline, Samples } from "./protocol";
+import { setText } from "./visible";
 
 /** What can be switched on, with its name in the menu. */
 export const LAYERS = {
@@ -94,7 +95,7 @@ export class OverlayLayer {
     if (Math.abs(x) > 1e6 || Math.abs(y) > 1e6) return;
     const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
     const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
-    label.textContent = text;
+    setText(label, text);
     this.svg.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }), label);
   }
 

@@ -1,5 +1,7 @@
 // Documentation comes from the server as Markdown, which the language client turns into HTML. Scenes can put any text into it, so nothing but plain formatting passes.
 
+import { visible } from "./visible";
+
 const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI", "BR", "HR"]);
 
 /** The HTML with elements of plain formatting alone, without attributes; of a link its text, and of all others how they were written. */
@@ -14,13 +16,13 @@ export function sanitized(html: string): string {
 function copy(from: Node, to: Node): void {
   for (const node of from.childNodes) {
     if (node instanceof Text) {
-      to.appendChild(document.createTextNode(node.data));
+      to.appendChild(document.createTextNode(visible(node.data)));
     } else if (node.nodeType === Node.ELEMENT_NODE && ALLOWED.has(node.nodeName)) {
       copy(node, to.appendChild(document.createElement(node.nodeName)));
     } else if (node.nodeName === "A") {
       copy(node, to);
     } else if (node.nodeType === Node.ELEMENT_NODE) {
-      to.appendChild(document.createTextNode((node as Element).outerHTML));
+      to.appendChild(document.createTextNode(visible((node as Element).outerHTML)));
     }
   }
 }

@@ -3,6 +3,7 @@
 import type { ConnectionState } from "./connection";
 import { byId } from "./dom";
 import type { Fineness } from "./frames";
+import { setText, visibleLine } from "./visible";
 
 const FINENESS: Record<Fineness, string> = { coarse: "coarse", sharp: "one sample a pixel", final: "finished" };
 
@@ -32,24 +33,24 @@ export class Status {
 
   /** Names what is under the pointer. */
   point(text: string): void {
-    this.pointed.textContent = text;
+    setText(this.pointed, text);
   }
 
   /** Says what has happened. */
   say(text: string, tone: "plain" | "warning" = "plain"): void {
-    this.said.textContent = text;
+    setText(this.said, visibleLine(text));
     this.said.dataset["tone"] = tone;
   }
 
   picture([width, height]: [number, number], fineness: Fineness): void {
-    byId("frame-state").textContent = `${width} × ${height}, ${FINENESS[fineness]}`;
+    setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
   }
 
   /** Marks the picture as one of an older text, or no longer. */
   stale(why: string | null): void {
     const note = byId("stale");
     note.hidden = why === null;
-    note.textContent = why ?? "";
+    setText(note, why ?? "");
     byId("stage").toggleAttribute("data-stale", why !== null);
   }
 
@@ -58,6 +59,6 @@ export class Status {
     const isKept = hasText && state !== "connecting";
     byId("connection-bar").hidden = state === "open";
     byId("connection-download").hidden = !isKept;
-    byId("connection").textContent = CONNECTION[state] + (isKept ? KEPT : "");
+    setText(byId("connection"), CONNECTION[state] + (isKept ? KEPT : ""));
   }
 }

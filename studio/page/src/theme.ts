@@ -3,6 +3,7 @@
 import { Compartment, type Extension } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import { byId, remember, remembered } from "./dom";
+import { setText } from "./visible";
 
 const compartment = new Compartment();
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
@@ -22,7 +23,7 @@ export function followTheme(view: EditorView): void {
   const apply = () => {
     const dark = isDark();
     document.documentElement.dataset["theme"] = dark ? "dark" : "light";
-    button.textContent = dark ? "Light" : "Dark";
+    setText(button, dark ? "Light" : "Dark");
     button.setAttribute("aria-label", dark ? "Light colours" : "Dark colours");
     view.dispatch({ effects: compartment.reconfigure(EditorView.darkTheme.of(dark)) });
   };

@@ -134,3 +134,46 @@ fn hard_scenes_are_known() {
         assert!(bound <= 1e-9, "{}: {bound:e}", path.display());
     }
 }
+
+/// What is not known of a pixel may be anything between the colours that it can show; its mean is the middle of that.
+#[test]
+fn means_are_in_the_middle_of_what_is_possible() {
+    let mut vague = 0;
+    for (camera, objects, [least, greatest]) in [
+        (
+            "eye (0.31, 1.7, 2.2) direction (1, 0, -2)",
+            "checkerboard { y 0 square 5e-324 colors (#202020, #606060) }",
+            ["#000", "#606060"],
+        ),
+        (
+            "eye (0.31, 1.7, 2.2) direction (0, -1, -1)",
+            "checkerboard { y 0 square 1e-9 colors (#404040, #808080) }",
+            ["#404040", "#808080"],
+        ),
+        (
+            "eye (3, 2, 0) lookat (-2.96, 1.56, -4.23) fov 179.999999deg",
+            "checkerboard { y -2.4 square 55444.38 colors (white, #505050) } checkerboard { square 1.82 colors (#303030, #a0a0a0) } sphere { center (-3, 2, -6) color #c0c0c0 }",
+            ["#000", "white"],
+        ),
+    ] {
+        let text = format!("image {{ width 5 height 40 }} camera {{ {camera} }} {objects}");
+        let exact = exact(&read(&text));
+        let [least, greatest] = [least, greatest].map(|color| {
+            let scene = read(&format!("camera {{ eye (0, 1, 0) direction (1, 0, 0) }} sphere {{ center (9, 1, 0) color {color} }}"));
+            scene.objects[0].shape.colors()[0].to_linear()[0]
+        });
+        let means = (0..40)
+            .flat_map(|y| exact.film.row(y))
+            .map(|pixel| pixel[0]);
+        for (mean, &bound) in means.zip(&exact.bounds).filter(|(_, bound)| **bound > 1e-6) {
+            vague += 1;
+            let bound = f64::from(bound);
+            let about = 1e-6 * bound;
+            assert!(
+                mean - bound >= least - about && mean + bound <= greatest + about,
+                "{mean} ± {bound}: {text}"
+            );
+        }
+    }
+    assert!(vague > 20, "{vague} pixels");
+}

@@ -2,6 +2,7 @@
 
 mod answers;
 mod mistyped;
+mod names;
 
 use std::collections::BTreeMap;
 

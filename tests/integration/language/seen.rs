@@ -1,11 +1,13 @@
-//! The warning of cameras that see nothing: it is never false, and comes often enough.
+//! The warnings of cameras that see nothing, or squares too small to tell apart: they are never false, and come often enough.
+
+use std::collections::BTreeSet;
 
 use pinhole::{color::Color, scene};
 
 use super::codes;
 use crate::{
     generated::{Numbers, generated},
-    scenes::{exact, sources},
+    scenes::{exact, read, sampled, sources},
 };
 
 /// The first objects of generated scenes, by themselves.
@@ -32,4 +34,48 @@ fn a_warning_is_never_false_and_comes_often_enough() {
     }
     // Bounds are larger than what they bound, and what is left of the window may be below the pixels' own.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
+}
+
+/// Pictures of boards of ever smaller squares, from several places, by some methods.
+#[test]
+fn a_board_of_lost_squares_has_one_colour() {
+    let (mut warned, mut one_colored) = (0, 0);
+    for (eye, view, nearness) in [
+        ("(0.3, 1, 2)", "lookat (0.1, 0, -3)", 1.0),
+        ("(0, 2, 8)", "direction (0, 0, -1)", 1.0),
+        ("(0.1, 9, 0.2)", "direction (0, -1, 0)  up (1, 0, -3)", 1.0),
+        ("(-5e9, 1e-6, 7)", "direction (3, -1, -2)  roll 40deg", 1e-6),
+        ("(1, -1e100, 1)", "direction (3, 1, -2)  fov 170deg", 1e100),
+    ] {
+        for exponent in [-20, -60, -90, -94, -97, -99, -100, -101, -103, -110, -150] {
+            for method in ["jittered", "regular", "scatter"] {
+                let square = libm::pow(10.0, f64::from(exponent)) * nearness;
+                let text = format!(
+                    "image {{ width 24  height 16  background red }} camera {{ eye {eye}  {view} }}
+                     sampler {{ method {method} }} checkerboard {{ square {square:e}  colors (black, white) }}"
+                );
+                let film = sampled(&read(&text));
+                let pixels = (0..16).flat_map(|y| film.row(y)).copied();
+                // How much of each pixel shows the board's second colour, of what shows it at all; green has no part in the background.
+                let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
+                let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
+                let first = greens.iter().filter(|&&green| green < 0.5).count();
+                let others = first.min(greens.len() - first);
+                let shades: BTreeSet<u64> = greens.iter().map(|green| green.to_bits()).collect();
+                let is_warned = codes(&text).contains("squares_too_small");
+                assert!(!is_warned || others * 50 <= greens.len(), "{text}");
+                assert!(greens.len() > 50, "{text}");
+                warned += usize::from(is_warned);
+                one_colored += usize::from(shades.len() == 1);
+            }
+            let exact =
+                format!("sampler {{ method exact }} checkerboard {{ square 1e{exponent} }}");
+            let view = format!("image {{ width 4 height 3 }} camera {{ eye {eye}  {view} }}");
+            assert_eq!(codes(&format!("{view} {exact}")), "", "{view} {exact}");
+        }
+    }
+    assert!(
+        warned > 50 && warned * 10 > one_colored * 9,
+        "{warned} of {one_colored}"
+    );
 }

@@ -1,0 +1,48 @@
+//! Suggestions that would be the next mistake are withdrawn.
+//!
+//! In: how a value is evaluated. Out: the same reports, in which a name is suggested only if the value, evaluated with what that name stands for,
+//! has no error that it did not have: of a type, a number of arguments, or a condition of its field.
+
+use super::lowering::Lowering;
+use crate::{diagnostic::Diagnostic, scene::eval::Suggestion, source::Span};
+
+impl<'s> Lowering<'s> {
+    /// Evaluates a value in one way, and tries what is suggested there in place of its names.
+    pub(super) fn trying<T>(&mut self, value: Span, evaluate: impl Fn(&mut Self) -> T) -> T {
+        let before = self.problems.len();
+        let found = evaluate(self);
+        let suggestions = self.names.suggestions.take();
+        let errors = |problems: &[Diagnostic]| {
+            let errors = problems.iter().filter(|it| it.is_error());
+            errors.filter(|it| !it.is_of_suggestion()).count()
+        };
+        let errors_before = errors(self.problems.get(before..).unwrap_or_default());
+        for suggestion in suggestions {
+            let is_wrong = !self.names.budget().spend(value.range().len()) || {
+                let end = self.problems.len();
+                self.names.suggestions.set_tried(Some(&suggestion));
+                evaluate(self);
+                self.names.suggestions.set_tried(None);
+                errors(&self.problems.split_off(end)) > errors_before
+            };
+            if is_wrong {
+                self.withdraw(suggestion);
+            }
+        }
+        found
+    }
+
+    fn withdraw(&mut self, suggestion: Suggestion<'s>) {
+        self.names.withdraw(suggestion.name);
+        let mut of_names = self.names.problems.borrow_mut();
+        let mut all = of_names.iter_mut().chain(self.problems.iter_mut());
+        let problem = all.find(|problem| {
+            let first = problem.labels.first();
+            problem.is_of_suggestion() && first.is_some_and(|it| it.span == suggestion.report)
+        });
+        if let Some(problem) = problem {
+            problem.fixes.clear();
+            problem.help = Some(suggestion.otherwise);
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! A name that is suggested will do where it is written: every name of the language and of the text, mistyped in every way, in every place.
+
+use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
+
+use super::{Trial, diagnostics};
+use crate::scenes::sources;
+
+/// Where a value can stand: `@`.
+const PLACES: [&str; 22] = [
+    "let x = @",
+    "let x = -@",
+    "let x = @ + 1",
+    "let x = 2 * @",
+    "let x = @ - 1e-266",
+    "let x = (@, 1, 2)",
+    "let x = (red, @)",
+    "let x = (1deg + @) / @",
+    "let x = sin(@)",
+    "let x = max(1, @)",
+    "let x = dot(vector, @)",
+    "let x = rgb(@, 1, 2)",
+    "sphere { center @ }",
+    "sphere { center @ * 2 }",
+    "sphere { center vector  radius @ }",
+    "sphere { center vector  color @ }",
+    "sphere { center vector  color @-1e-266 }",
+    "sphere { center @  color @ }",
+    "triangle { centroid vector  normal vector  spin @ }",
+    "checkerboard { colors @ }",
+    "sampler { per_pixel @ }",
+    "sampler { method @ }",
+];
+
+const LETS: &str = "let number = 2\nlet angle = 30deg\nlet vector = (1, 2, 3)\nlet shade = red\nlet pair = (red, blue)\nlet negative = -2\nlet k1 = 7\n";
+
+/// A name with a letter dropped, doubled, exchanged or changed, and in capitals.
+fn mistyped(name: &str) -> Vec<String> {
+    let mut slips = vec![
+        name.to_uppercase(),
+        format!("{name}x"),
+        format!("x{name}"),
+        name[..1].to_uppercase() + &name[1..],
+    ];
+    for at in 0..name.len().min(4) {
+        let (before, rest) = name.split_at(at);
+        let (letter, after) = rest.split_at(1);
+        slips.extend([
+            format!("{before}{after}"),
+            format!("{before}{letter}{letter}{after}"),
+            format!("{before}q{after}"),
+        ]);
+        if let Some(next) = after.get(..1) {
+            slips.push(format!("{before}{next}{letter}{}", &after[1..]));
+        }
+    }
+    let is_name = |slip: &String| slip.starts_with(|c: char| c.is_ascii_alphabetic());
+    slips.retain(is_name);
+    slips
+}
+
+fn is_meant(problem: &pinhole::diagnostic::Diagnostic) -> bool {
+    let codes = ["unknown_", "no_such_target", "function_without_arguments"];
+    codes.iter().any(|code| problem.code.contains(code))
+}
+
+#[test]
+fn a_suggested_name_will_do_in_its_place() {
+    let lets = [
+        "number", "angle", "vector", "shade", "pair", "negative", "k1",
+    ];
+    let colors = css::names().step_by(23).chain(["lime", "red"]);
+    let mut names: Vec<String> = lets.into_iter().chain(colors).flat_map(mistyped).collect();
+    names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
+    names.extend(method_names().step_by(3).flat_map(mistyped));
+    names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
+    // Calls with arguments of each type, and of each number.
+    for function in FUNCTIONS {
+        let arguments = [
+            "",
+            "2",
+            "2, 3",
+            "30deg",
+            "vector",
+            "vector, vector",
+            "1, 2, 3",
+            "red",
+        ];
+        let slips = mistyped(function.name).into_iter().step_by(3);
+        names.extend(
+            slips.flat_map(|name| arguments.map(|arguments| format!("{name}({arguments})"))),
+        );
+    }
+    let mut trial = Trial::default();
+    for name in &names {
+        for place in PLACES {
+            let camera = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }\n";
+            let text = format!("{LETS}{camera}{}\n", place.replace('@', name));
+            trial.type_in(&sources(&text), |problem, _| is_meant(problem));
+        }
+    }
+    trial.ends_with_more_than(1000);
+}
+
+#[test]
+fn a_suggested_field_or_target_will_do_in_its_place() {
+    let values = [
+        "3",
+        "1e15",
+        "-1",
+        "0.5",
+        "30deg",
+        "(0, 1, 0)",
+        "(1, 1, 9)",
+        "(1e300, 1, 1)",
+        "red",
+        "(red, blue)",
+        "exact",
+        "vector",
+        "nothing",
+        "1/0",
+    ];
+    let mut trial = Trial::default();
+    for block in BLOCKS {
+        for name in block.field_names().flat_map(mistyped) {
+            for value in values {
+                for (others, others_set) in [
+                    ("", "near 4  fov 30deg"),
+                    ("eye (0, 1, 0)", "lookat (0, 1, 0)  far 3"),
+                    ("min (0, 0, 0)", "centroid (0, 0, 0)"),
+                ] {
+                    let is_of = |other: &str| {
+                        let words = other
+                            .split([' ', '(', ',', ')'])
+                            .filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()));
+                        words
+                            .filter(|word| *word != "deg")
+                            .all(|word| block.field(word).is_some())
+                    };
+                    let others: String = [others, others_set]
+                        .into_iter()
+                        .filter(|other| is_of(other))
+                        .map(|other| format!("{other}  "))
+                        .collect();
+                    let camera = if block.name == "camera" {
+                        ""
+                    } else {
+                        "camera { eye (0, 2, 8)  lookat (0, 1, 0) }\n"
+                    };
+                    let text = format!(
+                        "{LETS}{} {{ {others}{name} {value} }}\n{camera}",
+                        block.name
+                    );
+                    trial.type_in(&sources(&text), |problem, _| is_meant(problem));
+                }
+            }
+        }
+    }
+    let scene = format!(
+        "{LETS}camera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}\nsphere Ball {{ center vector }}\nbox Bale {{ center vector }}\n"
+    );
+    for target in [
+        "Bal.radius",
+        "Bal.size",
+        "bale.center",
+        "Ballx.radius",
+        "camra.eye",
+        "sampler2.seed",
+        "eye",
+        "roll",
+        "numbr",
+        "EYE",
+        "k2",
+        "negativ",
+    ] {
+        // Whether what a block has goes together is another matter.
+        let values = values
+            .into_iter()
+            .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");
+        for value in values {
+            let sources = sources(&scene).with_sets([format!("{target}={value}")]);
+            trial.type_in(&sources, |problem, _| is_meant(problem));
+        }
+    }
+    // A target that is suggested is one.
+    assert!(!diagnostics(&sources(&scene).with_sets(["Bal.size=3"])).is_empty());
+    trial.ends_with_more_than(500);
+}
