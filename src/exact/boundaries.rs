@@ -3,10 +3,7 @@
 //! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
 //! near and the far plane cut them. They are computed in double-double, and again in the last precision where that leaves too much in doubt.
 
-use std::{
-    ops::ControlFlow,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::ops::ControlFlow;
 
 use crate::{
     math::{Big, Double},
@@ -16,8 +13,14 @@ use crate::{
     },
 };
 
+use super::budget::Budget;
+
 /// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// Units of work of an object or a pair of objects that is asked for curves, and of each curve in the last precision.
+const LOOK_WORK: f64 = 8.0;
+const BIG_CURVE_WORK: f64 = 800.0;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +39,7 @@ struct Boundaries<'a, T: Precision> {
     candidates: &'a [Candidate],
     objects: Vec<Held<'a, T>>,
     frame: SubPixelFrame<T>,
+    budget: &'a Budget<'a>,
 }
 
 /// Of some candidates, in file order, those that may be seen in a sub-pixel.
@@ -45,25 +49,24 @@ pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &m
     candidates::visible_among(world, &patch, objects, out);
 }
 
-/// The curves in a sub-pixel that may bound what is seen there of some objects; and how many objects and pairs of objects were looked at. It is an error if
-/// there are more than `most`, equal ones counted once: the search ends there, and once it is cancelled.
+/// Finds the curves in a sub-pixel that may bound what is seen there of some objects. Answers whether these are all: the search ends where there are more
+/// than `most`, equal ones counted once, and once the budget is spent, to which it is charged.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
     candidates: &[Candidate],
     most: usize,
-    cancel: &AtomicBool,
+    budget: &Budget,
     out: &mut Vec<Curve>,
-) -> Result<usize, usize> {
+) -> bool {
     out.clear();
-    let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates);
+    let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
     // Loose: whose curves are not known well enough in double-double. Lacking: pairs that have no curve there, which only the last precision tells for certain.
     let (mut loose, mut lacking) = (Vec::new(), Vec::new());
     let mut of_lacking = Vec::new();
-    let mut looks = 0;
     let mut room = most;
     let mut take = |origin| {
-        looks += 1;
+        budget.charge(LOOK_WORK);
         let before = out.len();
         let is_whole = boundaries.push(origin, out);
         if !out[before..].iter().all(Curve::is_tight) {
@@ -78,33 +81,30 @@ pub fn curves(
             room = out.len() + most;
         }
         // Equal ones were merged, and more are left than may be.
-        match room > 2 * most {
+        match room > 2 * most || budget.is_spent() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         }
     };
     // Outlines come first: of a heap there are too many of them, long before all pairs have been looked at.
     let outlines = boundaries.outlines(&mut take);
-    let are_few = outlines.is_continue() && boundaries.pairs(cancel, &mut take).is_continue();
+    let are_few = outlines.is_continue() && boundaries.pairs(&mut take).is_continue();
     if !are_few {
-        return Err(looks);
+        return false;
     }
     if loose.is_empty() {
         out.append(&mut of_lacking);
     } else {
-        let boundaries = Boundaries::<Big>::new(world, sub_pixel, candidates);
+        let boundaries = Boundaries::<Big>::new(world, sub_pixel, candidates, budget);
         for origin in loose.into_iter().chain(lacking) {
-            if cancel.load(Ordering::Relaxed) {
-                return Err(looks);
+            if budget.is_spent() {
+                return false;
             }
             boundaries.push(origin, out);
         }
     }
     leave_one_of_each(out);
-    match out.len() <= most {
-        true => Ok(looks),
-        false => Err(looks),
-    }
+    out.len() <= most
 }
 
 /// Leaves one of the curves whose forms are equal, as they are of objects that share planes or edges. What it is off is as much as any of them was.
@@ -122,7 +122,12 @@ fn leave_one_of_each(curves: &mut Vec<Curve>) {
 }
 
 impl<'a, T: Precision> Boundaries<'a, T> {
-    fn new(world: &'a World, sub_pixel: SubPixel, candidates: &'a [Candidate]) -> Self {
+    fn new(
+        world: &'a World,
+        sub_pixel: SubPixel,
+        candidates: &'a [Candidate],
+        budget: &'a Budget,
+    ) -> Self {
         let objects = candidates
             .iter()
             .map(|candidate| T::object(&world.geometry, candidate.object));
@@ -131,6 +136,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             candidates,
             objects: objects.collect(),
             frame: SubPixelFrame::new(&T::frame(&world.geometry).camera, sub_pixel),
+            budget,
         }
     }
 
@@ -145,17 +151,10 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Where surfaces of two objects cross, until one says that it is enough, or it is cancelled.
-    fn pairs(
-        &self,
-        cancel: &AtomicBool,
-        mut take: impl FnMut(Origin) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    /// Where surfaces of two objects cross, until one says that it is enough.
+    fn pairs(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
         let is_board = |at: usize| matches!(*self.objects[at], Object::Checkerboard(_));
         for (i, a) in self.candidates.iter().enumerate() {
-            if cancel.load(Ordering::Relaxed) {
-                return ControlFlow::Break(());
-            }
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
@@ -173,6 +172,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     /// do that are not equal.
     fn push(&self, origin: Origin, out: &mut Vec<Curve>) -> bool {
         let mut push = |curve: Curve| {
+            if T::LAST {
+                self.budget.charge(BIG_CURVE_WORK);
+            }
             if curve.may_pass() {
                 out.push(curve);
             }

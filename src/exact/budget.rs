@@ -8,15 +8,13 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// So many units of work may be spent on a pixel, and so many more for each object that may be seen in it. A unit is one square of a board cut out of a
-/// polygon, some 50 ns as measured; so this is about half a second, of the second that is allowed, and a few milliseconds an object.
+/// So many units of work may be spent on a pixel. A unit is one square of a board cut out of a polygon, some 50 ns as measured; so this is about half a
+/// second, of the second that is allowed.
 const PIXEL: f64 = 1e7;
-const OBJECT: f64 = 5e4;
 
 /// The work that may still be spent on a pixel, and the flag by which its picture is given up.
 #[derive(Debug)]
 pub(super) struct Budget<'a> {
-    all: f64,
     left: Cell<f64>,
     /// The bound that is asked for, in area: what is neglected is a part of it.
     pub tolerance: f64,
@@ -25,12 +23,10 @@ pub(super) struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// That of a whole pixel, in which so many objects may be seen.
-    pub fn of_pixel(objects: usize, tolerance: f64, cancel: &'a AtomicBool) -> Self {
-        let all = PIXEL + OBJECT * objects as f64;
+    /// That of a whole pixel.
+    pub fn of_pixel(tolerance: f64, cancel: &'a AtomicBool) -> Self {
         Self {
-            all,
-            left: Cell::new(all),
+            left: Cell::new(PIXEL),
             tolerance,
             cancel,
         }
@@ -38,7 +34,7 @@ impl<'a> Budget<'a> {
 
     /// The work that was spent.
     pub fn spent(&self) -> f64 {
-        self.all - self.left.get()
+        PIXEL - self.left.get()
     }
 
     /// Whether nothing more should be computed.

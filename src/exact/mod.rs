@@ -3,7 +3,7 @@
 //! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
 //! its error. In ordinary views (a vertical field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within
 //! 1e±9 or 0) the bound is at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour. A pixel takes a
-//! second at most, and a few milliseconds for each object in it (`budget`).
+//! second at most (`budget`).
 //!
 //! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
 //!
@@ -69,13 +69,11 @@ const MOST_QUARTERINGS: usize = 16;
 const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Units of work of a piece: for itself, for each object in it, and for each object or pair of objects that is asked for curves. What they are is
-/// not critical: they only end what takes too long.
+/// Units of work of a piece, for itself and for each object in it. What they are is not critical: they only end what takes too long.
 const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
-const LOOK_WORK: f64 = 8.0;
-/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes twice as long as its regions alone tell), which ends no pixel.
-const SLABS_WORK: u64 = 60;
+/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes twice as long as its regions alone tell).
+const SLABS_WORK: f64 = 60.0;
 /// The work of a pixel that shows nothing but a few squares of a checkerboard.
 const BOARD_PIXEL_WORK: u64 = 10;
 
@@ -238,23 +236,26 @@ impl<'a, const N: usize> Integrator<'a, N> {
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
     ) -> ExactPixel<N> {
-        let budget = Budget::of_pixel(candidates.len(), self.tolerance, cancel);
+        let budget = Budget::of_pixel(self.tolerance, cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
         let mut together = Shares::default();
         let mut memory = whole.memory();
         let mut open = BinaryHeap::from([ByKey(bound, whole)]);
-        let (mut quarterings, mut is_full) = (0, false);
-        while let Some(ByKey(_, worst)) = open.pop() {
-            is_full |= memory > MOST_MEMORY;
+        let mut quarterings = 0;
+        while bound > self.tolerance
+            && memory <= MOST_MEMORY
+            && !budget.is_spent()
+            && let Some(ByKey(_, worst)) = open.pop()
+        {
             memory -= worst.memory();
             let may_be_better = match worst.state {
                 State::Crowded => worst.sub_pixel.side > SMALLEST,
                 State::Computed => quarterings < MOST_QUARTERINGS,
                 State::Final => false,
             };
-            if bound <= self.tolerance || !may_be_better || is_full || budget.is_spent() {
+            if !may_be_better {
                 together.add_part(&worst.shares, worst.area());
                 continue;
             }
@@ -279,6 +280,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
             bound += after - worst.bound();
             memory += quarters.iter().map(Piece::memory).sum::<usize>();
             open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
+        }
+        for ByKey(_, piece) in open {
+            together.add_part(&piece.shares, piece.area());
         }
         self.work.fetch_add(budget.spent() as u64, Relaxed);
         let rounding = rounding(together.by_slot.len());
@@ -342,17 +346,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     ) -> Piece {
         let quarterings = libm::ilogb(sub_pixel.side).unsigned_abs() as usize;
         let most = MOST_CURVES + MORE_CURVES * quarterings;
-        let found = boundaries::curves(
-            self.world,
-            sub_pixel,
-            &candidates,
-            most,
-            budget.cancel,
-            curves,
-        );
-        let (Ok(looks) | Err(looks)) = found;
-        let work = PIECE_WORK + candidates.len() as f64 * OBJECT_WORK + looks as f64 * LOOK_WORK;
-        let is_computed = budget.spend(work) && found.is_ok();
+        budget.charge(PIECE_WORK + candidates.len() as f64 * OBJECT_WORK);
+        let are_all = boundaries::curves(self.world, sub_pixel, &candidates, most, budget, curves);
+        let is_computed = are_all && !budget.is_spent();
         let shares = match is_computed {
             true => {
                 let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
@@ -364,8 +360,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     Some(lines) => arrangement::shares(&lines, regions),
                     None => {
                         // Each conic is followed past all others.
-                        let pairs = curves.len() * curves.len();
-                        self.work.fetch_add(SLABS_WORK * pairs as u64, Relaxed);
+                        budget.charge(SLABS_WORK * (curves.len() * curves.len()) as f64);
                         slabs::shares(curves, regions)
                     }
                 }

@@ -20,6 +20,8 @@ use super::{
 /// Units of work of a region: for itself, and for each object that its ray may meet.
 const REGION_WORK: f64 = 4.0;
 const RAY_WORK: f64 = 0.5;
+/// The same for an object that is asked in the last precision.
+const BIG_RAY_WORK: f64 = 200.0;
 
 /// How much of a sub-pixel each colour has.
 #[derive(Clone, Debug, Default)]
@@ -129,6 +131,8 @@ impl<'a> Regions<'a> {
         let (seen, is_sure) =
             candidates::object_at(self.world, self.sub_pixel, region.inside, self.candidates);
         if !is_sure {
+            self.budget
+                .charge(BIG_RAY_WORK * self.candidates.len() as f64);
             self.doubt(region.area);
         }
         seen

@@ -198,7 +198,7 @@ mod tests {
                 };
                 let seen = Checkered::new(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
-                let budget = Budget::of_pixel(1, ENOUGH, &cancel);
+                let budget = Budget::of_pixel(ENOUGH, &cancel);
                 let other = seen.board.over(&PIXEL, &budget);
                 let value = if seen.odd { -other.value } else { other.value };
                 let off = (sum.value - value).abs();

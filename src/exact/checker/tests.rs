@@ -16,7 +16,7 @@ static WANTED: AtomicBool = AtomicBool::new(false);
 impl Homography {
     /// The integral over a polygon that nobody cancels.
     pub(super) fn alone(&self, polygon: &[DVec2]) -> Sum {
-        self.over(polygon, &Budget::of_pixel(1, ENOUGH, &WANTED))
+        self.over(polygon, &Budget::of_pixel(ENOUGH, &WANTED))
     }
 }
 
@@ -385,7 +385,7 @@ proptest! {
         let bound = whole.bound + left.bound + right.bound;
         prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
         // The region between the arc and its chord, by the exact cuts and by many chords.
-        let sliver = board.sliver(&arc, &Budget::of_pixel(1, ENOUGH, &WANTED));
+        let sliver = board.sliver(&arc, &Budget::of_pixel(ENOUGH, &WANTED));
         let points: Vec<DVec2> = (0..=100).map(|i| arc.at(f64::from(i) / 100.0)).collect();
         let chords = board.alone(&points);
         let neglected: f64 = (0..100).map(|i| arc.between(f64::from(i) / 100.0, f64::from(i + 1) / 100.0).area()).sum();
@@ -433,7 +433,7 @@ fn nothing_is_computed_beyond_the_budget() {
     let board = Homography::new([[31.0, 2.0, 0.3], [3.0, 29.0, 0.2]], below);
     let all = board.alone(&PIXEL);
     let cancelled = AtomicBool::new(true);
-    let nothing = board.over(&PIXEL, &Budget::of_pixel(1, ENOUGH, &cancelled));
+    let nothing = board.over(&PIXEL, &Budget::of_pixel(ENOUGH, &cancelled));
     assert!(all.value != 0.0 && nothing.value == 0.0);
     assert!(nothing.bound > all.value.abs(), "{nothing:?} of {all:?}");
     // A row of a billion squares next to the line above which the eye is.
