@@ -20,7 +20,7 @@ const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Units of work of an object or a pair of objects that is asked for curves, and of each curve in the last precision.
 const LOOK_WORK: f64 = 8.0;
-const BIG_CURVE_WORK: f64 = 800.0;
+const BIG_CURVE_WORK: f64 = 1500.0;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use super::lower::read;
 use crate::{
-    diagnostic::{Edit, Fix, apply},
+    diagnostic::{Diagnostic, Edit, Fix, apply},
     source::{Place, Source, SourceId, Sources},
 };
 
@@ -31,7 +31,10 @@ pub fn fix_all(sources: &Sources) -> Fixed {
     /// A fix can show what another mistake hid; so many in a row are more than any text has.
     const ROUNDS: usize = 1000;
     let mut sources = sources.clone();
+    let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
+    // Problems of this text that stay though their fixes are typed in.
+    let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
     // Bytes that are no text would be lost.
     let rounds = match sources.file.invalid_utf8().is_empty() {
@@ -39,13 +42,26 @@ pub fn fix_all(sources: &Sources) -> Fixed {
         false => 0,
     };
     for _ in 0..rounds {
-        let (fix, now_done) = one_round(&sources);
-        let text = apply(&fix, SourceId::File, sources.file.text());
-        if now_done.is_empty() || !seen.insert(text.clone()) {
+        let round = Round::new(&sources, &problems, &staying);
+        let text = apply(&round.fix, SourceId::File, sources.file.text());
+        if round.done.is_empty() || seen.contains(&text) {
             break;
         }
-        sources.file = Source::from_text(sources.file.name(), text);
-        done.extend(now_done);
+        let mut after = sources.clone();
+        after.file = Source::from_text(sources.file.name(), text.clone());
+        let problems_after = read(&after).diagnostics;
+        let still: HashSet<Problem> = problems_after.iter().filter_map(Problem::of).collect();
+        let stays = |problem: &&Problem| still.contains(&round.moved(problem));
+        let idle: Vec<Problem> = round.lengthened.iter().filter(stays).cloned().collect();
+        if !idle.is_empty() {
+            // The same once more, without them.
+            staying.extend(idle);
+            continue;
+        }
+        staying.clear();
+        seen.insert(text);
+        (sources, problems) = (after, problems_after);
+        done.extend(round.done);
     }
     Fixed {
         text: sources.file.text().to_owned(),
@@ -53,34 +69,91 @@ pub fn fix_all(sources: &Sources) -> Fixed {
     }
 }
 
-/// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
-fn one_round(sources: &Sources) -> (Fix, Vec<Done>) {
-    let mut edits: Vec<Edit> = Vec::new();
-    // The ends of the places that are changed, by their starts. No two of them touch.
-    let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
-    let mut done = Vec::new();
-    for diagnostic in read(sources).diagnostics {
-        let (Some(label), Some(fix)) = (diagnostic.labels.first(), diagnostic.fixes.first()) else {
-            continue;
-        };
-        let is_free = |edit: &Edit| {
-            let before = taken.range(..=edit.span.end).next_back();
-            edit.span.source == SourceId::File
-                && before.is_none_or(|(_, &end)| end < edit.span.start)
-        };
-        if !diagnostic.is_error() || !fix.edits.iter().all(is_free) {
-            continue;
-        }
-        taken.extend(
-            fix.edits
-                .iter()
-                .map(|edit| (edit.span.start, edit.span.end)),
-        );
-        edits.extend(fix.edits.iter().cloned());
-        done.push(Done {
-            place: sources.file.place(label.span.start),
-            title: fix.title.clone(),
-        });
+/// A problem of a text, to be known again in a changed one.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Problem {
+    code: String,
+    message: String,
+    start: usize,
+}
+
+impl Problem {
+    fn of(diagnostic: &Diagnostic) -> Option<Self> {
+        Some(Self {
+            code: diagnostic.code.clone(),
+            message: diagnostic.message.clone(),
+            start: diagnostic.labels.first()?.span.start,
+        })
     }
-    (Fix::new("fix all", edits), done)
+}
+
+/// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
+struct Round {
+    fix: Fix,
+    /// The problems whose fixes make the text longer: one that stays would do so without end.
+    lengthened: Vec<Problem>,
+    done: Vec<Done>,
+    /// How much longer the text becomes at each place where it is changed.
+    growth: BTreeMap<usize, isize>,
+}
+
+impl Round {
+    fn new(sources: &Sources, problems: &[Diagnostic], staying: &HashSet<Problem>) -> Self {
+        let mut edits: Vec<Edit> = Vec::new();
+        // The ends of the places that are changed, by their starts. No two of them touch.
+        let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
+        let (mut lengthened, mut done) = (Vec::new(), Vec::new());
+        for diagnostic in problems.iter().filter(|problem| problem.is_error()) {
+            let (Some(problem), Some(fix)) = (Problem::of(diagnostic), diagnostic.fixes.first())
+            else {
+                continue;
+            };
+            let is_free = |edit: &Edit| {
+                let before = taken.range(..=edit.span.end).next_back();
+                edit.span.source == SourceId::File
+                    && before.is_none_or(|(_, &end)| end < edit.span.start)
+            };
+            if staying.contains(&problem) || !fix.edits.iter().all(is_free) {
+                continue;
+            }
+            taken.extend(
+                fix.edits
+                    .iter()
+                    .map(|edit| (edit.span.start, edit.span.end)),
+            );
+            edits.extend(fix.edits.iter().cloned());
+            done.push(Done {
+                place: sources.file.place(problem.start),
+                title: fix.title.clone(),
+            });
+            if fix.edits.iter().map(growth).sum::<isize>() > 0 {
+                lengthened.push(problem);
+            }
+        }
+        let growth = edits.iter().map(|edit| (edit.span.start, growth(edit)));
+        Self {
+            growth: growth.collect(),
+            fix: Fix::new("fix all", edits),
+            lengthened,
+            done,
+        }
+    }
+
+    /// A problem as it is in the changed text, if it is still there.
+    fn moved(&self, problem: &Problem) -> Problem {
+        let grown: isize = self
+            .growth
+            .range(..problem.start)
+            .map(|(_, grown)| grown)
+            .sum();
+        Problem {
+            start: problem.start.saturating_add_signed(grown),
+            ..problem.clone()
+        }
+    }
+}
+
+/// How much longer the text becomes by an edit.
+fn growth(edit: &Edit) -> isize {
+    edit.text.len() as isize - (edit.span.end - edit.span.start) as isize
 }

@@ -2,11 +2,13 @@
 //!
 //! A run of the tests asks 150, and 1200 with those that are ignored; `PINHOLE_SCENES=10000000 cargo test extremes` asks ten million, for some hours.
 
+use std::num::NonZero;
+
 use glam::{DVec2, dvec3};
 use pinhole::{
     area::Area,
     film::Film,
-    render::{render, render_exact},
+    render::{Control, render, render_exact},
     scene::{Count, Method, Scene},
     tracer::World,
 };
@@ -84,9 +86,13 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// Whatever part of the picture is asked for, a pixel's candidates are those of one grid.
+/// Whatever part of the picture is asked for, and by however many threads, a pixel's candidates are those of one grid.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
+    let others = Control {
+        threads: NonZero::new(3),
+        ..Control::default()
+    };
     let mut random = Random::new(1);
     let count = match effort {
         Effort::Sample => 5,
@@ -113,8 +119,9 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
             };
             for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
                 let scene = with_samples(&scene, method, Count::PerPixel(n.into()));
-                let picture = |part| rendered::<[f64; 3]>(&scene, part, &control).into_film();
-                let (all, part) = (picture(whole(&scene)), picture(crop));
+                let picture =
+                    |part, control| rendered::<[f64; 3]>(&scene, part, control).into_film();
+                let (all, part) = (picture(whole(&scene), &control), picture(crop, &others));
                 assert_eq!(part, all.part(crop).unwrap(), "{crop} of {scene:?}");
             }
         }

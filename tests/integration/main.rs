@@ -21,6 +21,7 @@ mod files;
 mod film;
 mod fixes;
 mod format;
+mod fuzz;
 mod generated;
 mod grade;
 mod images;

@@ -1,5 +1,8 @@
 //! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
 
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
 use pinhole::film;
 
 use super::*;
@@ -120,6 +123,45 @@ fn a_pixel_takes_bounded_memory() {
         .status();
     assert!(status.unwrap().success());
     assert_eq!(folder.names(), ["scene.png", "scene.scn"]);
+}
+
+/// Two hundred objects through the same few points, in a pixel that sees half the world: many of their curves only the last precision tells
+/// apart. A pixel takes a second at most; the tests are not optimised as a release is, and others run at the same time.
+#[test]
+fn a_pixel_takes_bounded_time() {
+    for seed in 0..4 {
+        let mut random = Random::new(seed);
+        let mut text = "image { width 1 height 1 }
+            camera { eye (-3.75, 2.5, -2.26) lookat (4, 3.3, -4.7) fov 179.9deg near 1 far 20 }
+            sampler { method exact }\n"
+            .to_owned();
+        let mut point = || random.vector(4.5).round();
+        let list = |DVec3 { x, y, z }: DVec3| format!("({x}, {y}, {z})");
+        let mut points = || [0; 3].map(|_| point());
+        for index in 0..200 {
+            let [a, b, c] = points();
+            let size = 0.1 + (a - b).length();
+            let [p, q, r] = [a, b, c].map(list);
+            let _ = match index % 4 {
+                0 => writeln!(text, "sphere {{ center {p} radius {size} color red }}"),
+                1 => writeln!(
+                    text,
+                    "box {{ center {p} size (0.3, {size}, 2) color teal }}"
+                ),
+                2 => writeln!(text, "checkerboard {{ y {} square {size} }}", a.y),
+                _ if (b - a).cross(c - a).length() == 0.0 => Ok(()),
+                _ => writeln!(text, "triangle {{ v0 {p} v1 {q} v2 {r} color blue }}"),
+            };
+        }
+        let scene = read(&text);
+        let start = Instant::now();
+        exact(&scene);
+        assert!(
+            start.elapsed() < Duration::from_secs(4),
+            "{seed}: {:?}",
+            start.elapsed()
+        );
+    }
 }
 
 /// The scenes of `tests/exact`: the pixels of the crop that a comment asks for, or all, are known to a thousand-millionth, and their quarters are they.

@@ -4,5 +4,5 @@ pub mod client;
 mod frames;
 mod neovim;
 mod session;
-mod talk;
+pub mod talk;
 mod transcripts;

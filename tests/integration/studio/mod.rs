@@ -1,7 +1,7 @@
 //! `pinhole studio` as a browser meets it: who is let in, what the conversation says, and what becomes of the file.
 
 mod access;
-mod client;
+pub mod client;
 mod conversation;
 mod files;
 mod highlighting;

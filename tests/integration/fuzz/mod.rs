@@ -1,0 +1,174 @@
+//! Inputs that nobody would write, as many as somebody wants: whatever is read, nothing panics or hangs, and what is promised of it
+//! holds.
+//!
+//! Each target tries a few in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries a million in each, and
+//! `PINHOLE_FUZZ_FIRST` is the number of the first one. An input depends on its number alone.
+
+#[cfg(feature = "studio")]
+mod host;
+#[cfg(feature = "lsp")]
+mod messages;
+mod pictures;
+mod texts;
+
+use std::{
+    env,
+    sync::LazyLock,
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::{diagnostics::fixtures, format::all_scenes, tracer::Random};
+
+/// So long may the tests take for one input: milliseconds, but for a busy machine.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// What is done to texts: names, numbers and signs that stand in the place of others, apart by bars.
+const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
+    (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
+    let|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
+    colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
+
+/// Tries inputs: as many as the environment says, or as are usual. A test that fails says which one it was.
+fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
+    struct Number(u64);
+    impl Drop for Number {
+        fn drop(&mut self) {
+            if thread::panicking() {
+                eprintln!("PINHOLE_FUZZ_FIRST={} PINHOLE_FUZZ=1", self.0);
+            }
+        }
+    }
+    let number = |name| Some(env::var(name).ok()?.parse().expect("a whole number"));
+    let first = number("PINHOLE_FUZZ_FIRST").unwrap_or(0);
+    for input in first..first + number("PINHOLE_FUZZ").unwrap_or(usual) {
+        let number = Number(input);
+        let start = Instant::now();
+        is_tried(&mut Random::new(input));
+        assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
+        drop(number);
+    }
+}
+
+fn below(random: &mut Random, end: usize) -> usize {
+    (random.bits() % end.max(1) as u64) as usize
+}
+
+fn one<'t, T>(random: &mut Random, of: &'t [T]) -> &'t T {
+    &of[below(random, of.len())]
+}
+
+/// All scenes of the repository that are no longer than a page or two, right and wrong ones.
+fn scenes() -> &'static [String] {
+    static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let wrong = fixtures().map(|(_, sources)| sources.file.text().to_owned());
+        let all = all_scenes().into_iter().chain(wrong);
+        all.filter(|text| (1..4000).contains(&text.len())).collect()
+    });
+    &SCENES
+}
+
+/// One of them.
+fn any_text(random: &mut Random) -> &'static str {
+    one::<String>(random, scenes())
+}
+
+/// A scene in which a few tokens were taken out, doubled, moved or replaced, or that was cut.
+fn scene(random: &mut Random) -> Vec<u8> {
+    let text = any_text(random);
+    let mut tokens = tokens(text);
+    let words: Vec<&str> = WORDS.split('|').collect();
+    for _ in 0..=below(random, 6) {
+        let (at, other) = (
+            below(random, tokens.len() + 1),
+            below(random, tokens.len() + 1),
+        );
+        let (from, to) = (at.min(other), at.max(other));
+        match below(random, 12) {
+            0..=3 => {
+                let end = tokens.len().min(at + below(random, 2));
+                tokens.splice(at..end, [*one(random, &words)]);
+            }
+            4..=5 => drop(tokens.drain(at..tokens.len().min(at + 1 + below(random, 3)))),
+            6 if to < tokens.len() => tokens.swap(from, to),
+            7 if at < tokens.len() => {
+                let times = [1, 2, 300][below(random, 3)];
+                let token = tokens[at];
+                tokens.splice(at..at, [token].repeat(times));
+            }
+            8 => {
+                let part = tokens[from..to.min(from + 40)].to_vec();
+                tokens.splice(at..at, part);
+            }
+            9 if below(random, 4) == 0 => tokens.truncate(at),
+            10 => {
+                let other = self::tokens(any_text(random));
+                let start = below(random, other.len());
+                let end = other.len().min(start + 30);
+                tokens.splice(at..at, other[start..end].iter().copied());
+            }
+            _ => {}
+        }
+    }
+    let mut bytes = tokens.concat().into_bytes();
+    match below(random, 20) {
+        0 => bytes.splice(0..0, *b"\xef\xbb\xbf").for_each(drop),
+        1 => {
+            let text = String::from_utf8_lossy(&bytes).replace('\n', "\r\n");
+            bytes = text.into_bytes();
+        }
+        2 => flip(random, &mut bytes),
+        _ => {}
+    }
+    bytes
+}
+
+/// A text's words, numbers, single signs, and what is white between them.
+fn tokens(text: &str) -> Vec<&str> {
+    let kind = |c: char| match c {
+        _ if c.is_alphanumeric() || matches!(c, '_' | '.') => 0,
+        ' ' => 1,
+        _ => 2,
+    };
+    let mut tokens = Vec::new();
+    let mut start = 0;
+    let mut last = None;
+    for (at, c) in text.char_indices() {
+        let this = kind(c);
+        if last.is_some_and(|last| last != this || this == 2) {
+            tokens.push(&text[start..at]);
+            start = at;
+        }
+        last = Some(this);
+    }
+    tokens.push(&text[start..]);
+    tokens
+}
+
+/// Changes some bytes: single ones, numbers of four, lengths; and takes parts out or doubles them.
+fn flip(random: &mut Random, bytes: &mut Vec<u8>) {
+    for _ in 0..=below(random, 8) {
+        let at = below(random, bytes.len());
+        let end = bytes.len().min(at + 1 + below(random, 16));
+        match below(random, 8) {
+            0 if !bytes.is_empty() => bytes[at] ^= 1 << below(random, 8),
+            1 if !bytes.is_empty() => bytes[at] = *one(random, &[0, 1, 0x7f, 0x80, 0xff]),
+            2 => bytes[at..end].fill(*one(random, &[0, 0xff])),
+            3 => drop(bytes.drain(at..end)),
+            4 => {
+                let part = bytes[at..end].to_vec();
+                bytes.splice(at..at, part);
+            }
+            5 if below(random, 8) == 0 => bytes.truncate(at),
+            6 if at + 4 <= bytes.len() => {
+                let value = *one(random, &[0_u32, 1, 0x7fff_ffff, u32::MAX, 65_536, 1 << 28]);
+                let value = match below(random, 2) {
+                    0 => value.to_be_bytes(),
+                    _ => value.to_le_bytes(),
+                };
+                bytes[at..at + 4].copy_from_slice(&value);
+            }
+            _ => bytes.extend((0..below(random, 9)).map(|_| random.bits() as u8)),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Pictures of other programs: whatever their bytes are, they are read or refused, and never decoded to more than is allowed.
+
+use std::{io::Cursor, sync::LazyLock};
+
+use image::{DynamicImage, ImageFormat, RgbImage};
+use pinhole::film::read_picture_up_to;
+
+use super::{below, each, flip, one};
+use crate::program::Folder;
+
+/// Maximum number of decoded bytes: a small picture's, so that a head that lies is found out.
+const LIMIT: u64 = 1 << 20;
+
+/// A small picture in each format and in some of their kinds.
+fn pictures() -> &'static [Vec<u8>] {
+    static PICTURES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
+        let picture = RgbImage::from_fn(19, 11, |x, y| {
+            image::Rgb([(x * 13) as u8, (y * 23) as u8, (x * y) as u8])
+        });
+        let color = DynamicImage::ImageRgb8(picture);
+        let formats = [
+            ImageFormat::Png,
+            ImageFormat::Jpeg,
+            ImageFormat::Gif,
+            ImageFormat::Bmp,
+            ImageFormat::Tiff,
+            ImageFormat::WebP,
+            ImageFormat::Pnm,
+        ];
+        let kinds = [
+            color.clone(),
+            color.to_luma8().into(),
+            color.to_rgba8().into(),
+            color.to_rgb16().into(),
+        ];
+        let mut all = Vec::new();
+        for format in formats {
+            for kind in &kinds {
+                let mut bytes = Cursor::new(Vec::new());
+                if kind.write_to(&mut bytes, format).is_ok() {
+                    all.push(bytes.into_inner());
+                }
+            }
+        }
+        assert!(all.len() > 12, "{}", all.len());
+        let folder = Folder::with([("a.scn", pinhole::scene::SMALLEST)]);
+        for name in ["a.exr", "a.png"] {
+            folder.done(&format!(
+                "render a.scn -o {name} --set image.width=20 --set image.height=10"
+            ));
+            all.push(folder.read(name));
+        }
+        all
+    });
+    &PICTURES
+}
+
+#[test]
+fn any_bytes_are_read_or_refused() {
+    each(300, |random| {
+        let mut bytes = one(random, pictures()).clone();
+        match below(random, 16) {
+            // A head of one format before the rest of another.
+            0 => {
+                let other = one(random, pictures());
+                let at = below(random, bytes.len());
+                bytes.truncate(at);
+                bytes.extend(&other[at.min(other.len())..]);
+            }
+            _ => flip(random, &mut bytes),
+        }
+        if let Ok(picture) = read_picture_up_to(&bytes, LIMIT) {
+            let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
+            assert!((1..=LIMIT).contains(&pixels), "{pixels}");
+        }
+    });
+}

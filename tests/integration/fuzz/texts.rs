@@ -1,0 +1,59 @@
+//! Texts: what is read of them, what is offered to mend them, and how they are laid out.
+
+use pinhole::{
+    diagnostic::apply,
+    scene,
+    source::{Source, SourceId, Sources},
+};
+
+use super::{each, scene as any_scene};
+use crate::{
+    format::{formatted, laws::the_laws_hold},
+    parts, robustness,
+};
+
+#[test]
+fn whatever_is_read_gets_an_answer() {
+    each(60, |random| {
+        let bytes = any_scene(random);
+        if let Ok(text) = str::from_utf8(&bytes) {
+            parts::check(text, 1 + super::below(random, 99), &[]);
+        }
+        robustness::read(bytes);
+    });
+}
+
+/// Each fix changes the text, and all of them together come to an end: what is done again changes nothing.
+#[test]
+fn fixes_change_what_is_there_and_come_to_an_end() {
+    each(60, |random| {
+        // What is no text is not mended.
+        let Ok(text) = String::from_utf8(any_scene(random)) else {
+            return;
+        };
+        let sources = Sources::new(Source::from_text("a.scn", text));
+        let text = sources.file.text();
+        for problem in &scene::read(&sources).diagnostics {
+            for fix in &problem.fixes {
+                let after = apply(fix, SourceId::File, text);
+                assert_ne!(after, text, "{}", fix.title);
+            }
+        }
+        let once = scene::fix_all(&sources).text;
+        let again = Sources::new(Source::from_text("a.scn", once.as_str()));
+        let twice = scene::fix_all(&again).text;
+        assert_eq!(twice, once, "{text}");
+    });
+}
+
+#[test]
+fn what_can_be_laid_out_means_the_same_afterwards() {
+    each(60, |random| {
+        let bytes = any_scene(random);
+        if let Ok(text) = str::from_utf8(&bytes)
+            && let Ok(laid_out) = formatted(text)
+        {
+            the_laws_hold(text, &laid_out);
+        }
+    });
+}
