@@ -13,8 +13,8 @@ use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 pub enum SourceId {
     /// The scene file (or standard input).
     File,
-    /// The `--set` argument with this number, from 0.
-    Set(usize),
+    /// The `--set` argument with this number, from 0. Spans are half of what is kept of a scene of very many objects.
+    Set(u32),
 }
 
 /// A half-open range of bytes in one source.
@@ -84,7 +84,7 @@ impl Sources {
 
     /// The `--set` arguments, and what spans call them.
     pub fn sets(&self) -> impl Iterator<Item = (SourceId, &Source)> {
-        let sets = self.sets.iter().enumerate();
+        let sets = (0..).zip(&self.sets);
         sets.map(|(index, set)| (SourceId::Set(index), set))
     }
 
@@ -92,7 +92,7 @@ impl Sources {
     pub fn get(&self, id: SourceId) -> &Source {
         let set = match id {
             SourceId::File => None,
-            SourceId::Set(index) => self.sets.get(index),
+            SourceId::Set(index) => self.sets.get(index as usize),
         };
         set.unwrap_or(&self.file)
     }
