@@ -26,7 +26,7 @@ pub use self::{
     exr::write_exr,
     jpeg::{Jpeg, Table as JpegTable},
     mean::mean,
-    memory::TooLarge,
+    memory::{TooLarge, reserve as reserve_memory},
     picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
     pixels::{Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},

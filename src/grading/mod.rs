@@ -48,7 +48,7 @@ use crate::{
     cancel,
     color::srgb_to_linear,
     exact::Integrator,
-    film::{self, Comparison, Film, Jpeg, Rounding, SizesDiffer, Tolerance},
+    film::{self, Comparison, Film, Jpeg, Rounding, SizesDiffer, Tolerance, reserve_memory},
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -82,6 +82,9 @@ pub struct Reference<'a> {
     work: f64,
 }
 
+/// What a reference takes for each pixel: the exact mean, and the mean, its doubt and the variance, of which there are two while they are made.
+const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
+
 impl<'a> Reference<'a> {
     /// Makes the exact picture of a part of a scene's, as well as pictures that are rounded so are to be judged by it.
     ///
@@ -94,6 +97,7 @@ impl<'a> Reference<'a> {
         rounding: Rounding,
         control: &Control,
     ) -> Result<Self, RenderError> {
+        reserve_memory(part.width, part.height, BYTES_A_PIXEL)?;
         let world = World::new_unless(scene, control.cancel)?;
         let integrator = Integrator::of(&world, moments::numbers(Curve::Right));
         let integrator = match rounding {

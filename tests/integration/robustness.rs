@@ -296,14 +296,22 @@ fn time_grows_with_the_text(effort: Effort) {
         "let name = 1 + 2\n".to_owned(),
         "spere {}\n".to_owned(),
     ];
-    for line in effort.of(lines) {
+    // Names that are all different: of fields in one block, of blocks, of colours.
+    let numbered = [
+        "eyf% (0, 0, 1)\n",
+        "blok% { x 1 }\n",
+        "sphere { color ol% }\n",
+    ];
+    for line in effort.of(lines.into_iter().chain(numbered.map(str::to_owned))) {
         let read = |source: Source| drop(scene::read(&Sources::new(source)));
         let lay_out = |source: Source| drop(format(&source));
         let is_laid_out = format(&Source::from_text("test.scn", line.as_str())).is_ok();
         let works = [read as fn(Source), lay_out];
         for work in &works[..1 + usize::from(is_laid_out)] {
             let time = |lines: usize| {
-                let text = CAMERA.to_owned() + &line.repeat(lines);
+                let lines = (0..lines).map(|index| line.replace('%', &index.to_string()));
+                let block = if line.starts_with("eyf") { "box {" } else { "" };
+                let text = format!("{CAMERA}{block}{}", lines.collect::<String>());
                 let start = Instant::now();
                 work(Source::from_text("test.scn", text));
                 start.elapsed()

@@ -149,8 +149,8 @@ impl<'s> Recovery<'_, 's> {
         if let Some(equals) = equals.filter(|_| value.kind != ValueKind::Missing) {
             self.slip(equals);
         }
-        let is_again = block.fields.iter().any(|f| f.name.text == name.text);
-        if value.kind == ValueKind::Missing && is_known && is_again {
+        let is_again = || block.fields.iter().any(|f| f.name.text == name.text);
+        if value.kind == ValueKind::Missing && is_known && is_again() {
             let words = ["a field or `}`", name.text];
             let mut found = say::UNEXPECTED.at(name.span, &words, None);
             found.help = Some("take it away: the block has this field already".to_owned());

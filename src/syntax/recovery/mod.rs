@@ -54,6 +54,8 @@ pub struct Recovery<'w, 's> {
     cut: Option<usize>,
     /// Where the item ended that was read here last.
     pub(super) read_to: usize,
+    /// Whether the text was looked at and is no other program's.
+    is_ours: bool,
     /// What the items that are read stand in.
     within: Within<'s>,
     /// Parentheses, signs and calls around what is read.
@@ -100,6 +102,7 @@ impl<'w, 's> Recovery<'w, 's> {
             problems: Problems::default(),
             cut: None,
             read_to: 0,
+            is_ours: false,
             within: Within::default(),
             depth: 0,
             lists: 0,
@@ -110,9 +113,12 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Reads one item, or what stands in the place of one; answers where it ends.
     pub fn item(&mut self, start: usize) -> usize {
-        if self.read_to == 0 && self.foreign_file() {
-            self.read_to = self.text.len();
-            return self.read_to;
+        if !self.is_ours {
+            self.is_ours = !self.foreign_file();
+            if !self.is_ours {
+                self.read_to = self.text.len();
+                return self.read_to;
+            }
         }
         self.seek(start);
         self.any_item();

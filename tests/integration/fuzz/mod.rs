@@ -30,7 +30,7 @@ const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
 /// Tries inputs: as many as the environment says, or as are usual. A test that fails says which one it was.
-fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
+pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Drop for Number {
         fn drop(&mut self) {

@@ -52,7 +52,7 @@ fn a_board_of_lost_squares_has_one_colour() {
                 let square = libm::pow(10.0, f64::from(exponent)) * nearness;
                 let text = format!(
                     "image {{ width 24  height 16  background red }} camera {{ eye {eye}  {view} }}
-                     sampler {{ method {method} }} checkerboard {{ square {square:e}  colors (black, white) }}"
+                     sampler {{ method {method} per_pixel 4 }} checkerboard {{ square {square:e}  colors (black, white) }}"
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();

@@ -1,0 +1,322 @@
+//! Random scenes of extreme cameras and objects in each other's way, as tiny pictures: every way to render one gives the same bytes, and what is
+//! computed is what samples see.
+
+use std::{
+    num::NonZero,
+    time::{Duration, Instant},
+};
+
+use glam::{DVec3, dvec3};
+use pinhole::{
+    area::Area,
+    film::Film,
+    render::{Control, Exact, Rendered},
+    scene::{self, Count, Method, Scene, Shape},
+};
+
+use crate::{
+    exact::pixel,
+    fuzz::each,
+    scenes::{one_thread, rendered, sources, whole, with_samples},
+    tracer::Random,
+};
+
+/// A text of random objects, and what they have in common.
+struct Text<'r> {
+    random: &'r mut Random,
+    /// Vertices, centres, points of surfaces.
+    points: Vec<DVec3>,
+    /// Of how many numbers one is of any size; 0 for none.
+    wild: u64,
+}
+
+impl Text<'_> {
+    fn one_in(&mut self, n: u64) -> bool {
+        n > 0 && self.random.bits().is_multiple_of(n)
+    }
+
+    fn choose<T: Copy>(&mut self, among: &[T]) -> T {
+        among[self.random.bits() as usize % among.len()]
+    }
+
+    /// A positive number whose logarithm is uniform.
+    fn any_size(&mut self, decades: f64) -> f64 {
+        libm::exp10(self.random.within(-decades, decades))
+    }
+
+    fn number(&mut self, size: f64) -> f64 {
+        let ordinary = self.random.within(-size, size);
+        if self.one_in(self.wild) {
+            let decades = self.choose(&[3.0, 20.0, 300.0]);
+            return ordinary.signum() * self.any_size(decades);
+        }
+        match self.random.bits() % 4 {
+            0 => ordinary,
+            1 => ordinary.round(),
+            _ => (2.0 * ordinary).round() / 2.0,
+        }
+    }
+
+    fn length(&mut self, size: f64) -> f64 {
+        match self.number(size).abs() {
+            0.0 => 1.0,
+            length => length,
+        }
+    }
+
+    /// A point that others know, or one beside it; else a new one.
+    fn point(&mut self) -> DVec3 {
+        let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
+        if self.points.is_empty() || self.one_in(3) {
+            return new;
+        }
+        let known = self.choose(&self.points.clone());
+        let step = self.choose(&[0.0, 0.0, 1e-300, 1e-15, 1e-9, 1e-3, 0.5]);
+        match self.random.bits() % 4 {
+            0 => known,
+            1 => known + step * new,
+            2 => dvec3(new.x, known.y, new.z),
+            _ => known.map(|x| x + step),
+        }
+    }
+
+    fn color(&mut self) -> &'static str {
+        self.choose(&[
+            "black", "white", "red", "olive", "teal", "#0102fe", "orange",
+        ])
+    }
+
+    fn object(&mut self) -> String {
+        let (color, other, p) = (self.color(), self.color(), self.point());
+        let shape = match self.random.bits() % 8 {
+            0 | 1 => {
+                let radius = self.length(1.5);
+                self.points.push(p + radius * DVec3::X);
+                format!("sphere {{ center {} radius {radius:?}", vector(p))
+            }
+            2 | 3 => {
+                let (v1, mut v2) = (self.point(), self.point());
+                if self.one_in(3) {
+                    // A sliver.
+                    let thickness = self.choose(&[1e-15, 1e-9, 1e-3]);
+                    v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
+                }
+                self.points.extend([v1, p.lerp(v1, 0.5), p.lerp(v2, 0.25)]);
+                let [v1, v2] = [v1, v2].map(vector);
+                format!("triangle {{ v0 {} v1 {v1} v2 {v2}", vector(p))
+            }
+            4 => {
+                let (a, b, normal) = (self.length(2.0), self.length(2.0), self.point());
+                let c = self.choose(&[a, b, a + b, (a - b).abs(), (a + b) * (1.0 - 1e-12)]);
+                let (p, normal, spin) = (vector(p), vector(normal), self.number(200.0));
+                format!(
+                    "triangle {{ centroid {p} normal {normal} sides ({a:?}, {b:?}, {c:?}) spin {spin:?}deg"
+                )
+            }
+            5 | 6 => {
+                let size = dvec3(self.length(2.0), self.length(2.0), self.length(2.0));
+                self.points.extend([p + size, p + 0.5 * size]);
+                format!("box {{ min {} max {}", vector(p), vector(p + size))
+            }
+            _ => {
+                let square = match self.random.bits() % 4 {
+                    0 => self.any_size(20.0),
+                    1 => self.any_size(3.0),
+                    _ => self.length(2.0),
+                };
+                let y = p.y;
+                return format!(
+                    "checkerboard {{ y {y:?} square {square:?} colors ({color}, {other}) }}\n"
+                );
+            }
+        };
+        self.points.push(p);
+        format!("{shape} color {color} }}\n")
+    }
+
+    fn camera(&mut self) -> String {
+        let (eye, at) = (self.point(), self.point());
+        let toward = match self.one_in(3) {
+            true => at,
+            false => at - eye,
+        };
+        let mut camera = format!("eye {} direction {}", vector(eye), vector(toward));
+        let beside = self.choose(&[1e-300, 1e-15, 1e-6]) * self.point();
+        let up = self.choose(&[toward, -toward, toward + beside, self.points[0]]);
+        if self.one_in(3) {
+            camera += &format!(" up {}", vector(up));
+        }
+        if self.one_in(3) {
+            camera += &format!(" roll {:?}deg", 90.0 * self.number(2.0));
+        }
+        let degrees = match self.random.bits() % 4 {
+            0 => 180.0 - self.any_size(10.0).min(90.0),
+            1 => self.any_size(9.0).min(170.0),
+            _ => self.random.within(1.0, 179.0),
+        };
+        let (d, height) = (self.any_size(6.0), self.any_size(6.0));
+        camera += &match self.random.bits() % 4 {
+            0 => format!(" d {d:?} view_height {height:?}"),
+            1 => format!(" hfov {degrees:?}deg"),
+            _ => format!(" fov {degrees:?}deg"),
+        };
+        for clip in ["near", "far"] {
+            if self.one_in(4) {
+                // The depth of a point, as often as not.
+                let point = self.point();
+                let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
+                let depth = self.choose(&[depth, depth.next_up(), self.points[0].x.abs() + 1.0]);
+                camera += &format!(" {clip} {depth:?}");
+            }
+        }
+        camera
+    }
+}
+
+fn vector(DVec3 { x, y, z }: DVec3) -> String {
+    format!("({x:?}, {y:?}, {z:?})")
+}
+
+/// A random scene without mistakes, and its text.
+fn random_scene(random: &mut Random) -> (String, Scene) {
+    loop {
+        let most = [3, 3, 10, 60][random.bits() as usize % 4];
+        // A pixel of many objects takes long to compute.
+        let [columns, rows] = if most > 3 { [4, 3] } else { [12, 8] };
+        let (width, height) = (1 + random.bits() % columns, 1 + random.bits() % rows);
+        let (count, wild) = (random.bits() % (most + 1), [0, 0, 30, 5]);
+        let wild = wild[random.bits() as usize % 4];
+        let mut text = Text {
+            random,
+            points: vec![DVec3::ZERO],
+            wild,
+        };
+        let objects: String = (0..count).map(|_| text.object()).collect();
+        let (background, camera) = (text.color(), text.camera());
+        let text = format!(
+            "image {{ width {width} height {height} background {background} }}\ncamera {{ {camera} }}\n{objects}"
+        );
+        if let Some(scene) = scene::read(&sources(&text)).scene {
+            return (text, scene);
+        }
+    }
+}
+
+fn three_threads() -> Control<'static> {
+    Control {
+        threads: NonZero::new(3),
+        ..Control::default()
+    }
+}
+
+/// Compares a picture of one thread with the four parts, by three threads, into which a random column and row cut it.
+fn agrees_with_itself(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
+    let area = whole(scene);
+    let picture: Rendered = rendered(scene, area, &one_thread());
+    let [column, row] = [area.width, area.height].map(|size| random.bits() as u32 % (size + 1));
+    for (x, width) in [(0, column), (column, area.width - column)] {
+        for (y, height) in [(0, row), (row, area.height - row)] {
+            let part = Area {
+                x,
+                y,
+                width,
+                height,
+            };
+            if part.pixels() > 0 {
+                let crop = rendered(scene, part, &three_threads());
+                let what = format!("{part:?}, {:?}: {text}", scene.sampler.method);
+                same(&picture, part, &crop, &what);
+            }
+        }
+    }
+    picture
+}
+
+/// Asserts that a part of a picture has the bits of its crop, and so has how far each pixel is known.
+#[track_caller]
+fn same(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
+    let numbers = |picture: &Rendered, x, y| {
+        let film: &Film = picture.film();
+        let bound = match picture {
+            Rendered::Exact(exact) => exact.bounds[(y * film.width() + x) as usize],
+            Rendered::Sampled(_) => 0.0,
+        };
+        (film.pixel(x, y).map(f64::to_bits), bound.to_bits())
+    };
+    for (x, y) in part.iter() {
+        let (one, other) = (numbers(one, x, y), numbers(crop, x - part.x, y - part.y));
+        assert_eq!(one, other, "pixel {x}, {y}; {what}");
+    }
+}
+
+/// Whether samples and the computed picture may be compared. Squares of less than 10⁻⁹⁸ of the eye's distance get one colour from samples, as the language says. Where
+/// they are more than 10¹³ times as large as that and the horizon crosses a pixel, a mean of both colours is computed for the one square below it, which is wrong.
+fn is_comparable(scene: &Scene) -> bool {
+    scene.objects.iter().all(|object| match &object.shape {
+        Shape::Checkerboard(board) => {
+            let height = (board.y - scene.camera.eye.y).abs();
+            height == 0.0 || (1e-90..1e13).contains(&(board.square / height))
+        }
+        _ => true,
+    })
+}
+
+/// Compares each pixel of a computed picture, and the whole, with the mean of independent samples.
+///
+/// Light is from 0 to 1. Where its mean is at most b from m, its variance is at most m(1 − m) + b, as μ(1 − μ) has no slope above 1. By Bernstein's inequality
+/// the mean of N samples, the sum of whose variances is V, is farther off than √(2LV)/N + 2L/(3N) with a probability of at most 2e^−L. A picture has at
+/// most 97 · 3 comparisons, so among 10⁶ pictures one fails with a probability of at most 1e-9 if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
+fn agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
+    let area = whole(scene);
+    let each = (1 << 15) / area.pixels();
+    let sampled = with_samples(scene, Method::Random, Count::PerPixel(each));
+    let sampled: Rendered = rendered(&sampled, area, &one_thread());
+    let log = -libm::log(1.5e-18);
+    let most = |n: f64, variances: f64| (2.0 * log * variances).sqrt() / n + 2.0 * log / (3.0 * n);
+    for channel in 0..3 {
+        let (mut sum, mut bounds, mut variances) = (0.0_f64, 0.0, 0.0);
+        for (x, y) in area.iter() {
+            let (light, bound) = pixel(exact, x, y);
+            let (mean, found) = (light[channel], sampled.film().pixel(x, y)[channel]);
+            let variance = each as f64 * ((mean * (1.0 - mean)).max(0.0) + bound).min(0.25);
+            let most = bound + most(each as f64, variance) + 1e-12;
+            let difference = (mean - found).abs();
+            assert!(
+                difference <= most,
+                "pixel {x}, {y}: {mean} ± {bound}, and {found} of {each} samples: {text}"
+            );
+            (sum, bounds, variances) = (sum + mean - found, bounds + bound, variances + variance);
+        }
+        let pixels = area.pixels() as f64;
+        let most = bounds / pixels + most(pixels * each as f64, variances) + 1e-12;
+        assert!(
+            sum.abs() / pixels <= most,
+            "{sum} of {most} in the sum of all pixels: {text}"
+        );
+    }
+}
+
+#[test]
+fn every_way_to_render_a_random_scene_gives_one_picture() {
+    each(4, |random| {
+        let (text, scene) = random_scene(random);
+        let count = match random.bits() % 3 {
+            0 => Count::Total(1 + random.bits() % 300),
+            _ => Count::PerPixel(1 + random.bits() % 20),
+        };
+        for method in Method::SAMPLED {
+            agrees_with_itself(&with_samples(&scene, method, count), random, &text);
+        }
+        let start = Instant::now();
+        let computed = with_samples(&scene, Method::Exact, Count::PerPixel(1));
+        let Rendered::Exact(exact) = agrees_with_itself(&computed, random, &text) else {
+            panic!("not computed");
+        };
+        // Twice a second a pixel, on a busy machine and hardly optimized.
+        let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
+        assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
+        if is_comparable(&scene) {
+            agrees_with_samples(&scene, &exact, &text);
+        }
+    });
+}
