@@ -69,10 +69,12 @@ const MOST_QUARTERINGS: usize = 16;
 const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Units of work of a piece, for itself and for each object in it. What they are is not critical: they only end what takes too long.
+/// Units of work of a piece, for itself and for each object in it. What they are is not critical:
+/// they only end what takes too long.
 const PIECE_WORK: f64 = 100.0;
 const OBJECT_WORK: f64 = 4.0;
-/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes twice as long as its regions alone tell).
+/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes
+/// twice as long as its regions alone tell).
 const SLABS_WORK: f64 = 60.0;
 /// The work of a pixel that shows nothing but a few squares of a checkerboard.
 const BOARD_PIXEL_WORK: u64 = 10;
@@ -293,8 +295,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between the least and the greatest number of all colours that may be
-    /// seen there.
+    /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between
+    /// the least and the greatest number of all colours that may be seen there.
     fn centered(&self, pixel: &ExactPixel<N>, candidates: &[Candidate]) -> ExactPixel<N> {
         let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
         let background = (!is_covered).then(|| self.world.background());

@@ -86,7 +86,8 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// Whatever part of the picture is asked for, and by however many threads, a pixel's candidates are those of one grid.
+/// Whatever part of the picture is asked for, and by however many threads, a pixel's candidates are
+/// those of one grid.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let others = Control {

@@ -1,5 +1,5 @@
-//! Random scenes of extreme cameras and objects in each other's way, as tiny pictures: every way to render one gives the same bytes, and what is
-//! computed is what samples see.
+//! Random scenes of extreme cameras and objects in each other's way, as tiny pictures: every way to
+//! render one gives the same bytes, and what is computed is what samples see.
 
 use std::{
     num::NonZero,
@@ -209,7 +209,8 @@ fn three_threads() -> Control<'static> {
     }
 }
 
-/// Compares a picture of one thread with the four parts, by three threads, into which a random column and row cut it.
+/// Compares a picture of one thread with the four parts, by three threads, into which a random
+/// column and row cut it.
 fn agrees_with_itself(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
@@ -232,7 +233,8 @@ fn agrees_with_itself(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that a part of a picture has the bits of its crop, and so has how far each pixel is known.
+/// Asserts that a part of a picture has the bits of its crop, and so has how far each pixel is
+/// known.
 #[track_caller]
 fn same(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
@@ -249,13 +251,13 @@ fn same(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Whether samples and the computed picture may be compared. Squares of less than 10⁻⁹⁸ of the eye's distance get one colour from samples, as the language says. Where
-/// they are more than 10¹³ times as large as that and the horizon crosses a pixel, a mean of both colours is computed for the one square below it, which is wrong.
+/// Whether samples and the computed picture may be compared. Squares of less than 10⁻⁹⁸ of the
+/// eye's distance get one colour from samples, as the language says.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
             let height = (board.y - scene.camera.eye.y).abs();
-            height == 0.0 || (1e-90..1e13).contains(&(board.square / height))
+            height == 0.0 || board.square / height > 1e-90
         }
         _ => true,
     })
@@ -263,9 +265,11 @@ fn is_comparable(scene: &Scene) -> bool {
 
 /// Compares each pixel of a computed picture, and the whole, with the mean of independent samples.
 ///
-/// Light is from 0 to 1. Where its mean is at most b from m, its variance is at most m(1 − m) + b, as μ(1 − μ) has no slope above 1. By Bernstein's inequality
-/// the mean of N samples, the sum of whose variances is V, is farther off than √(2LV)/N + 2L/(3N) with a probability of at most 2e^−L. A picture has at
-/// most 97 · 3 comparisons, so among 10⁶ pictures one fails with a probability of at most 1e-9 if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
+/// Light is from 0 to 1. Where its mean is at most b from m, its variance is at most m(1 − m) + b,
+/// as μ(1 − μ) has no slope above 1. By Bernstein's inequality the mean of N samples, the sum of
+/// whose variances is V, is farther off than √(2LV)/N + 2L/(3N) with a probability of at most
+/// 2e^−L. A picture has at most 97 · 3 comparisons, so among 10⁶ pictures one fails with a
+/// probability of at most 1e-9 if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
 fn agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();

@@ -37,7 +37,9 @@ pub(super) use self::{
 const FAR: f64 = 18.0;
 /// No more squares than these are cut out one by one wherever they are. (Measured: with 6 or 96 times differ by about a tenth at most.)
 const FEW: f64 = 24.0;
-/// No near square is cut out beyond this m, where the horizon is a thousand roundings away. (The largest factor of L is about 1.)
+/// No near square is cut out beyond this m, where the horizon is a thousand roundings away, and
+/// where nothing is known of a board with squares so large that they are near. (The largest factor
+/// of L is about 1.)
 const DEEP: f64 = 1e13;
 
 impl Homography {
@@ -54,18 +56,18 @@ impl Homography {
         // Squares are near up to a depth, beyond which m changes by little from square to square.
         let [p, q] = self.slope;
         let depth = FAR * (p.abs() + q.abs());
-        let nearness = |at: DVec2| depth * form(&self.below, at) - 1.0;
+        let nearness = |at: DVec2| depth.min(DEEP) * form(&self.below, at) - 1.0;
         let (mut far, mut near) = (Vec::new(), Vec::new());
         split(&visible.polygon, nearness, &mut far, &mut near);
         let mut sum = Sum::default();
         if near.len() > 2 {
-            sum.add(match depth <= DEEP {
-                true => near::sum(self, &near, budget),
-                false => Sum::nothing_known(&near),
-            });
+            sum.add(near::sum(self, &near, budget));
         }
         if far.len() > 2 {
-            sum.add(green::sum(self, &far, &visible, budget).within(&far));
+            sum.add(match depth <= DEEP {
+                true => green::sum(self, &far, &visible, budget).within(&far),
+                false => Sum::nothing_known(&far),
+            });
         }
         if polygon.iter().any(|&at| self.is_beside_horizon(at)) {
             // Said to be on the horizon, such corners displace what is seen once more as roundings do.

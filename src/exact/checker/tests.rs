@@ -440,3 +440,26 @@ fn nothing_is_computed_beyond_the_budget() {
     let board = Homography::new([[1e9, 1.0, 0.3], [0.0, 1e-9, 0.2]], [0.0, 2.1, 1.1]);
     assert_eq!(board.alone(&PIXEL).value, 0.0);
 }
+
+/// The horizon above a single square, whatever its size.
+#[test]
+fn a_square_that_goes_to_the_horizon_is_known() {
+    // Beyond, the forms are told from singular ones no more.
+    for exponent in 0..90 {
+        let view = View {
+            height: libm::pow(10.0, -f64::from(exponent)),
+            focal: 14.0,
+            degrees: 3.0,
+            place: DVec2::new(0.0, 0.01),
+            foot: DVec2::new(0.3, 0.4),
+        };
+        let board = view.board();
+        let Sum { value, bound } = board.alone(&PIXEL);
+        assert!(bound < 1e-9, "{bound} of {view:?}");
+        // Half a pixel and a hundredth of it shows the floor, and its other squares are 0.3 of one
+        // away at least.
+        let others = view.focal * view.height / 0.3;
+        let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
+        assert!(is_one, "{value} of {view:?}");
+    }
+}

@@ -125,8 +125,9 @@ fn a_pixel_takes_bounded_memory() {
     assert_eq!(folder.names(), ["scene.png", "scene.scn"]);
 }
 
-/// Two hundred objects through the same few points, in a pixel that sees half the world: many of their curves only the last precision tells
-/// apart. A pixel takes a second at most; the tests are not optimised as a release is, and others run at the same time.
+/// Two hundred objects through the same few points, in a pixel that sees half the world: many of
+/// their curves only the last precision tells apart. A pixel takes a second at most; the tests are
+/// not optimised as a release is, and others run at the same time.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {
@@ -177,9 +178,10 @@ fn hard_scenes_are_known() {
     }
 }
 
-/// What is not known of a pixel may be anything between the colours that it can show; its mean is the middle of that.
+/// What is not known of a pixel may be anything between the colours that it can show: no less and
+/// no more.
 #[test]
-fn means_are_in_the_middle_of_what_is_possible() {
+fn what_may_be_seen_of_a_vague_pixel_is_within_its_colors() {
     let mut vague = 0;
     for (camera, objects, [least, greatest]) in [
         (
