@@ -18,7 +18,9 @@ use super::budget::Budget;
 /// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Units of work of an object or a pair of objects that is asked for curves, and of each curve in the last precision.
+/// Units of work: of a pair of objects whose depths are compared, of an object or a pair that is
+/// asked for curves, and of each curve in the last precision.
+const PAIR_WORK: f64 = 1.0 / 16.0;
 const LOOK_WORK: f64 = 8.0;
 const BIG_CURVE_WORK: f64 = 1500.0;
 
@@ -49,8 +51,9 @@ pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &m
     candidates::visible_among(world, &patch, objects, out);
 }
 
-/// Finds the curves in a sub-pixel that may bound what is seen there of some objects. Answers whether these are all: the search ends where there are more
-/// than `most`, equal ones counted once, and once the budget is spent, to which it is charged.
+/// Finds the curves in a sub-pixel that may bound what is seen there of some objects. Answers
+/// whether these are all: the search ends where there are more than `most`, equal ones counted
+/// once, and once the budget is spent, to which it is charged.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
@@ -155,6 +158,11 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     fn pairs(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
         let is_board = |at: usize| matches!(*self.objects[at], Object::Checkerboard(_));
         for (i, a) in self.candidates.iter().enumerate() {
+            let others = self.candidates.len() - i;
+            self.budget.charge(PAIR_WORK * others as f64);
+            if self.budget.is_spent() {
+                return ControlFlow::Break(());
+            }
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
