@@ -34,7 +34,8 @@ pub fn nearest<'c>(
     nearest_of(written, &mut candidates.into_iter())
 }
 
-/// The same of names of values and functions. One or two letters are seldom a slip, so that such a name becomes none of other letters.
+/// The same of names of values and functions. One or two letters are seldom a slip, so that such a
+/// name becomes none of other letters.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,

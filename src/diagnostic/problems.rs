@@ -1,6 +1,7 @@
 //! The problems that a stage has found so far, of which it keeps a limited number.
 //!
-//! A megabyte of signs may hold a million mistakes, and what is said of one takes a thousand times its text in memory; nobody reads the hundredth.
+//! A megabyte of signs may hold a million mistakes, and what is said of one takes a thousand times
+//! its text in memory; nobody reads the hundredth.
 
 use std::ops::{Deref, DerefMut};
 
@@ -10,38 +11,55 @@ use crate::source::Span;
 /// Maximum number of problems that a stage reports, and of places that one fix changes.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// The problems that a stage has found. Behind the last that is kept stands one more, which says that there are others.
+/// The problems that a stage has found, as far as there is room.
 #[derive(Debug, Default)]
 pub struct Problems {
     kept: Vec<Diagnostic>,
-    /// The index of the one that says that there are others.
-    last: Option<usize>,
+    /// Where the first one is that was left out.
+    left_out: Option<Span>,
 }
 
 impl Problems {
     /// Adds one, if there is room.
     pub fn push(&mut self, problem: Diagnostic) {
-        if self.is_full() {
-            return;
-        }
-        match (self.kept.len() < MOST_PROBLEMS, problem.labels.first()) {
-            (false, Some(label)) => self.end(label.span),
-            _ => self.kept.push(problem),
+        if self.kept.len() < MOST_PROBLEMS {
+            self.kept.push(problem);
+        } else if let Some(label) = problem.labels.first() {
+            self.leave_out(label.span);
         }
     }
 
-    /// Says that there are others from a place on. None is added any more.
-    pub fn end(&mut self, span: Span) {
-        if self.is_full() {
-            return;
+    /// Says that there is another one at a place, which is left out.
+    pub fn leave_out(&mut self, span: Span) {
+        self.left_out.get_or_insert(span);
+    }
+
+    /// Whether one was left out, so that there is no use in looking for others.
+    pub fn is_full(&self) -> bool {
+        self.left_out.is_some()
+    }
+
+    /// Forgets all but so many.
+    pub fn truncate(&mut self, length: usize) {
+        self.split_off(length);
+    }
+
+    /// Takes away all but so many, which makes room again.
+    pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
+        if length < self.kept.len() {
+            self.left_out = None;
         }
-        self.last = Some(self.kept.len());
-        self.kept.push(Diagnostic {
+        self.kept.split_off(length.min(self.kept.len()))
+    }
+}
+
+/// All that are kept, and last that others are left out.
+impl From<Problems> for Vec<Diagnostic> {
+    fn from(Problems { mut kept, left_out }: Problems) -> Self {
+        kept.extend(left_out.map(|span| Diagnostic {
             severity: Severity::Error,
             code: "pinhole::unexpected".to_owned(),
-            message: format!(
-                "there are more than {MOST_PROBLEMS} mistakes, and the others are left out"
-            ),
+            message: "there are too many mistakes, and the others are left out".to_owned(),
             help: Some(
                 "mend those before it first; perhaps this is no scene of Pinhole".to_owned(),
             ),
@@ -52,28 +70,8 @@ impl Problems {
             fixes: Vec::new(),
             is_needless: false,
             is_of_syntax: true,
-        });
-    }
-
-    /// Whether no other one is kept.
-    pub fn is_full(&self) -> bool {
-        self.last.is_some_and(|last| last < self.kept.len())
-    }
-
-    /// Forgets all but so many.
-    pub fn truncate(&mut self, length: usize) {
-        self.kept.truncate(length);
-    }
-
-    /// Takes away all but so many.
-    pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
-        self.kept.split_off(length.min(self.kept.len()))
-    }
-}
-
-impl From<Problems> for Vec<Diagnostic> {
-    fn from(problems: Problems) -> Self {
-        problems.kept
+        }));
+        kept
     }
 }
 

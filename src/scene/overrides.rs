@@ -171,7 +171,8 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Whether the value means something where it would stand: in a field, or in the definition of a name, which sees those before it.
+    /// Whether the value means something where it would stand: in a field, or in the definition of
+    /// a name, which sees those before it.
     fn suits(
         &self,
         place: Result<&schema::Field, &str>,

@@ -1,8 +1,9 @@
 //! Whether the camera sees anything at all, and can tell the squares of a board apart.
 //!
-//! In: a camera and the objects. Out: why all of them are out of its sight, if a sphere around each shows that they are; and whether a board's squares are
-//! too small for the numbers that samples are computed with. What is in doubt counts as
-//! seen, and so does what another object hides: a warning is never false. Errors: numbers here are rounded `f64`s, and each comparison leaves
+//! In: a camera and the objects. Out: why all of them are out of its sight, if a sphere around each
+//! shows that they are; and whether a board's squares are too small for the numbers that samples
+//! are computed with. What is in doubt counts as seen, and so does what another object hides: a
+//! warning is never false. Errors: numbers here are rounded `f64`s, and each comparison leaves
 //! [`MARGIN`] of the sizes in it.
 
 use glam::DVec3;
@@ -56,7 +57,8 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     })
 }
 
-/// Whether samples show squares of a board that they cannot tell apart, so that all have one colour.
+/// Whether samples show squares of a board that they cannot tell apart, so that all have one
+/// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     let Some(frustum) = Frustum::new(camera, image) else {
         return false;
@@ -172,10 +174,13 @@ impl Frustum {
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Whether nearly all rays meet a board so many squares from the eye that the number is even whatever it is.
+    /// Whether nearly all rays meet a board so many squares from the eye that the number is even
+    /// whatever it is.
     ///
-    /// The ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x, and as much along z. In the window |r_x| goes up to
-    /// its extent, and is below 2^−10 of that in less than a hundredth of the picture. Where the numbers here overflow or vanish, it is not so.
+    /// The ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x,
+    /// and as much along z. In the window |r_x| goes up to its extent, and is below 2^−10 of that
+    /// in less than a hundredth of the picture. Where the numbers here overflow or vanish, it is
+    /// not so.
     fn are_lost(&self, board: &Checkerboard) -> bool {
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();

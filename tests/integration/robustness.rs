@@ -109,7 +109,8 @@ fn one_thing_many_times(effort: Effort) {
     assert!(!read(""));
 }
 
-/// Of very many mistakes the first ten thousand are reported, and that there are others, however they are spread.
+/// Of very many mistakes the first ten thousand are reported, and that there are others, however
+/// they are spread.
 #[test]
 fn the_rest_of_very_many_mistakes_is_left_out() {
     let many = |piece: &str| piece.repeat(20_000);
@@ -135,6 +136,13 @@ fn the_rest_of_very_many_mistakes_is_left_out() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
+    // Signs are reported together, as far as they were read.
+    let spheres = many("sphere { center (0, 1, 0) };\n");
+    let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
+    let signs = found
+        .iter()
+        .find(|it| it.code == "pinhole::needless_separator");
+    assert_eq!(signs.map(|it| it.fixes[0].edits.len()), Some(MOST_PROBLEMS));
 }
 
 #[test]

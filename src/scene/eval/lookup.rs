@@ -117,7 +117,8 @@ impl<'s> Evaluator<'_, 's> {
             })
     }
 
-    /// The problem of a name that is not defined, and what the name stands for that is suggested in its place.
+    /// The problem of a name that is not defined, and what the name stands for that is suggested in
+    /// its place.
     fn unknown_name(
         &self,
         name: &str,
@@ -163,8 +164,8 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed with. What is known to be of another type
-    /// than the one that is wanted is passed over.
+    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed
+    /// with. What is known to be of another type than the one that is wanted is passed over.
     fn nearest(&self, name: &str, wanted: Option<Type>, is_color: bool) -> Option<String> {
         // `ff0000`, the code of a colour without its sign.
         let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());

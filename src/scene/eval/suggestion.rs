@@ -1,7 +1,8 @@
 //! What is suggested in place of a name, until it is known whether it will do there.
 //!
-//! In: a name that stands for nothing, and the nearest one. Out: what the name stands for while the suggestion is tried. Whether that makes another
-//! mistake only the whole value tells, which whoever evaluates it does once more.
+//! In: a name that stands for nothing, and the nearest one. Out: what the name stands for while the
+//! suggestion is tried. Whether that makes another mistake only the whole value tells, which
+//! whoever evaluates it does once more.
 
 use std::cell::RefCell;
 

@@ -1,7 +1,8 @@
 //! Suggestions that would be the next mistake are withdrawn.
 //!
-//! In: how a value is evaluated. Out: the same reports, in which a name is suggested only if the value, evaluated with what that name stands for,
-//! has no error that it did not have: of a type, a number of arguments, or a condition of its field.
+//! In: how a value is evaluated. Out: the same reports, in which a name is suggested only if the
+//! value, evaluated with what that name stands for, has no error that it did not have: of a type, a
+//! number of arguments, or a condition of its field.
 
 use super::lowering::Lowering;
 use crate::{diagnostic::Diagnostic, scene::eval::Suggestion, source::Span};

@@ -409,7 +409,7 @@ impl<'w, 's> Recovery<'w, 's> {
         let places = self.within.slips.entry(word).or_default();
         match places.len() < MOST_PROBLEMS {
             true => places.push(sign),
-            false => self.problems.end(sign),
+            false => self.problems.leave_out(sign),
         }
     }
 

@@ -1,4 +1,5 @@
-//! A name that is suggested will do where it is written: every name of the language and of the text, mistyped in every way, in every place.
+//! A name that is suggested will do where it is written: every name of the language and of the
+//! text, mistyped in every way, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 

@@ -1,4 +1,5 @@
-//! The warnings of cameras that see nothing, or squares too small to tell apart: they are never false, and come often enough.
+//! The warnings of cameras that see nothing, or squares too small to tell apart: they are never
+//! false, and come often enough.
 
 use std::collections::BTreeSet;
 
@@ -56,7 +57,8 @@ fn a_board_of_lost_squares_has_one_colour() {
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
-                // How much of each pixel shows the board's second colour, of what shows it at all; green has no part in the background.
+                // How much of each pixel shows the board's second colour, of what shows it at all;
+                // green has no part in the background.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();
