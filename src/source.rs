@@ -13,7 +13,7 @@ use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 pub enum SourceId {
     /// The scene file (or standard input).
     File,
-    /// The `--set` argument with this number, from 0. Spans are half of what is kept of a scene of very many objects.
+    /// The `--set` argument with this number, from 0.
     Set(u32),
 }
 

@@ -116,6 +116,8 @@ impl OutputFolder {
                     error,
                 })?;
             }
+            // Others take their time to write.
+            self.check(name)?;
             self.write_one(name, text)?;
         }
         for (name, text) in files {

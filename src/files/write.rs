@@ -226,7 +226,9 @@ fn write_device(
         .open(path)
         .map_err(
             |error| match fs::metadata(path).map(|found| Kind::of(&found)) {
-                Ok(Kind::Pipe) => io::Error::new(error.kind(), "it is a pipe that nobody reads"),
+                Ok(Kind::Pipe) if error.kind() != io::ErrorKind::PermissionDenied => {
+                    io::Error::new(error.kind(), "it is a pipe that nobody reads")
+                }
                 _ => error,
             },
         )?;
