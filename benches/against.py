@@ -36,21 +36,12 @@ def build(commit):
     return folder / "target" / "release" / "pinhole"
 
 
-def threaded(command):
-    """The command's arguments without `--threads 1`: all processors are at work, as for a user."""
-    words = [str(word) for word in command.arguments]
-    while "--threads" in words:
-        at = words.index("--threads")
-        del words[at : at + 2]
-    return words
-
-
 def run(program, command):
     """CPU and wall seconds; infinite where the program does not know the command."""
     start = time.monotonic()
     with open(command.stdin, "rb") as stdin:
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        process = subprocess.Popen([program, *threaded(command)], stdin=stdin, **quiet)
+        process = subprocess.Popen([program, *command.arguments], stdin=stdin, **quiet)
     _, status, usage = os.wait4(process.pid, 0)
     if os.waitstatus_to_exitcode(status) != command.status:
         return math.inf, math.inf

@@ -110,10 +110,8 @@ def prepare(folder, program, counts):
 def commands(folder, width, height, counts):
     """All commands, with pictures of this size; `folder` has been prepared and takes what they write."""
     picture, exr = folder / "picture.png", folder / "picture.exr"
-    one = ["--threads", "1"]
-
     def render(name, scene, *sets, size=(width, height), out=picture, more=()):
-        return Command(name, ["render", scene, "-o", out, *one, *sized(*size, *sets), *more])
+        return Command(name, ["render", scene, "-o", out, *sized(*size, *sets), *more])
 
     for scene in sorted(EXAMPLES.glob("*.scn")):
         yield render(f"exact {scene.stem}", scene, "sampler.method=exact")
@@ -141,7 +139,7 @@ def commands(folder, width, height, counts):
     yield Command("diff wrong", ["diff", folder / "wrong.png", FIGURE, *small], status=1)
     yield Command("diff JPEG", ["diff", ROOT / "benches" / "figure_9_9.jpg", FIGURE, *small])
     yield Command("diff pictures", ["diff", folder / "right.png", folder / "wrong.png"], status=1)
-    yield Command("grade", ["grade", *one, FIGURE, folder / "right.png", *small])
+    yield Command("grade", ["grade", FIGURE, folder / "right.png", *small])
     yield Command("editor session", ["lsp"], stdin=folder / "session")
     yield Command("probe", ["probe", FIGURE, "640.5", "360.5"])
     yield Command("inspect", ["inspect", FIGURE])
