@@ -1,4 +1,5 @@
-//! What editors and pages say, and what no editor would: each request is answered once, and the server's text stays the client's.
+//! What editors and pages say, and what no editor would: each request is answered once, and the
+//! server's text stays the client's.
 
 use std::collections::BTreeMap;
 
@@ -146,10 +147,18 @@ fn each_request_is_answered_once_and_the_text_is_the_clients() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // What is wrong with a text that was opened anew is what is wrong with the edited one.
+        // The edited text has the words and the mistakes of the same text when it is opened.
         let mut again = Talk::with(&text);
+        while again.carrier.step() {}
         let ask = |talk: &mut Talk| talk.ask("textDocument/semanticTokens/full", json!({}));
         assert_eq!(ask(&mut talk), ask(&mut again), "{text}");
+        let told = |talk: &mut Talk| {
+            let said = talk.heard.drain(..);
+            let mut told = said.filter(|it| it["method"] == "textDocument/publishDiagnostics");
+            told.next_back()
+                .map(|mut told| told["params"]["diagnostics"].take())
+        };
+        assert_eq!(told(&mut talk), told(&mut again), "{text}");
     });
 }
 
@@ -173,5 +182,18 @@ fn any_bytes_are_a_message_or_get_an_error() {
             }
         }
         while talk.carrier.step() {}
+        // Whatever was said, it still answers.
+        talk.carrier.said.clear();
+        let document = json!({ "textDocument": { "uri": "file:///b.scn", "languageId": "scn", "version": 1, "text": "sphere {}" } });
+        talk.send(
+            &json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": document }),
+        );
+        while talk.carrier.step() {}
+        let is_told = |said: &String| said.contains("b.scn") && said.contains("missing_field");
+        assert!(
+            talk.carrier.said.iter().any(is_told),
+            "{:?}",
+            talk.carrier.said
+        );
     });
 }

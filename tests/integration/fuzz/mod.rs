@@ -1,8 +1,9 @@
-//! Inputs that nobody would write, as many as somebody wants: whatever is read, nothing panics or hangs, and what is promised of it
-//! holds.
+//! Inputs that nobody would write, as many as somebody wants: whatever is read, nothing panics or
+//! hangs, and what is promised of it holds.
 //!
-//! Each target tries a few in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries a million in each, and
-//! `PINHOLE_FUZZ_FIRST` is the number of the first one. An input depends on its number alone.
+//! Each target tries a few in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries
+//! a million in each, and `PINHOLE_FUZZ_FIRST` is the number of the first one. An input depends on
+//! its number alone.
 
 #[cfg(feature = "studio")]
 mod host;
@@ -23,13 +24,15 @@ use crate::{diagnostics::fixtures, format::all_scenes, tracer::Random};
 /// So long may the tests take for one input: milliseconds, but for a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// What is done to texts: names, numbers and signs that stand in the place of others, apart by bars.
+/// What is done to texts: names, numbers and signs that stand in the place of others, apart by
+/// bars.
 const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
     (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
     let|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
-/// Tries inputs: as many as the environment says, or as are usual. A test that fails says which one it was.
+/// Tries inputs: as many as the environment says, or as are usual. A test that fails says which one
+/// it was.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Drop for Number {

@@ -23,7 +23,8 @@ fn whatever_is_read_gets_an_answer() {
     });
 }
 
-/// Each fix changes the text, and all of them together come to an end: what is done again changes nothing.
+/// Each fix changes the text, and all of them together come to an end: what is done again changes
+/// nothing.
 #[test]
 fn fixes_change_what_is_there_and_come_to_an_end() {
     each(60, |random| {
