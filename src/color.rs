@@ -59,7 +59,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 
 /// The light from which on k + 1 is the nearest byte: the least `f64` that is not below the light of k + 1/2, for k below 255.
 ///
-/// The powers of the curve are rational, so whole numbers can decide: L = x^2.4 has the same sign of its difference as L^5 = x^12.
+/// The powers of the curve are rational, so whole numbers can decide: L = x^2.4 has the same sign
+/// of its difference as L^5 = x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -73,8 +74,9 @@ pub fn half_byte(k: u8) -> f64 {
 
 /// Whether light, more than 0 and no subnormal number, is darker than that of k + 1/2.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // In double-double first: whole numbers take half the time of a small picture. In units of its roundings the powers on the
-    // left are off by 4 and 11, their product by one more and the right by 11, and so is the difference by one: less than 32.
+    // In double-double first: whole numbers take half the time of a small picture. In units of its
+    // roundings the powers on the left are off by 4 and 11, their product by one more and the right
+    // by 11, and so is the difference by one: less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -91,7 +93,7 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// The same, in whole numbers.
+/// Whether light is darker than that of k + 1/2, in whole numbers.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);

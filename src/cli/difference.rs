@@ -39,7 +39,8 @@ pub fn difference(source: &Source, formatted: &str) -> String {
     out
 }
 
-/// Lines of a text that follow each other: the number of the first, how many they are, and their bytes.
+/// Lines of a text that follow each other: the number of the first, how many they are, and their
+/// bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Lines {
     first: usize,
@@ -63,7 +64,8 @@ struct Change {
 /// A text that is read line by line.
 struct Reader<'t> {
     text: &'t str,
-    /// The number of the next line, where it starts, and the number of characters before it that are no blanks.
+    /// The number of the next line, where it starts, and the number of characters before it that
+    /// are no blanks.
     next: usize,
     at: usize,
     place: usize,

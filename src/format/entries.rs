@@ -81,7 +81,8 @@ impl Entry<'_> {
     }
 }
 
-/// The entries of a file. Items that are handed over are gone as soon as their entries are made: trees take much memory.
+/// The entries of a file. Items that are handed over are gone as soon as their entries are made:
+/// trees take much memory.
 pub fn of_file<'s, 't>(
     source: &'s Source,
     comments: &[Span],

@@ -82,7 +82,8 @@ pub struct Reference<'a> {
     work: f64,
 }
 
-/// What a reference takes for each pixel: the exact mean, and the mean, its doubt and the variance, of which there are two while they are made.
+/// What a reference takes for each pixel: the exact mean, and the mean, its doubt and the variance,
+/// of which there are two while they are made.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl<'a> Reference<'a> {

@@ -4,8 +4,8 @@ use lsp_server::{ErrorCode, Message};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of values in a message. An object takes some 400 bytes of memory, of which its text may have eight; this is 40 000 changes of a text at
-/// once.
+/// Maximum number of values in a message. An object takes some 400 bytes of memory, of which its
+/// text may have eight; this is 40 000 changes of a text at once.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Why a text is no message.
@@ -64,7 +64,8 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// Returns how many values a text in JSON may have: each but the first follows one of these signs. Nothing is built of the text, which may have any number.
+/// Returns how many values a text in JSON may have: each but the first follows one of these signs.
+/// Nothing is built of the text, which may have any number.
 fn most_values(text: &[u8]) -> usize {
     let (mut values, mut is_in_text, mut is_escaped) = (1, false, false);
     for byte in text {

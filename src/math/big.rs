@@ -22,7 +22,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Bits of a big number. A whole number with more of them has the nearest one with as many in its place, which is even.
+    /// Bits of a big number. A whole number with more of them has the nearest one with as many in
+    /// its place, which is even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// The nearest with so many bits.

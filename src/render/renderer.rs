@@ -25,8 +25,8 @@ use crate::{
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// A pixel is prepared for its samples if it has more than so many for each candidate. Measured: with 1 or 4 a picture takes
-/// up to a fiftieth longer.
+/// A pixel is prepared for its samples if it has more than so many for each candidate. Measured:
+/// with 1 or 4 a picture takes up to a fiftieth longer.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one.

@@ -72,7 +72,8 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// Meets every rectangle.
+    /// Meets every rectangle. There is a number behind its last unit, which shares are counted
+    /// with.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],

@@ -27,9 +27,10 @@ pub const GRID: u32 = checker_corners::SIDE as u32;
 /// where 2 is up to a quarter slower; 3000 slivers with one sample a pixel take half as long with 4 as with 8.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// To find where a candidate is seen, from a square of the grid down, costs as much as so many objects that samples are asked
-/// about one by one: for a sample, those whose bounds hold it, and one more for its way down the quadtree. Measured: with 80,
-/// 10⁴ spheres on 320×180 pixels take a tenth longer, and with 200 on 640×360 a fiftieth.
+/// To find where a candidate is seen, from a square of the grid down, costs as much as so many
+/// objects that samples are asked about one by one: for a sample, those whose bounds hold it, and
+/// one more for its way down the quadtree. Measured: with 80, 10⁴ spheres on 320×180 pixels take a
+/// tenth longer, and with 200 on 640×360 a fiftieth.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Cuts the parts of one picture.
@@ -113,7 +114,8 @@ impl<'a> Quartering<'a> {
         })
     }
 
-    /// Whether to tell the candidates of an area apart costs less than to trace its samples one by one.
+    /// Whether to tell the candidates of an area apart costs less than to trace its samples one by
+    /// one.
     fn is_worth_cutting(&self, area: Area, candidates: &[Candidate]) -> bool {
         if candidates.len() <= OBJECTS_A_CELL {
             return true;
