@@ -19,7 +19,7 @@ use crate::{
     film::{self, Encoder},
     math::SimdWidth,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Part, Quartering, Scratch, World, samples},
+    tracer::{Candidate, Checks, Nearby, Part, Quartering, Scratch, World, samples},
 };
 
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
@@ -31,6 +31,12 @@ const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
+
+/// Where there are crowds, the objects nearby are found for squares of this side, in pixels.
+const CROWD: u32 = 4;
+
+/// With so many samples, a pixel's objects are told from those nearby before they are traced.
+const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// What all tiles have in common.
 pub(super) struct Renderer<'a, P> {
@@ -80,10 +86,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 &mut film,
                 tally,
             ),
-            Part::Crowded { area } => {
-                let mut pixels = area.iter();
-                pixels.try_for_each(|(x, y)| self.pixel([x, y], Trace::OneByOne, &mut film, tally))
-            }
+            Part::Crowded { area } => area.grid(CROWD).try_for_each(|square| {
+                let nearby = self.world.nearby(square);
+                let trace = Trace::OneByOne(nearby.as_deref());
+                let mut pixels = square.common(area).iter();
+                pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
+            }),
         };
         let flow = self.quartering.parts(tile, scratch, &mut visit);
         (self.control.progress)(film.unreported);
@@ -120,6 +128,19 @@ impl<P: film::Pixel> Renderer<'_, P> {
             }
             _ => trace,
         };
+        let mut narrowed = std::mem::take(&mut tally.nearby);
+        let trace = match trace {
+            Trace::OneByOne(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
+                let pixel = Area::pixel(x, y);
+                if let Some(slot) = self.world.narrowed(pixel, nearby, &mut narrowed) {
+                    tally.nearby = narrowed;
+                    film.fill(pixel, self.shown[slot]);
+                    return self.go_on();
+                }
+                Trace::OneByOne(Some(&narrowed))
+            }
+            _ => trace,
+        };
         if let Trace::Together(candidates, checks) = trace {
             samples::prepare(self.world, [x, y], candidates, checks, &mut tally.pixel);
         }
@@ -132,6 +153,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
             }
             self.go_on()?;
         }
+        tally.nearby = narrowed;
         let Tally { counts, means, .. } = tally;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
         self.go_on()
@@ -175,9 +197,9 @@ impl<P: film::Pixel> Renderer<'_, P> {
                     counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
                 }
             }
-            Trace::OneByOne => {
+            Trace::OneByOne(nearby) => {
                 for offset in wanted {
-                    counts.add(self.world.slot_at(x, y, offset), 1);
+                    counts.add(self.world.slot_near(x, y, offset, nearby), 1);
                 }
             }
         }
@@ -191,6 +213,6 @@ enum Trace<'a> {
     Together(&'a [Candidate], Option<&'a Checks>),
     /// One by one, against these.
     Among(&'a [Candidate]),
-    /// One by one, against the objects that the quadtree knows on their way.
-    OneByOne,
+    /// One by one, against the objects nearby, or those that the quadtree knows on their way.
+    OneByOne(Option<&'a [Nearby]>),
 }

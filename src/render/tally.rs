@@ -3,7 +3,7 @@
 use crate::{
     film::{self, Encoder, mean},
     sampling::Points,
-    tracer::PreparedPixel,
+    tracer::{Nearby, PreparedPixel},
 };
 
 /// What a thread counts with.
@@ -14,6 +14,8 @@ pub(super) struct Tally<P> {
     pub(super) pixel: PreparedPixel,
     /// Scratch for the points.
     pub(super) points: Points,
+    /// Scratch for the objects nearby.
+    pub(super) nearby: Vec<Nearby>,
 }
 
 impl<P> Tally<P> {
@@ -23,6 +25,7 @@ impl<P> Tally<P> {
             means: Means(Vec::new()),
             pixel: PreparedPixel::default(),
             points: Points::default(),
+            nearby: Vec::new(),
         }
     }
 }

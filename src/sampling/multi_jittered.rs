@@ -12,11 +12,11 @@ use std::ops::Range;
 use super::{
     lattice::{Strata, Stratum},
     rng::Key,
-    shuffle::Shuffle,
+    shuffle::{ROOM, Shuffle},
 };
 
-/// So many points are placed at a time.
-const BATCH: usize = 64;
+/// So many points are placed at a time: most pixels have no more, and the room for them is cleared.
+const BATCH: usize = 16;
 
 /// A grid of cells, with the fine strata that they are made of.
 #[derive(Debug)]
@@ -50,8 +50,10 @@ impl MultiJittered {
     /// Places the points with these indices, row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
-        let sigma = Shuffle::new(self.rows, key.part(0));
-        let tau = Shuffle::new(self.columns, key.part(1));
+        let mut rooms = [ROOM; 2];
+        let [sigma, tau] = &mut rooms;
+        let sigma = Shuffle::new(self.rows, key.part(0), sigma);
+        let tau = Shuffle::new(self.columns, key.part(1), tau);
         match (sigma.stored(), tau.stored(), self.strata.stored()) {
             (Some(sigma), Some(tau), Some(strata)) => {
                 let in_row = |j: u64| u64::from(sigma[j as usize]);

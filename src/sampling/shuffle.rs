@@ -8,11 +8,18 @@ const STORED: u64 = 1 << 12;
 /// Lengths up to this need no allocation.
 const SHORT: usize = 64;
 
+/// Room for a short permutation. It stays where it is, since to move entries right after they are
+/// written makes processors wait.
+pub type Room = [u16; SHORT];
+
+/// Room with nothing in it.
+pub const ROOM: Room = [0; SHORT];
+
 /// A permutation of 0 … n − 1 that a key decides.
 #[derive(Debug)]
-pub enum Shuffle {
-    /// Short: its entries.
-    Short([u16; SHORT]),
+pub enum Shuffle<'a> {
+    /// Short: its entries, and more behind them.
+    Short(&'a Room),
     /// Of middling length: its entries.
     Stored(Vec<u16>),
     /// Long: how to compute an entry.
@@ -24,14 +31,13 @@ pub enum Shuffle {
     },
 }
 
-impl Shuffle {
+impl<'a> Shuffle<'a> {
     /// The permutation of 0 … n − 1 that `key` decides.
     #[inline(always)]
-    pub fn new(n: u64, key: Key) -> Self {
+    pub fn new(n: u64, key: Key, room: &'a mut Room) -> Self {
         if n <= SHORT as u64 {
-            let mut entries = [0; SHORT];
-            fisher_yates(&mut entries[..n as usize], key);
-            Self::Short(entries)
+            fisher_yates(&mut room[..n as usize], key);
+            Self::Short(room)
         } else if n <= STORED {
             let mut entries = vec![0; n as usize];
             fisher_yates(&mut entries, key);
@@ -45,7 +51,7 @@ impl Shuffle {
     #[inline(always)]
     pub fn stored(&self) -> Option<&[u16]> {
         match self {
-            Self::Short(entries) => Some(entries),
+            Self::Short(entries) => Some(entries.as_slice()),
             Self::Stored(entries) => Some(entries),
             Self::Hashed { .. } => None,
         }
@@ -102,7 +108,8 @@ mod tests {
     fn short_permutations_are_equally_likely() {
         let mut hits = std::collections::HashMap::new();
         for seed in 0..24_000 {
-            let shuffle = Shuffle::new(4, Key::new(seed, 0));
+            let mut room = ROOM;
+            let shuffle = Shuffle::new(4, Key::new(seed, 0), &mut room);
             *hits
                 .entry([0, 1, 2, 3].map(|i| shuffle.get(i)))
                 .or_insert(0_u32) += 1;
@@ -117,7 +124,8 @@ mod tests {
         let n = 6007;
         let (mut sum, mut neighbours) = (0.0, 0);
         for seed in 0..2000 {
-            let shuffle = Shuffle::new(n, Key::new(seed, 0));
+            let mut room = ROOM;
+            let shuffle = Shuffle::new(n, Key::new(seed, 0), &mut room);
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }

@@ -16,6 +16,10 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
+/// Of the places where a text can be taken apart, those are kept that are so many bytes apart: a
+/// small part of what is parsed at a time.
+const SPACING: usize = 256;
+
 /// What the walk finds.
 #[derive(Debug, Default)]
 pub struct Scan {
@@ -26,7 +30,7 @@ pub struct Scan {
     /// Where more parentheses and minuses are open than a value may have. A minus between two values counts, too: recovery,
     /// which reads these items, counts exactly.
     pub deep: Vec<usize>,
-    /// Where a right text can be taken apart: behind every `}`, and before every `let`.
+    /// Where a right text can be taken apart: behind a `}`, and before a `let`, one in each [`SPACING`].
     pub ends: Vec<usize>,
     /// Characters that cannot be seen and are no white space of the language.
     odd_spaces: Vec<Range<usize>>,
@@ -71,14 +75,14 @@ impl Scan {
                         open.clear();
                         (minuses, outside, is_told) = (0, 0, false);
                         if *brace == b'}' {
-                            scan.ends.push(token.end);
+                            scan.may_end(token.end);
                         }
                     }
                     _ => {}
                 },
                 TokenKind::Name => {
                     if text.get(token.start..token.end) == Some("let") {
-                        scan.ends.push(token.start);
+                        scan.may_end(token.start);
                     }
                     minuses = 0;
                 }
@@ -91,6 +95,13 @@ impl Scan {
             is_told = is_deep;
         }
         scan
+    }
+
+    /// Notes where the text can be taken apart, unless it is close behind the last such place.
+    fn may_end(&mut self, place: usize) {
+        if self.ends.last().is_none_or(|&last| place >= last + SPACING) {
+            self.ends.push(place);
+        }
     }
 
     /// Whether the text has no comment that is never closed, no value that nests too deep and no odd white space.

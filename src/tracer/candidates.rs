@@ -48,9 +48,17 @@ pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Ca
     visible_of(world, &patch, objects, out);
 }
 
-/// All that may be seen in a part of the picture; whether that is so: of more than `most` it is not known.
+/// All that may be seen in a part of the picture; whether that is so. It is not known of more than
+/// `most`, nor of those that are not worth it: of so many objects, and so many whose bounds a ray
+/// meets there, on average.
 #[must_use]
-pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) -> bool {
+pub fn within(
+    world: &World,
+    part: Area,
+    most: usize,
+    is_worth: impl FnOnce(usize, f64) -> bool,
+    out: &mut Vec<Candidate>,
+) -> bool {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let [near, far] = clips_over(world, &patch);
     let behind = |object: u32| match cover(world, object as usize, &patch, near, far) {
@@ -60,21 +68,16 @@ pub fn within(world: &World, part: Area, most: usize, out: &mut Vec<Candidate>) 
     let Some(objects) = world.quadtree.within(&patch, most, behind) else {
         return false;
     };
+    let rectangle = world.quadtree.rectangle(&patch).unwrap_or(Rectangle::ALL);
+    let shares = objects.iter().map(|item| item.bounds.share_of(&rectangle));
+    if !is_worth(objects.len(), shares.sum()) {
+        return false;
+    }
     let objects = objects
         .iter()
         .map(|item| (item.object as usize, item.bounds));
     visible_of(world, &patch, objects, out);
     true
-}
-
-/// How many candidates a ray through a part of the picture meets the bounds of, on average.
-pub fn bounds_a_ray(world: &World, part: Area, candidates: &[Candidate]) -> f64 {
-    let patch = Patch::new(&world.geometry.fast.camera, part);
-    let rectangle = world.quadtree.rectangle(&patch).unwrap_or(Rectangle::ALL);
-    let shares = candidates
-        .iter()
-        .map(|candidate| candidate.bounds.share_of(&rectangle));
-    shares.sum()
 }
 
 /// The inverse depths of the near and the far plane over a patch, where there are any.

@@ -265,7 +265,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
                 width: x.abs_diff(right) % 8 + 1,
                 height: y.abs_diff(bottom) % 8 + 1,
             };
-            assert!(candidates::within(&world, part, usize::MAX, &mut some));
+            let all_found = candidates::within(&world, part, usize::MAX, |_, _| true, &mut some);
+            assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
             // The quadtree's bounds may leave out more, but nothing else comes in.

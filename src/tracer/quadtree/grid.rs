@@ -104,8 +104,9 @@ impl Rectangle {
         share(0) * share(1)
     }
 
+    /// Whether all of another rectangle lies in this one.
     #[inline]
-    pub(super) fn contains(&self, other: &Self) -> bool {
+    pub fn contains(&self, other: &Self) -> bool {
         self.holds(other.low) && self.holds(other.high)
     }
 }

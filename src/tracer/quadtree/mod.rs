@@ -13,9 +13,9 @@ mod point_query;
 mod rectangle_query;
 mod tree;
 
-use std::sync::atomic::AtomicBool;
+use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
-use self::{rectangle_query::Search, tree::Tree};
+use self::{point_query::visit_list, rectangle_query::Search, tree::Tree};
 use super::{camera::Direction, local_form::Patch};
 
 pub use self::grid::{Grid, Item, Nearness, Rectangle};
@@ -58,6 +58,27 @@ impl Quadtree {
             Some(rectangle) => Search::new(&self.tree, &rectangle, most, behind).run(),
             None => Some(Vec::new()),
         }
+    }
+
+    /// The objects that rays through a patch may meet, the nearest first; none if they seem to be
+    /// more than a cell lists.
+    pub fn nearby(&self, patch: &Patch) -> Option<Vec<Item>> {
+        let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
+        items.sort_by_key(|item| Reverse(item.nearest));
+        Some(items)
+    }
+
+    /// What [`visit`](Self::visit) does, for a ray through a patch of which these are the objects
+    /// nearby.
+    #[inline]
+    pub fn visit_nearby<E>(
+        &self,
+        r: &Direction<f64>,
+        nearby: &[Item],
+        mut visit: impl FnMut(usize) -> Result<Nearness, E>,
+    ) -> Option<Result<(), E>> {
+        let at = self.grid.units(r)?;
+        Some(visit_list(nearby, at, &mut { Nearness::NONE }, &mut visit))
     }
 
     /// What holds all rays through a patch; `None` outside of the window.

@@ -3,7 +3,7 @@
 //! In: a point in the grid. Out: the objects of the cells that hold it, from the root down, each list ended where the rest is hidden.
 
 use super::{
-    grid::{LEVELS, Nearness},
+    grid::{Item, LEVELS, Nearness},
     tree::Tree,
 };
 
@@ -22,14 +22,8 @@ impl Tree {
             if cell.nearest <= hidden {
                 return Ok(());
             }
-            for item in &self.entries[cell.start as usize..cell.end as usize] {
-                if item.nearest <= hidden {
-                    break;
-                }
-                if item.bounds.holds(at) {
-                    hidden = visit(item.object as usize)?;
-                }
-            }
+            let list = &self.entries[cell.start as usize..cell.end as usize];
+            visit_list(list, at, &mut hidden, &mut visit)?;
             if cell.quarters == 0 {
                 return Ok(());
             }
@@ -38,4 +32,23 @@ impl Tree {
             index = cell.quarters + bit(0) + 2 * bit(1);
         }
     }
+}
+
+/// The same of one list, the nearest first.
+#[inline]
+pub(super) fn visit_list<E>(
+    list: &[Item],
+    at: [u32; 2],
+    hidden: &mut Nearness,
+    visit: &mut impl FnMut(usize) -> Result<Nearness, E>,
+) -> Result<(), E> {
+    for item in list {
+        if item.nearest <= *hidden {
+            break;
+        }
+        if item.bounds.holds(at) {
+            *hidden = visit(item.object as usize)?;
+        }
+    }
+    Ok(())
 }

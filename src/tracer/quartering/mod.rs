@@ -102,27 +102,22 @@ impl<'a> Quartering<'a> {
                 visit,
             };
             let mut candidates = take(scratch, 0);
-            let flow = match candidates::within(self.world, area, self.most(area), &mut candidates)
-            {
-                true if self.is_worth_cutting(area, &candidates) => {
-                    cut.cut(area, &candidates, 1, scratch)
-                }
-                _ => cut.show(Part::Crowded { area }),
+            let (most, list) = (self.most(area), &mut candidates);
+            let is_worth = |objects, asked| self.is_worth_cutting(area, objects, asked);
+            let flow = match candidates::within(self.world, area, most, is_worth, list) {
+                true => cut.cut(area, &candidates, 1, scratch),
+                false => cut.show(Part::Crowded { area }),
             };
             scratch.candidates[0] = candidates;
             flow
         })
     }
 
-    /// Whether to tell the candidates of an area apart costs less than to trace its samples one by
-    /// one.
-    fn is_worth_cutting(&self, area: Area, candidates: &[Candidate]) -> bool {
-        if candidates.len() <= OBJECTS_A_CELL {
-            return true;
-        }
-        let asked = 1.0 + candidates::bounds_a_ray(self.world, area, candidates);
+    /// Whether to tell the objects of an area apart costs less than to trace its samples one by
+    /// one, each of which is asked about so many of them.
+    fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
-        samples * asked >= ASKED_A_CANDIDATE * candidates.len() as f64
+        objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
     /// The most candidates of an area that are worth to be told apart: a sample for each in a pixel, where the quartering ends.

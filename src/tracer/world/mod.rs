@@ -21,9 +21,11 @@ use glam::DVec2;
 use self::{colors::Colors, precision::first_certain, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
+    candidates,
     crossing::Crossing,
+    local_form::Patch,
     object::Object,
-    quadtree::{Nearness, Quadtree},
+    quadtree::{Item, Nearness, Quadtree},
 };
 use crate::{
     area::Area,
@@ -114,8 +116,15 @@ impl World {
     /// the offset from that pixel's centre, x to the right and y down, each in [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
+        self.slot_near(x, y, offset, None)
+    }
+
+    /// The same, for points of a part of the picture whose objects [`nearby`](World::nearby) are
+    /// known.
+    #[inline]
+    pub fn slot_near(&self, x: u32, y: u32, offset: DVec2, nearby: Option<&[Item]>) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
-        match self.seen_fast(&point) {
+        match self.seen_fast(&point, nearby) {
             Ok(seen) => self.slot(seen),
             Err(Doubt) => self.slot_after_doubt(&point),
         }
@@ -124,7 +133,7 @@ impl World {
     /// The object that is seen in the middle of a pixel.
     pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
-        match self.seen_fast(&point) {
+        match self.seen_fast(&point, None) {
             Ok(seen) => seen.map(|seen| seen.object),
             Err(Doubt) => {
                 let among = self.candidates(&point);
@@ -180,21 +189,72 @@ impl World {
         self.geometry.objects.len()
     }
 
-    /// What is seen as far as `f64` can tell, of the objects on the way down the quadtree.
+    /// The objects that rays through a part of the picture may meet, the nearest first; none if
+    /// the quadtree finds a ray's objects sooner.
+    pub fn nearby(&self, part: Area) -> Option<Vec<Item>> {
+        let patch = Patch::new(&self.geometry.fast.camera, part);
+        self.quadtree.nearby(&patch)
+    }
+
+    /// Of the objects nearby those that rays through a part of it may meet, in the same order; or,
+    /// where it is certain that one colour is seen, that colour's slot.
+    pub fn narrowed(&self, part: Area, nearby: &[Item], out: &mut Vec<Item>) -> Option<usize> {
+        out.clear();
+        let camera = &self.geometry.fast.camera;
+        let patch = Patch::new(camera, part);
+        let rectangle = self.quadtree.rectangle(&patch)?;
+        let [near, far] = candidates::clips_over(self, &patch);
+        // The nearest object that fills the part.
+        let (mut front, mut hidden) = (None, Nearness::NONE);
+        for item in nearby {
+            if item.nearest <= hidden {
+                break;
+            }
+            if !item.bounds.meets(&rectangle) {
+                continue;
+            }
+            out.push(*item);
+            if item.bounds.contains(&rectangle)
+                && let Some(cover) =
+                    candidates::cover(self, item.object as usize, &patch, near, far)
+                && cover.is_whole
+            {
+                let farthest = Nearness::below(cover.inverse_depth.low);
+                if farthest > hidden {
+                    (front, hidden) = (Some(item.object), farthest);
+                }
+            }
+        }
+        out.retain(|item| item.nearest > hidden);
+        match (out.as_slice(), front) {
+            ([], None) => Some(self.background()),
+            ([only], Some(front)) if only.object == front => {
+                let [slot, second] = self.slots(front as usize);
+                (slot == second).then_some(slot)
+            }
+            _ => None,
+        }
+    }
+
+    /// What is seen as far as `f64` can tell, of the objects nearby or on the way down the quadtree.
     #[inline]
-    fn seen_fast(&self, point: &Point) -> Result<Option<Seen>, Doubt> {
+    fn seen_fast(&self, point: &Point, nearby: Option<&[Item]>) -> Result<Option<Seen>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
         // All farther than this is hidden.
         let mut bar = Nearness::NONE;
-        let visited = self.quadtree.visit(&r, |index| {
+        let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
                 && let Some(Nearest { crossing, .. }) = &nearest
             {
                 bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
             }
             Ok(bar)
-        });
+        };
+        let visited = match nearby {
+            Some(nearby) => self.quadtree.visit_nearby(&r, nearby, visit),
+            None => self.quadtree.visit(&r, visit),
+        };
         visited.ok_or(Doubt)??;
         self.with_color(&r, nearest)
     }
