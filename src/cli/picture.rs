@@ -14,7 +14,7 @@ use super::{
 use crate::{
     area::Area,
     files::{self, Purpose},
-    film::{self, Recipe},
+    film::{self, Linear, Recipe},
     numbers,
     render::{self, Control, Exact, RenderError, Rendered},
     sampling::Sampling,
@@ -26,7 +26,9 @@ use crate::{
 pub enum Picture {
     /// Its means.
     Light(Rendered),
-    /// The bytes of these.
+    /// These, rounded to 32 bits.
+    Floats(Rendered<[f32; 3]>),
+    /// The bytes of them.
     Bytes(Rendered<[u8; 3]>),
 }
 
@@ -35,6 +37,7 @@ impl Picture {
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Light(light) => (light.film().width(), light.film().height()),
+            Self::Floats(floats) => (floats.film().width(), floats.film().height()),
             Self::Bytes(bytes) => (bytes.film().width(), bytes.film().height()),
         }
     }
@@ -44,18 +47,18 @@ impl Picture {
     pub fn into_film(self) -> Option<film::Film> {
         match self {
             Self::Light(light) => Some(light.into_film()),
-            Self::Bytes(_) => None,
+            Self::Floats(_) | Self::Bytes(_) => None,
         }
     }
 
     /// What is to be said of it, which is a part of the whole picture: how exact a computed one is.
     pub fn notes(&self, part: Area, output: &Output) -> String {
         match self {
-            Self::Light(Rendered::Sampled(_)) | Self::Bytes(Rendered::Sampled(_)) => String::new(),
+            Self::Light(Rendered::Sampled(_))
+            | Self::Floats(Rendered::Sampled(_))
+            | Self::Bytes(Rendered::Sampled(_)) => String::new(),
             Self::Light(Rendered::Exact(exact)) => match output {
-                Output::File(_, Format::Exr, _) => {
-                    certificate(exact, part, exact.certain, "the 32-bit rounding")
-                }
+                Output::File(_, Format::Exr, _) => certificate(exact, part, exact.certain, FLOATS),
                 _ => certificate(
                     exact,
                     part,
@@ -63,17 +66,20 @@ impl Picture {
                     BYTES,
                 ),
             },
+            Self::Floats(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, FLOATS),
             Self::Bytes(Rendered::Exact(exact)) => certificate(exact, part, exact.certain, BYTES),
         }
     }
 }
 
-/// What is kept of a picture's pixels.
+/// What is kept of a picture's pixels; all of the means where something else asks for them, too.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
     /// Their means.
     Light,
-    /// The bytes of these, if nothing else asks for the means.
+    /// These, rounded to 32 bits.
+    Floats,
+    /// The bytes of them.
     Bytes,
 }
 
@@ -107,6 +113,9 @@ pub fn picture(
             Keep::Light => {
                 Picture::Light(render::render_as_asked(world, &sampling, part, &control)?)
             }
+            Keep::Floats => {
+                Picture::Floats(render::render_as_asked(world, &sampling, part, &control)?)
+            }
             Keep::Bytes => {
                 Picture::Bytes(render::render_as_asked(world, &sampling, part, &control)?)
             }
@@ -119,6 +128,9 @@ const VAGUE: f32 = 1e-6;
 
 /// What is certain of the pixels of a PNG.
 const BYTES: &str = "the 8-bit rounding";
+
+/// What is certain of those of an EXR.
+const FLOATS: &str = "the 32-bit rounding";
 
 /// What is certain of a computed part of the picture, and of the numbers in its file: of so many pixels what is done to them.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
@@ -242,7 +254,7 @@ impl Output {
     /// What it takes of the pixels.
     pub fn keep(&self) -> Keep {
         match self {
-            Self::File(_, Format::Exr, _) => Keep::Light,
+            Self::File(_, Format::Exr, _) => Keep::Floats,
             _ => Keep::Bytes,
         }
     }
@@ -261,14 +273,12 @@ impl Output {
             }),
             Self::File(path, format, origin) => {
                 files::write(path, origin.purpose(path), cancel, |out| {
-                    match (format, picture) {
-                        (Format::Png, _) => write_png(picture, recipe, out),
-                        (Format::Exr, Picture::Light(light)) => {
-                            film::write_exr(light.film(), recipe.crop.unwrap_or(whole), whole, out)
-                        }
-                        // `keep` asks for light where it goes into an EXR.
-                        (Format::Exr, Picture::Bytes(_)) => Err(io::ErrorKind::InvalidInput.into()),
-                    }
+                    let linear: Linear = match (format, picture) {
+                        (Format::Exr, Picture::Light(light)) => light.film().into(),
+                        (Format::Exr, Picture::Floats(floats)) => floats.film().into(),
+                        _ => return write_png(picture, recipe, out),
+                    };
+                    film::write_exr(linear, recipe.crop.unwrap_or(whole), whole, out)
                 })
             }
         }
@@ -289,6 +299,8 @@ impl Output {
 fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io::Result<()> {
     match picture {
         Picture::Light(light) => film::write_png(light.film(), Some(recipe), out),
+        // `keep` asks for them where they go into an EXR.
+        Picture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
         Picture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
     }
 }

@@ -29,12 +29,64 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
+/// A film of linear light.
+#[derive(Clone, Copy, Debug)]
+pub enum Linear<'a> {
+    /// Its means.
+    Means(&'a Film),
+    /// These, rounded.
+    Floats(&'a Film<[f32; 3]>),
+}
+
+impl<'a> From<&'a Film> for Linear<'a> {
+    fn from(film: &'a Film) -> Self {
+        Self::Means(film)
+    }
+}
+
+impl<'a> From<&'a Film<[f32; 3]>> for Linear<'a> {
+    fn from(film: &'a Film<[f32; 3]>) -> Self {
+        Self::Floats(film)
+    }
+}
+
+impl Linear<'_> {
+    fn width(self) -> u32 {
+        match self {
+            Self::Means(film) => film.width(),
+            Self::Floats(film) => film.width(),
+        }
+    }
+
+    fn height(self) -> u32 {
+        match self {
+            Self::Means(film) => film.height(),
+            Self::Floats(film) => film.height(),
+        }
+    }
+
+    fn pixel(self, x: u32, y: u32) -> [f32; 3] {
+        match self {
+            Self::Means(film) => film.pixel(x, y).map(|mean| mean as f32),
+            Self::Floats(film) => film.pixel(x, y),
+        }
+    }
+}
+
 /// Writes a part of a whole picture, or all of it.
-pub fn write_exr(film: &Film, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
+pub fn write_exr<'a>(
+    film: impl Into<Linear<'a>>,
+    part: Area,
+    whole: Area,
+    out: &mut dyn Sink,
+) -> io::Result<()> {
+    write(film.into(), part, whole, out)
+}
+
+fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
         // A picture has at most 2^20 columns and rows.
-        let [r, g, b] = film.pixel(x as u32, y as u32);
-        (r as f32, g as f32, b as f32)
+        <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
         // A block of 16 rows is in memory several times over, which for the widest pictures would be more than the film.

@@ -6,14 +6,18 @@ use super::{
 };
 use crate::area::Area;
 
-/// What a film keeps of a pixel: its mean in linear light, or that as bytes of sRGB, which take an eighth of the memory.
+/// What a film keeps of a pixel: its mean in linear light, that rounded to floats of 32 bits, or as bytes of sRGB, which take an eighth of the
+/// memory.
 pub trait Pixel: Copy + Default + Send + Sync {
     /// From the mean.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Whether a mean that may be off by a bound in each channel is certain to become the same.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
+}
 
+/// What bytes of sRGB can be made of.
+pub trait Bytes: Pixel {
     /// The bytes of a row; `room` is for those that are not there yet.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
 }
@@ -23,12 +27,24 @@ impl Pixel for [f64; 3] {
         light
     }
 
+    fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
+        // As those of an EXR file.
+        <[f32; 3]>::is_certain(light, bound, encoder)
+    }
+}
+
+impl Pixel for [f32; 3] {
+    fn of(light: [f64; 3], _: &Encoder) -> Self {
+        light.map(|light| light as f32)
+    }
+
     fn is_certain(light: [f64; 3], bound: f64, _: &Encoder) -> bool {
-        // As the floats of 32 bits in an EXR file.
         let float = |off: f64| light.map(|light| (light + off).clamp(0.0, 1.0) as f32);
         bound == 0.0 || float(-bound) == float(bound)
     }
+}
 
+impl Bytes for [f64; 3] {
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
         room.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
@@ -55,7 +71,9 @@ impl Pixel for [u8; 3] {
             low == high
         }
     }
+}
 
+impl Bytes for [u8; 3] {
     fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {
         row.as_flattened()
     }

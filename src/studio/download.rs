@@ -70,7 +70,7 @@ fn png(scene: &Scene, text: &str, cancel: &AtomicBool) -> Made {
 /// For the host on this machine alone: the tables of the format's compressions are a quarter of what a browser would have to load.
 #[cfg(feature = "studio")]
 fn exr(scene: &Scene, cancel: &AtomicBool) -> Made {
-    let film = rendered(scene, cancel)?;
+    let film: Film<[f32; 3]> = rendered(scene, cancel)?;
     let whole = Area::whole(film.width(), film.height());
     let mut file = std::io::Cursor::new(Vec::new());
     film::write_exr(&film, whole, whole, &mut file)?;

@@ -5,7 +5,7 @@
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 
 use pinhole::{
-    film::{write_exr, write_png},
+    film::{Film, write_exr, write_png},
     render::Control,
     scene::Method,
 };
@@ -64,7 +64,7 @@ fn draw(folder: &Path) {
         for method in Method::SAMPLED.into_iter().chain([Method::Exact]) {
             let scene = with_samples(&scene, method, scene.sampler.count);
             let whole = whole(&scene);
-            let film = rendered(&scene, whole, &Control::default()).into_film();
+            let film: Film = rendered(&scene, whole, &Control::default()).into_film();
             let mut exr = Cursor::new(Vec::new());
             write_exr(&film, whole, whole, &mut exr).unwrap();
             let mut png = Vec::new();

@@ -266,6 +266,12 @@ fn exr_holds_the_means_as_floats_and_where_they_are() {
         let mut bytes = Cursor::new(Vec::new());
         write_exr(&film, part, whole, &mut bytes).unwrap();
         let bytes = bytes.into_inner();
+        // A film of floats gives the same file.
+        let floats: Film<[f32; 3]> =
+            Film::from_fn(33, 70, |x, y| film.pixel(x, y).map(|light| light as f32)).unwrap();
+        let mut same = Cursor::new(Vec::new());
+        write_exr(&floats, part, whole, &mut same).unwrap();
+        assert!(same.into_inner() == bytes);
         let meta = exr::meta::MetaData::read_from_buffered(&bytes[..], true).unwrap();
         let header = &meta.headers[0];
         let channels = header.channels.list.iter();
