@@ -12,7 +12,7 @@ pub struct Fix {
 }
 
 /// A change of a text. As spans do, it says which: the file, or a `--set` argument.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Edit {
     /// What is replaced; an empty span is a place to insert at.
     pub span: Span,
@@ -29,6 +29,15 @@ impl Fix {
     /// Apart from what is generic, so that sorting is compiled once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         edits.sort_by_key(|edit| edit.span);
+        // Removals take the space beside them along; two neighbours take it once.
+        for index in 1..edits.len() {
+            let before = edits[index - 1].span;
+            let span = &mut edits[index].span;
+            if span.source == before.source {
+                span.start = span.start.max(before.end);
+                span.end = span.end.max(span.start);
+            }
+        }
         Self { title, edits }
     }
 

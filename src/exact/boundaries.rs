@@ -3,7 +3,7 @@
 //! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
 //! near and the far plane cut them. They are computed in double-double, and again in the last precision where that leaves too much in doubt.
 
-use std::ops::ControlFlow;
+use std::{cell::OnceCell, ops::ControlFlow};
 
 use crate::{
     math::{Big, Double},
@@ -19,7 +19,8 @@ use super::budget::Budget;
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Units of work: of a pair of objects whose depths are compared, of an object or a pair that is
-/// asked for curves, and of each curve in the last precision.
+/// asked for curves, and of an object, and of each two surfaces that may cross, in the last
+/// precision.
 const PAIR_WORK: f64 = 1.0 / 16.0;
 const LOOK_WORK: f64 = 8.0;
 const BIG_CURVE_WORK: f64 = 1500.0;
@@ -39,7 +40,8 @@ enum Origin {
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [Candidate],
-    objects: Vec<Held<'a, T>>,
+    /// The objects that were asked.
+    objects: Vec<OnceCell<Held<'a, T>>>,
     frame: SubPixelFrame<T>,
     budget: &'a Budget<'a>,
 }
@@ -131,9 +133,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         candidates: &'a [Candidate],
         budget: &'a Budget,
     ) -> Self {
-        let objects = candidates
-            .iter()
-            .map(|candidate| T::object(&world.geometry, candidate.object));
+        let objects = candidates.iter().map(|_| OnceCell::new());
         Self {
             world,
             candidates,
@@ -156,7 +156,13 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     /// Where surfaces of two objects cross, until one says that it is enough.
     fn pairs(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
-        let is_board = |at: usize| matches!(*self.objects[at], Object::Checkerboard(_));
+        let geometry = &self.world.geometry;
+        let is_board = |candidate: &Candidate| {
+            matches!(
+                *f64::object(geometry, candidate.object),
+                Object::Checkerboard(_)
+            )
+        };
         for (i, a) in self.candidates.iter().enumerate() {
             let others = self.candidates.len() - i;
             self.budget.charge(PAIR_WORK * others as f64);
@@ -167,7 +173,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
                 // Boards are parallel: they meet at the horizon, which is the outline of both.
-                let are_parallel = is_board(i) && is_board(j);
+                let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
                     take(Origin::Pair(i, j))?;
                 }
@@ -180,22 +186,25 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     /// do that are not equal.
     fn push(&self, origin: Origin, out: &mut Vec<Curve>) -> bool {
         let mut push = |curve: Curve| {
-            if T::LAST {
-                self.budget.charge(BIG_CURVE_WORK);
-            }
             if curve.may_pass() {
                 out.push(curve);
             }
         };
         let mut all = true;
-        let mut cross = |a: &Surface<T>, b: &Surface<T>| match self.frame.crossing(a, b) {
-            Some(curve) => push(curve),
-            None => all = false,
+        let mut cross = |a: &Surface<T>, b: &Surface<T>| {
+            self.charge_last();
+            match self.frame.crossing(a, b) {
+                Some(curve) => push(curve),
+                None => all = false,
+            }
         };
         match origin {
             Origin::Outline(i) => {
-                let outline = self.objects[i].outline(&self.frame);
-                outline.into_iter().for_each(push);
+                let outline = self.object(i).outline(&self.frame);
+                for curve in outline {
+                    self.charge_last();
+                    push(curve);
+                }
             }
             Origin::Clips(i) => {
                 let frame = T::frame(&self.world.geometry);
@@ -215,8 +224,21 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         all
     }
 
+    fn object(&self, at: usize) -> &Object<T> {
+        self.objects[at].get_or_init(|| {
+            self.charge_last();
+            T::object(&self.world.geometry, self.candidates[at].object)
+        })
+    }
+
+    fn charge_last(&self) {
+        if T::LAST {
+            self.budget.charge(BIG_CURVE_WORK);
+        }
+    }
+
     fn surfaces(&self, at: usize) -> Vec<Surface<'_, T>> {
-        self.objects[at].surfaces(self.candidates[at].crossings)
+        self.object(at).surfaces(self.candidates[at].crossings)
     }
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Budget<'a> {
     /// The bound that is asked for, in area: what is neglected is a part of it.
     pub tolerance: f64,
     /// Set once nobody wants the picture any more.
-    pub cancel: &'a AtomicBool,
+    cancel: &'a AtomicBool,
 }
 
 impl<'a> Budget<'a> {
@@ -37,18 +37,28 @@ impl<'a> Budget<'a> {
         PIXEL - self.left.get()
     }
 
+    /// Whether nobody wants the picture any more, so that all that is computed is thrown away.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
     /// Whether nothing more should be computed.
     pub fn is_spent(&self) -> bool {
-        self.left.get() <= 0.0 || self.cancel.load(Ordering::Relaxed)
+        self.left.get() <= 0.0 || self.is_cancelled()
     }
 
     /// Spends so much, if it is there. What is not a number, or infinite, never is.
     pub fn spend(&self, work: f64) -> bool {
-        let is_there = work <= self.left.get() && !self.cancel.load(Ordering::Relaxed);
+        let is_there = self.affords(work);
         if is_there {
             self.left.set(self.left.get() - work);
         }
         is_there
+    }
+
+    /// Whether so much may still be spent.
+    pub fn affords(&self, work: f64) -> bool {
+        work <= self.left.get() && !self.is_cancelled()
     }
 
     /// Takes so much away for what has been computed already.

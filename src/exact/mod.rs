@@ -367,7 +367,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                 }
             }
-            false => Shares::unknown(self.world, sub_pixel, &candidates),
+            false => Shares::unknown(self.world, sub_pixel, &candidates, budget),
         };
         let state = match is_computed {
             true => State::Computed,

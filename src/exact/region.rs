@@ -126,13 +126,14 @@ impl<'a> Regions<'a> {
     /// The object that is seen in a region. Where double-double leaves it in doubt, so that the point may lie next to a boundary, all of the region counts as
     /// doubtful.
     fn seen(&mut self, region: &Region) -> Option<usize> {
-        self.budget
-            .charge(REGION_WORK + RAY_WORK * self.candidates.len() as f64);
-        let (seen, is_sure) =
-            candidates::object_at(self.world, self.sub_pixel, region.inside, self.candidates);
+        let (seen, is_sure) = seen(
+            self.world,
+            self.sub_pixel,
+            region.inside,
+            self.candidates,
+            self.budget,
+        );
         if !is_sure {
-            self.budget
-                .charge(BIG_RAY_WORK * self.candidates.len() as f64);
             self.doubt(region.area);
         }
         seen
@@ -151,7 +152,7 @@ impl<'a> Regions<'a> {
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
             // Out of the range of numbers.
-            return Shares::unknown(self.world, self.sub_pixel, self.candidates);
+            return Shares::unknown(self.world, self.sub_pixel, self.candidates, self.budget);
         }
         // No channel is off by more than all.
         shares.bound = shares.bound.min(1.0);
@@ -210,10 +211,37 @@ impl Checkered {
     }
 }
 
+/// The object that is seen at a point of a sub-pixel, and whether double-double is certain of it.
+/// None where the budget has nothing left for the last precision, which it may take.
+fn seen(
+    world: &World,
+    sub_pixel: SubPixel,
+    at: DVec2,
+    candidates: &[Candidate],
+    budget: &Budget,
+) -> (Option<usize>, bool) {
+    let count = candidates.len() as f64;
+    budget.charge(REGION_WORK + RAY_WORK * count);
+    if !budget.affords(BIG_RAY_WORK * count) {
+        return (None, false);
+    }
+    let wanted = candidates.iter().take_while(|_| !budget.is_cancelled());
+    let (seen, is_sure) = candidates::object_at(world, sub_pixel, at, wanted);
+    if !is_sure {
+        budget.charge(BIG_RAY_WORK * count);
+    }
+    (seen, is_sure)
+}
+
 impl Shares {
     /// Of a sub-pixel of which nothing is known but what is in its middle.
-    pub fn unknown(world: &World, sub_pixel: SubPixel, candidates: &[Candidate]) -> Self {
-        let (seen, _) = candidates::object_at(world, sub_pixel, DVec2::ZERO, candidates);
+    pub fn unknown(
+        world: &World,
+        sub_pixel: SubPixel,
+        candidates: &[Candidate],
+        budget: &Budget,
+    ) -> Self {
+        let (seen, _) = seen(world, sub_pixel, DVec2::ZERO, candidates, budget);
         let [first, second] = seen.map_or([world.background(); 2], |object| world.slots(object));
         Self {
             by_slot: vec![(first, 0.5), (second, 0.5)],

@@ -1,6 +1,6 @@
 //! All that can be put right without being asked: the first fix of each error, again until nothing changes.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::lower::read;
 use crate::{
@@ -52,7 +52,9 @@ pub fn fix_all(sources: &Sources) -> Fixed {
         let problems_after = read(&after).diagnostics;
         let still: HashSet<Problem> = problems_after.iter().filter_map(Problem::of).collect();
         let stays = |problem: &&Problem| still.contains(&round.moved(problem));
-        let idle: Vec<Problem> = round.lengthened.iter().filter(stays).cloned().collect();
+        let is_idle = |alike: &&Vec<Problem>| alike.iter().all(|problem| stays(&problem));
+        let idle = round.lengthened.values().filter(is_idle).flatten();
+        let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
             // The same once more, without them.
             staying.extend(idle);
@@ -90,8 +92,9 @@ impl Problem {
 /// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
 struct Round {
     fix: Fix,
-    /// The problems whose fixes make the text longer: one that stays would do so without end.
-    lengthened: Vec<Problem>,
+    /// The edits that make the text longer, and the problems that offer them: where all of these
+    /// stay, they would do so without end.
+    lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
     /// How much longer the text becomes at each place where it is changed.
     growth: BTreeMap<usize, isize>,
@@ -102,7 +105,7 @@ impl Round {
         let mut edits: Vec<Edit> = Vec::new();
         // The ends of the places that are changed, by their starts. No two of them touch.
         let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
-        let (mut lengthened, mut done) = (Vec::new(), Vec::new());
+        let (mut lengthened, mut done) = (HashMap::<_, Vec<_>>::new(), Vec::new());
         for diagnostic in problems.iter().filter(|problem| problem.is_error()) {
             let (Some(problem), Some(fix)) = (Problem::of(diagnostic), diagnostic.fixes.first())
             else {
@@ -113,7 +116,14 @@ impl Round {
                 edit.span.source == SourceId::File
                     && before.is_none_or(|(_, &end)| end < edit.span.start)
             };
-            if staying.contains(&problem) || !fix.edits.iter().all(is_free) {
+            if staying.contains(&problem) {
+                continue;
+            }
+            if let Some(alike) = lengthened.get_mut(&fix.edits) {
+                alike.push(problem);
+                continue;
+            }
+            if !fix.edits.iter().all(is_free) {
                 continue;
             }
             taken.extend(
@@ -127,7 +137,7 @@ impl Round {
                 title: fix.title.clone(),
             });
             if fix.edits.iter().map(growth).sum::<isize>() > 0 {
-                lengthened.push(problem);
+                lengthened.insert(fix.edits.clone(), vec![problem]);
             }
         }
         let growth = edits.iter().map(|edit| (edit.span.start, growth(edit)));

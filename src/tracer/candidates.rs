@@ -228,14 +228,14 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
 
 /// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last precision was not asked, in which what it does
 /// not tell apart counts as equal.
-pub fn object_at(
+pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,
     at: DVec2,
-    candidates: &[Candidate],
+    candidates: impl Iterator<Item = &'a Candidate> + Clone,
 ) -> (Option<usize>, bool) {
     let offset = sub_pixel.offset(at);
     let camera = &world.geometry.fast.camera;
     let point = camera.sample_point(sub_pixel.x, sub_pixel.y, offset);
-    world.object_among(&point, candidates.iter().map(|candidate| candidate.object))
+    world.object_among(&point, candidates.map(|candidate| candidate.object))
 }

@@ -43,6 +43,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
             continue;
         }
         while let Some(square) = squares.next(&mut tally) {
+            if budget.is_cancelled() {
+                return Sum::nothing_known(polygon);
+            }
             let (area, perimeter) = measure(&squares.piece);
             // For each corner three roundings of products of two distances, which are half the perimeter at most, and one of the sum.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;

@@ -424,7 +424,9 @@ impl<'s> Recovery<'_, 's> {
     /// Passes over the rest of a value that nests too deep.
     pub(super) fn pass_over(&mut self) -> Value<'s> {
         let span = self.here();
-        let first = Span::new(self.id, span.start, span.start + 1);
+        let rest = self.text.get(span.start..).unwrap_or_default();
+        let length = rest.chars().next().map_or(0, char::len_utf8);
+        let first = Span::new(self.id, span.start, span.start + length);
         if !self.too_deep {
             self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);
         }

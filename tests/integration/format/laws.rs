@@ -43,7 +43,15 @@ pub fn the_laws_hold(text: &str, formatted_text: &str) {
     for line in formatted_text.lines() {
         assert_eq!(line.trim_end_matches([' ', '\t']), line);
     }
-    assert!(!formatted_text.contains("\n\n\n") && !formatted_text.ends_with("\n\n"));
+    // But for those that stand in a comment.
+    for (at, _) in formatted_text.match_indices("\n\n\n") {
+        let before = &formatted_text[..at];
+        assert!(
+            before.rfind("/*") > before.rfind("*/"),
+            "{formatted_text:?}"
+        );
+    }
+    assert!(!formatted_text.ends_with("\n\n"));
 }
 
 /// Nor does what is wrong with a scene depend on its white space.
