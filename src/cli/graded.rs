@@ -150,9 +150,10 @@ pub fn csv(graded: &[Graded]) -> String {
 /// A text as a cell of a CSV file: what a program that opens it would take for a formula begins
 /// with a `'`, and is a text to it so.
 fn text_cell(text: &str) -> String {
-    let guard = match text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) {
-        true => "'",
-        false => "",
-    };
+    let guard =
+        match text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n']) {
+            true => "'",
+            false => "",
+        };
     format!("\"{guard}{}\"", visible_line(text).replace('"', "\"\""))
 }

@@ -26,9 +26,9 @@ use crate::{
 pub enum Picture {
     /// Its means.
     Light(Rendered),
-    /// These, rounded to 32 bits.
+    /// Means rounded to 32 bits.
     Floats(Rendered<[f32; 3]>),
-    /// The bytes of them.
+    /// Bytes of sRGB.
     Bytes(Rendered<[u8; 3]>),
 }
 
@@ -77,9 +77,9 @@ impl Picture {
 pub enum Keep {
     /// Their means.
     Light,
-    /// These, rounded to 32 bits.
+    /// Means rounded to 32 bits.
     Floats,
-    /// The bytes of them.
+    /// Bytes of sRGB.
     Bytes,
 }
 

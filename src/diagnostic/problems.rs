@@ -20,12 +20,20 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Adds one, if there is room.
+    /// Adds one, if there is room, and none was left out before it.
     pub fn push(&mut self, problem: Diagnostic) {
-        if self.kept.len() < MOST_PROBLEMS {
+        if self.is_full() {
+        } else if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
         } else if let Some(label) = problem.labels.first() {
             self.leave_out(label.span);
+        }
+    }
+
+    /// Adds one, if there is room, that was found before another was left out.
+    pub fn push_earlier(&mut self, problem: Diagnostic) {
+        if self.kept.len() < MOST_PROBLEMS {
+            self.kept.push(problem);
         }
     }
 

@@ -95,7 +95,8 @@ impl OutputFolder {
     ///
     /// # Errors
     ///
-    /// A file in the way, in which case nothing was written, or what kept one from being written.
+    /// A file in the way, which is known before the first one is written, unless another program
+    /// puts it there meanwhile; or what kept one from being written. Those after it are missing.
     pub fn write(&mut self, files: &[(String, String)]) -> Result<(), NotWritten> {
         for (name, _) in files {
             self.check(name)?;
@@ -110,14 +111,14 @@ impl OutputFolder {
             self.write_one(LIST, &self.list())?;
         }
         for (name, text) in files {
+            // Another program may have put something there while those before it were written.
+            self.check(name)?;
             if let Some(folder) = self.path.join(name).parent() {
                 fs::create_dir_all(folder).map_err(|error| NotWritten {
                     path: folder.to_owned(),
                     error,
                 })?;
             }
-            // Others take their time to write.
-            self.check(name)?;
             self.write_one(name, text)?;
         }
         for (name, text) in files {

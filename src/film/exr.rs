@@ -34,7 +34,7 @@ use crate::{area::Area, files::Sink};
 pub enum Linear<'a> {
     /// Its means.
     Means(&'a Film),
-    /// These, rounded.
+    /// Means rounded to 32 bits.
     Floats(&'a Film<[f32; 3]>),
 }
 

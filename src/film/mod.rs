@@ -28,7 +28,7 @@ pub use self::{
     mean::mean,
     memory::{TooLarge, reserve as reserve_memory},
     picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
-    pixels::{Bytes, Film, Pixel, certified},
+    pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
     read::{is_picture, read_picture, read_picture_up_to},
     srgb::Encoder,

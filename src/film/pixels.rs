@@ -17,7 +17,7 @@ pub trait Pixel: Copy + Default + Send + Sync {
 }
 
 /// What bytes of sRGB can be made of.
-pub trait Bytes: Pixel {
+pub trait AsBytes: Pixel {
     /// The bytes of a row; `room` is for those that are not there yet.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
 }
@@ -28,7 +28,7 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // As those of an EXR file.
+        // An EXR file holds floats of 32 bits.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -44,7 +44,7 @@ impl Pixel for [f32; 3] {
     }
 }
 
-impl Bytes for [f64; 3] {
+impl AsBytes for [f64; 3] {
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
         room.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
@@ -73,7 +73,7 @@ impl Pixel for [u8; 3] {
     }
 }
 
-impl Bytes for [u8; 3] {
+impl AsBytes for [u8; 3] {
     fn bytes<'a>(row: &'a [Self], _: &Encoder, _: &'a mut Vec<u8>) -> &'a [u8] {
         row.as_flattened()
     }

@@ -11,7 +11,7 @@ use png::{BitDepth, ColorType, DeflateCompression, Encoder, Filter, SrgbRenderin
 use thiserror::Error;
 
 use super::{
-    pixels::{Bytes, Film},
+    pixels::{AsBytes, Film},
     srgb,
 };
 use crate::area::Area;
@@ -85,7 +85,7 @@ impl Recipe {
 }
 
 /// Writes a picture, with what it was made from if that is given and [`fits`](Recipe::fits).
-pub fn write_png<P: Bytes>(
+pub fn write_png<P: AsBytes>(
     film: &Film<P>,
     recipe: Option<&Recipe>,
     out: &mut dyn Write,

@@ -33,7 +33,7 @@ const SAMPLES_A_CANDIDATE: u64 = 2;
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
 /// Where there are crowds, the objects nearby are found for squares of this side, in pixels.
-const CROWD: u32 = 4;
+const CROWD_SIDE: u32 = 4;
 
 /// With so many samples, a pixel's objects are told from those nearby before they are traced.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
@@ -86,7 +86,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 &mut film,
                 tally,
             ),
-            Part::Crowded { area } => area.grid(CROWD).try_for_each(|square| {
+            Part::Crowded { area } => area.grid(CROWD_SIDE).try_for_each(|square| {
                 let nearby = self.world.nearby(square);
                 let trace = Trace::OneByOne(nearby.as_deref());
                 let mut pixels = square.common(area).iter();
@@ -128,12 +128,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
             }
             _ => trace,
         };
-        let mut narrowed = std::mem::take(&mut tally.nearby);
+        let mut narrowed = std::mem::take(&mut tally.narrowed);
         let trace = match trace {
             Trace::OneByOne(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
                 let pixel = Area::pixel(x, y);
                 if let Some(slot) = self.world.narrowed(pixel, nearby, &mut narrowed) {
-                    tally.nearby = narrowed;
+                    tally.narrowed = narrowed;
                     film.fill(pixel, self.shown[slot]);
                     return self.go_on();
                 }
@@ -153,7 +153,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
             }
             self.go_on()?;
         }
-        tally.nearby = narrowed;
+        tally.narrowed = narrowed;
         let Tally { counts, means, .. } = tally;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
         self.go_on()

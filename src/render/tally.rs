@@ -14,8 +14,8 @@ pub(super) struct Tally<P> {
     pub(super) pixel: PreparedPixel,
     /// Scratch for the points.
     pub(super) points: Points,
-    /// Scratch for the objects nearby.
-    pub(super) nearby: Vec<Nearby>,
+    /// Scratch for the objects that may be seen in a pixel, of those nearby.
+    pub(super) narrowed: Vec<Nearby>,
 }
 
 impl<P> Tally<P> {
@@ -25,7 +25,7 @@ impl<P> Tally<P> {
             means: Means(Vec::new()),
             pixel: PreparedPixel::default(),
             points: Points::default(),
-            nearby: Vec::new(),
+            narrowed: Vec::new(),
         }
     }
 }

@@ -30,6 +30,9 @@ pub struct Done {
 pub fn fix_all(sources: &Sources) -> Fixed {
     /// A fix can show what another mistake hid; so many in a row are more than any text has.
     const ROUNDS: usize = 1000;
+    /// So many bytes are read for it at most: of long texts with more mistakes than a reading
+    /// tells, some are left.
+    const READ: usize = 1 << 26;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
@@ -38,7 +41,7 @@ pub fn fix_all(sources: &Sources) -> Fixed {
     let mut seen = HashSet::new();
     // Bytes that are no text would be lost.
     let rounds = match sources.file.invalid_utf8().is_empty() {
-        true => ROUNDS,
+        true => ROUNDS.min(READ / sources.file.text().len().max(1)).max(1),
         false => 0,
     };
     for _ in 0..rounds {

@@ -45,7 +45,7 @@ pub use curve::{Conic, Curve, Line};
 pub(crate) use curve::{LOOSE_LINE, SubPixelFrame, Surface};
 pub(crate) use local_form::{LocalForm, Patch};
 pub(crate) use object::Object;
-pub use quadtree::Item as Nearby;
+pub(crate) use quadtree::Item as Nearby;
 pub use quartering::{GRID, Part, Quartering, Scratch};
 pub use ray::{Hit, ray};
 pub use samples::PreparedPixel;

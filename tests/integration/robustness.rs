@@ -136,6 +136,17 @@ fn the_rest_of_very_many_mistakes_is_left_out() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
+    // What was read before them is no mistake of its own.
+    let signs = format!(
+        "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
+        many(", ")
+    );
+    let found = scene::read(&sources(&signs)).diagnostics;
+    let codes: Vec<_> = found.iter().map(|it| &*it.code).collect();
+    assert_eq!(
+        codes,
+        ["pinhole::needless_separator", "pinhole::unexpected"]
+    );
     // Signs are reported together, as far as they were read.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;

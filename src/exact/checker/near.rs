@@ -37,6 +37,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
         return Sum::nothing_known(polygon);
     }
     while let Some(row) = rows.next(&mut tally) {
+        if budget.is_cancelled() {
+            return Sum::nothing_known(polygon);
+        }
         squares.start(&rows.piece);
         if !budget.spend(squares.count()) {
             tally.add(0.0, measure(&rows.piece).0.abs());

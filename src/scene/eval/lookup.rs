@@ -79,6 +79,9 @@ impl<'s> Evaluator<'_, 's> {
                     None => self.unknown_name(name, span, wanted),
                 };
                 let index = problems.len();
+                if index == MOST_PROBLEMS {
+                    return problems.push(problem);
+                }
                 reported.insert(name, Reported { index, suggested });
                 problems.push(problem);
                 suggested

@@ -20,11 +20,11 @@ impl<'s> Lowering<'s> {
         let errors_before = errors(self.problems.get(before..).unwrap_or_default());
         for suggestion in suggestions {
             let is_wrong = !self.names.budget().spend(value.range().len()) || {
-                let end = self.problems.len();
+                let problems = std::mem::take(&mut self.problems);
                 self.names.suggestions.set_tried(Some(&suggestion));
                 evaluate(self);
                 self.names.suggestions.set_tried(None);
-                errors(&self.problems.split_off(end)) > errors_before
+                errors(&std::mem::replace(&mut self.problems, problems)) > errors_before
             };
             if is_wrong {
                 self.withdraw(suggestion);

@@ -209,7 +209,7 @@ impl<'s> Lowering<'s> {
 
     /// The number of errors that a block's fields make together, none of which is reported here.
     fn errors_of(&mut self, block: &Block<'s>) -> usize {
-        let before = self.problems.len();
+        let problems = std::mem::take(&mut self.problems);
         match block.row.kind {
             Kind::Camera => {
                 self.camera(block);
@@ -223,8 +223,8 @@ impl<'s> Lowering<'s> {
                 self.object(block);
             }
         }
-        let problems = self.problems.split_off(before);
-        problems.iter().filter(|problem| problem.is_error()).count()
+        let tried = std::mem::replace(&mut self.problems, problems);
+        tried.iter().filter(|problem| problem.is_error()).count()
     }
 
     /// Several fields with the parts of a value.

@@ -448,7 +448,7 @@ impl<'w, 's> Recovery<'w, 's> {
             if is_doubtful && found.is_needless {
                 found.fixes.clear();
             }
-            self.problems.push(found);
+            self.problems.push_earlier(found);
         }
     }
 }

@@ -72,8 +72,8 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// Meets every rectangle. There is a number behind its last unit, which shares are counted
-    /// with.
+    /// Meets every rectangle. `u32::MAX` is left out, since a share counts units up to one behind
+    /// the last.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],

@@ -34,7 +34,7 @@ impl Tree {
     }
 }
 
-/// The same of one list, the nearest first.
+/// Shows `visit` the objects of one list, the nearest first, that the ray through a point may meet.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[Item],

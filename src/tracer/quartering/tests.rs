@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::{DVec3, dvec3};
+use glam::{DVec2, DVec3, dvec3};
 
 use super::{Part, Quartering, Scratch, candidates};
 use crate::{
@@ -99,4 +99,37 @@ fn what_a_wall_hides_is_not_found() {
             assert!(found.len() == 1 || !behind, "{part:?}");
         }
     }
+}
+
+/// In a crowd the objects near a square are known, of some pixels the only colour, and at all points
+/// the same is seen as by the quadtree.
+#[test]
+fn of_a_crowd_the_objects_nearby_are_enough() {
+    let mut shapes = thousand_spheres(9.0);
+    for shape in &mut shapes {
+        if let Shape::Sphere(sphere) = shape {
+            sphere.radius *= 4.0;
+        }
+    }
+    shapes.extend(thousand_spheres(3.0));
+    let world = world(&shapes);
+    let (mut told, mut several, mut narrowed) = (0, 0, Vec::new());
+    for part in Area::whole(SIZE, SIZE).grid(4) {
+        let nearby = world.nearby(part).unwrap();
+        for (x, y) in part.iter() {
+            let only = world.narrowed(Area::pixel(x, y), &nearby, &mut narrowed);
+            told += usize::from(only.is_some());
+            several += usize::from(only.is_none());
+            for step in 0..9 {
+                let offset = DVec2::new(f64::from(step % 3 - 1), f64::from(step / 3 - 1)) * 0.49;
+                let seen = world.slot_at(x, y, offset);
+                assert_eq!(world.slot_near(x, y, offset, Some(&nearby)), seen);
+                match only {
+                    Some(only) => assert_eq!(only, seen),
+                    None => assert_eq!(world.slot_near(x, y, offset, Some(&narrowed)), seen),
+                }
+            }
+        }
+    }
+    assert!(told > 100 && several > 100, "{told}, {several}");
 }

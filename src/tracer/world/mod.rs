@@ -1,6 +1,6 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 //!
-//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks the objects on its way down the quadtree; where
+//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks the objects on its way down the quadtree, or those that are known to be nearby; where
 //! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big numbers.
 
 mod colors;
@@ -122,7 +122,13 @@ impl World {
     /// The same, for points of a part of the picture whose objects [`nearby`](World::nearby) are
     /// known.
     #[inline]
-    pub fn slot_near(&self, x: u32, y: u32, offset: DVec2, nearby: Option<&[Item]>) -> usize {
+    pub(crate) fn slot_near(
+        &self,
+        x: u32,
+        y: u32,
+        offset: DVec2,
+        nearby: Option<&[Item]>,
+    ) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
         match self.seen_fast(&point, nearby) {
             Ok(seen) => self.slot(seen),
@@ -190,15 +196,20 @@ impl World {
     }
 
     /// The objects that rays through a part of the picture may meet, the nearest first; none if
-    /// the quadtree finds a ray's objects sooner.
-    pub fn nearby(&self, part: Area) -> Option<Vec<Item>> {
+    /// they are so many that the quadtree finds a ray's objects sooner.
+    pub(crate) fn nearby(&self, part: Area) -> Option<Vec<Item>> {
         let patch = Patch::new(&self.geometry.fast.camera, part);
         self.quadtree.nearby(&patch)
     }
 
-    /// Of the objects nearby those that rays through a part of it may meet, in the same order; or,
-    /// where it is certain that one colour is seen, that colour's slot.
-    pub fn narrowed(&self, part: Area, nearby: &[Item], out: &mut Vec<Item>) -> Option<usize> {
+    /// Keeps of the objects near an area those that rays through a part of that area may meet, in
+    /// the same order. Answers the colour's slot if it is certain that one is seen in the part.
+    pub(crate) fn narrowed(
+        &self,
+        part: Area,
+        nearby: &[Item],
+        out: &mut Vec<Item>,
+    ) -> Option<usize> {
         out.clear();
         let camera = &self.geometry.fast.camera;
         let patch = Patch::new(camera, part);
