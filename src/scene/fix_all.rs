@@ -32,7 +32,7 @@ pub fn fix_all(sources: &Sources) -> Fixed {
     const ROUNDS: usize = 1000;
     /// So many bytes are read for it at most: of long texts with more mistakes than a reading
     /// tells, some are left.
-    const READ: usize = 1 << 26;
+    const READ: usize = 1 << 24;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
