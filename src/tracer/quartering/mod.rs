@@ -99,6 +99,7 @@ impl<'a> Quartering<'a> {
             let mut cut = Cut {
                 quartering: self,
                 wanted,
+                is_all_wanted: area.common(wanted) == area,
                 visit,
             };
             let mut candidates = take(scratch, 0);
@@ -130,8 +131,9 @@ impl<'a> Quartering<'a> {
 /// One square of the grid while it is cut.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
-    /// The part that is wanted of it.
+    /// The part that is wanted of it, and whether that is all of it.
     wanted: Area,
+    is_all_wanted: bool,
     visit: &'b mut V,
 }
 
@@ -210,7 +212,15 @@ impl<V: FnMut(Part) -> ControlFlow<()>> Cut<'_, '_, V> {
     }
 
     /// Shows what is wanted of a part.
+    #[inline]
     fn show(&mut self, part: Part) -> ControlFlow<()> {
+        match self.is_all_wanted {
+            true => (self.visit)(part),
+            false => self.show_wanted(part),
+        }
+    }
+
+    fn show_wanted(&mut self, part: Part) -> ControlFlow<()> {
         let part = match part {
             Part::OneColor { area, slot } => Part::OneColor {
                 area: area.common(self.wanted),
