@@ -60,7 +60,13 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
 /// Whether samples show squares of a board that they cannot tell apart, so that all have one
 /// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    let Some(frustum) = Frustum::new(camera, image) else {
+    // Straight down any up will do, of which none is told: x and z are the window's axes.
+    let straight = || {
+        let (from, to) = camera.view.ends(camera.eye);
+        let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
+        along_y.then(|| Frustum::with_up(camera, image, DVec3::Z))?
+    };
+    let Some(frustum) = Frustum::new(camera, image).or_else(straight) else {
         return false;
     };
     let far = camera.far.unwrap_or(f64::INFINITY);
@@ -103,9 +109,14 @@ struct Frustum {
 impl Frustum {
     /// None where the axes are not known well enough.
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
+        Self::with_up(camera, image, camera.up)
+    }
+
+    /// The same with another up.
+    fn with_up(camera: &Camera, image: &Image, up: DVec3) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
-        let right = forward.cross(camera.up.normalize());
+        let right = forward.cross(up.normalize());
         // Of points far from the origin, and near to each other, little is left of the difference.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
         // What is not a number is not more.
