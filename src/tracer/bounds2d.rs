@@ -129,6 +129,11 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
+        // A minimum leaves out what is no number.
+        let is_finite = |range: &Range| range.low.is_finite() && range.high.is_finite();
+        if ![x, y, z].iter().all(is_finite) {
+            return Hull::Unbounded;
+        }
         least = least.min(z.low);
         greatest = greatest.max(z.high);
         for (range, at) in across.iter_mut().zip([x, y]) {

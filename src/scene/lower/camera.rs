@@ -81,7 +81,13 @@ impl<'s> Lowering<'s> {
     ) {
         let Some(up) = up else { return };
         let is_parallel = predicates::cross_is_zero(up, from, to);
-        let sine = up.normalize().cross((to - from).normalize()).length();
+        // Of numbers at the ends of their range neither differences nor squares need be there.
+        let unit = |v: DVec3| (v / v.abs().max_element()).normalize();
+        let along = match (to - from).is_finite() {
+            true => to - from,
+            false => 0.5 * to - 0.5 * from,
+        };
+        let sine = unit(up).cross(unit(along)).length();
         // What is not a number is not less.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
