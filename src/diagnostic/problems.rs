@@ -23,7 +23,9 @@ impl Problems {
     /// Adds one, if there is room, and none was left out before it.
     pub fn push(&mut self, problem: Diagnostic) {
         if self.is_full() {
-        } else if self.kept.len() < MOST_PROBLEMS {
+            return;
+        }
+        if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
         } else if let Some(label) = problem.labels.first() {
             self.leave_out(label.span);

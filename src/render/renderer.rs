@@ -19,7 +19,7 @@ use crate::{
     film::{self, Encoder},
     math::SimdWidth,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Nearby, Part, Quartering, Scratch, World, samples},
+    tracer::{Candidate, Checks, Nearby, Part, Quartering, Scratch, World, nearby, samples},
 };
 
 /// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
@@ -87,7 +87,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 tally,
             ),
             Part::Crowded { area } => area.grid(CROWD_SIDE).try_for_each(|square| {
-                let nearby = self.world.nearby(square);
+                let nearby = nearby::nearby(self.world, square);
                 let trace = Trace::OneByOne(nearby.as_deref());
                 let mut pixels = square.common(area).iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
@@ -132,7 +132,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         let trace = match trace {
             Trace::OneByOne(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
                 let pixel = Area::pixel(x, y);
-                if let Some(slot) = self.world.narrowed(pixel, nearby, &mut narrowed) {
+                if let Some(slot) = nearby::in_part(self.world, pixel, nearby, &mut narrowed) {
                     tally.narrowed = narrowed;
                     film.fill(pixel, self.shown[slot]);
                     return self.go_on();

@@ -9,7 +9,7 @@
 use glam::DVec3;
 
 use super::model::{Camera, Checkerboard, Image, Lens, Object, Outline, Shape, View};
-use crate::math::{Big, trig};
+use crate::math::{Angle, Big, trig};
 
 /// By so much of the lengths that are compared a comparison has to be clear. With up and the view direction at [`LEAST_SINE`] or more the
 /// axes are good to 2^−52/10^−6, about 2·10⁻¹⁰, and all else is better.
@@ -60,11 +60,22 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
 /// Whether samples show squares of a board that they cannot tell apart, so that all have one
 /// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // Straight down any up will do, of which none is told: x and z are the window's axes.
+    // Where up is not known well enough and the view is straight down, the window reaches along x and
+    // z at least as far as it does unrolled.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
-        along_y.then(|| Frustum::with_up(camera, image, DVec3::Z))?
+        let (up, roll) = (DVec3::Z, Angle::from_degrees(0.0));
+        along_y.then(|| {
+            Frustum::new(
+                &Camera {
+                    up,
+                    roll,
+                    ..*camera
+                },
+                image,
+            )
+        })?
     };
     let Some(frustum) = Frustum::new(camera, image).or_else(straight) else {
         return false;
@@ -109,14 +120,9 @@ struct Frustum {
 impl Frustum {
     /// None where the axes are not known well enough.
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
-        Self::with_up(camera, image, camera.up)
-    }
-
-    /// The same with another up.
-    fn with_up(camera: &Camera, image: &Image, up: DVec3) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
-        let right = forward.cross(up.normalize());
+        let right = forward.cross(camera.up.normalize());
         // Of points far from the origin, and near to each other, little is left of the difference.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
         // What is not a number is not more.

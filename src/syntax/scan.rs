@@ -30,7 +30,8 @@ pub struct Scan {
     /// Where more parentheses and minuses are open than a value may have. A minus between two values counts, too: recovery,
     /// which reads these items, counts exactly.
     pub deep: Vec<usize>,
-    /// Where a right text can be taken apart: behind a `}`, and before a `let`, one in each [`SPACING`].
+    /// Where a right text can be taken apart: behind a `}` or before a `let`, at most one place in
+    /// [`SPACING`] bytes.
     pub ends: Vec<usize>,
     /// Characters that cannot be seen and are no white space of the language.
     odd_spaces: Vec<Range<usize>>,

@@ -30,6 +30,7 @@ mod world;
 
 pub mod candidates;
 mod checker_corners;
+pub(crate) mod nearby;
 mod quartering;
 mod ray;
 pub mod samples;

@@ -1,9 +1,11 @@
 //! The picture cut into parts that show one colour for certain, pixels of which that is not known, and parts with too many candidates.
 //!
-//! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The method is Warnock's subdivision
-//! ("A hidden surface algorithm for computer generated halftone pictures", 1969): an area is quartered until it shows one colour, is a pixel, or
-//! has more candidates than its samples are worth. The samples of its pixels are traced among the candidates then, or, if those
-//! are many, one by one among the objects nearby. Sampled and exact pictures share it: what is certain of a part is so for every ray through it.
+//! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The
+//! method is Warnock's subdivision ("A hidden surface algorithm for computer generated halftone
+//! pictures", 1969): an area is quartered until it shows one colour, is a pixel, or has more
+//! candidates than its samples are worth. The samples of its pixels are traced among the candidates
+//! then, or, if those are many, one by one among the objects nearby. Sampled and exact pictures
+//! share it: what is certain of a part is so for every ray through it.
 //!
 //! Areas are those of one fixed grid over the whole picture, whatever part of it is asked for, so that a pixel's candidates do not depend on that.
 

@@ -9,7 +9,7 @@ use crate::{
     area::Area,
     report::numerics::scenes::{SIZE, along, board, cuboid, scene, sphere, triangle},
     scene::Shape,
-    tracer::World,
+    tracer::{World, nearby},
 };
 
 fn world(shapes: &[Shape]) -> World {
@@ -101,8 +101,8 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// In a crowd the objects near a square are known, of some pixels the only colour, and at all points
-/// the same is seen as by the quadtree.
+/// Near every square of a crowd the objects are known, and of some pixels the only colour; at all
+/// points the same is seen as by the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);
@@ -115,15 +115,15 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
     let world = world(&shapes);
     let (mut told, mut several, mut narrowed) = (0, 0, Vec::new());
     for part in Area::whole(SIZE, SIZE).grid(4) {
-        let nearby = world.nearby(part).unwrap();
+        let near = nearby::nearby(&world, part).unwrap();
         for (x, y) in part.iter() {
-            let only = world.narrowed(Area::pixel(x, y), &nearby, &mut narrowed);
+            let only = nearby::in_part(&world, Area::pixel(x, y), &near, &mut narrowed);
             told += usize::from(only.is_some());
             several += usize::from(only.is_none());
             for step in 0..9 {
                 let offset = DVec2::new(f64::from(step % 3 - 1), f64::from(step / 3 - 1)) * 0.49;
                 let seen = world.slot_at(x, y, offset);
-                assert_eq!(world.slot_near(x, y, offset, Some(&nearby)), seen);
+                assert_eq!(world.slot_near(x, y, offset, Some(&near)), seen);
                 match only {
                     Some(only) => assert_eq!(only, seen),
                     None => assert_eq!(world.slot_near(x, y, offset, Some(&narrowed)), seen),

@@ -1,6 +1,7 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 //!
-//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks the objects on its way down the quadtree, or those that are known to be nearby; where
+//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks
+//! the objects on its way down the quadtree, or those that are known to be nearby; where
 //! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big numbers.
 
 mod colors;
@@ -21,9 +22,7 @@ use glam::DVec2;
 use self::{colors::Colors, precision::first_certain, prepare::prepare};
 use super::{
     camera::{Basis, Direction, Point},
-    candidates,
     crossing::Crossing,
-    local_form::Patch,
     object::Object,
     quadtree::{Item, Nearness, Quadtree},
 };
@@ -119,7 +118,7 @@ impl World {
         self.slot_near(x, y, offset, None)
     }
 
-    /// The same, for points of a part of the picture whose objects [`nearby`](World::nearby) are
+    /// The same, for points of a part of the picture whose objects [`nearby`](super::nearby) are
     /// known.
     #[inline]
     pub(crate) fn slot_near(
@@ -195,59 +194,8 @@ impl World {
         self.geometry.objects.len()
     }
 
-    /// The objects that rays through a part of the picture may meet, the nearest first; none if
-    /// they are so many that the quadtree finds a ray's objects sooner.
-    pub(crate) fn nearby(&self, part: Area) -> Option<Vec<Item>> {
-        let patch = Patch::new(&self.geometry.fast.camera, part);
-        self.quadtree.nearby(&patch)
-    }
-
-    /// Keeps of the objects near an area those that rays through a part of that area may meet, in
-    /// the same order. Answers the colour's slot if it is certain that one is seen in the part.
-    pub(crate) fn narrowed(
-        &self,
-        part: Area,
-        nearby: &[Item],
-        out: &mut Vec<Item>,
-    ) -> Option<usize> {
-        out.clear();
-        let camera = &self.geometry.fast.camera;
-        let patch = Patch::new(camera, part);
-        let rectangle = self.quadtree.rectangle(&patch)?;
-        let [near, far] = candidates::clips_over(self, &patch);
-        // The nearest object that fills the part.
-        let (mut front, mut hidden) = (None, Nearness::NONE);
-        for item in nearby {
-            if item.nearest <= hidden {
-                break;
-            }
-            if !item.bounds.meets(&rectangle) {
-                continue;
-            }
-            out.push(*item);
-            if item.bounds.contains(&rectangle)
-                && let Some(cover) =
-                    candidates::cover(self, item.object as usize, &patch, near, far)
-                && cover.is_whole
-            {
-                let farthest = Nearness::below(cover.inverse_depth.low);
-                if farthest > hidden {
-                    (front, hidden) = (Some(item.object), farthest);
-                }
-            }
-        }
-        out.retain(|item| item.nearest > hidden);
-        match (out.as_slice(), front) {
-            ([], None) => Some(self.background()),
-            ([only], Some(front)) if only.object == front => {
-                let [slot, second] = self.slots(front as usize);
-                (slot == second).then_some(slot)
-            }
-            _ => None,
-        }
-    }
-
-    /// What is seen as far as `f64` can tell, of the objects nearby or on the way down the quadtree.
+    /// What is seen as far as `f64` can tell, of the objects nearby or on the way down the
+    /// quadtree.
     #[inline]
     fn seen_fast(&self, point: &Point, nearby: Option<&[Item]>) -> Result<Option<Seen>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
