@@ -6,8 +6,8 @@ use super::{
 };
 use crate::area::Area;
 
-/// What a film keeps of a pixel: its mean in linear light, the mean rounded to floats of 32 bits, or
-/// the bytes of sRGB, which take an eighth of the memory.
+/// What a film keeps of a pixel: its mean in linear light, the mean rounded to floats of 32 bits,
+/// or the bytes of sRGB, which take an eighth of the memory.
 pub trait Pixel: Copy + Default + Send + Sync {
     /// From the mean.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;

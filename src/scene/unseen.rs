@@ -60,8 +60,8 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
 /// Whether samples show squares of a board that they cannot tell apart, so that all have one
 /// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // Where up is not known well enough and the view is straight down, the window reaches along x and
-    // z at least as far as it does unrolled.
+    // Straight down, however the window is turned, it reaches along x and z at least as far as its
+    // shorter side, as it does along one of them here.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
