@@ -8,7 +8,7 @@ use std::{cell::OnceCell, ops::ControlFlow};
 use crate::{
     math::{Big, Double},
     tracer::{
-        Candidate, Conic, Curve, Held, LOOSE_LINE, Line, Object, Patch, Precision, SubPixel,
+        Candidate, Conic, Curve, Held, KEPT, LOOSE_LINE, Line, Object, Patch, Precision, SubPixel,
         SubPixelFrame, Surface, World, candidates,
     },
 };
@@ -20,9 +20,10 @@ const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Units of work: of a pair of objects whose depths are compared, of an object or a pair that is
 /// asked for curves, and of an object, and of each two surfaces that may cross, in the last
-/// precision.
+/// precision. A triangle or a box that is not kept is prepared anew.
 const PAIR_WORK: f64 = 1.0 / 16.0;
 const LOOK_WORK: f64 = 8.0;
+const PREPARATION_WORK: f64 = 140.0;
 const BIG_CURVE_WORK: f64 = 1500.0;
 
 /// What a boundary belongs to, of the objects that may be seen, by their places among these.
@@ -227,7 +228,12 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     fn object(&self, at: usize) -> &Object<T> {
         self.objects[at].get_or_init(|| {
             self.charge_last();
-            T::object(&self.world.geometry, self.candidates[at].object)
+            let object = T::object(&self.world.geometry, self.candidates[at].object);
+            // Of so many, few are kept.
+            if self.candidates.len() > KEPT && matches!(*object, Object::Convex(_)) {
+                self.budget.charge(PREPARATION_WORK);
+            }
+            object
         })
     }
 

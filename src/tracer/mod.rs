@@ -53,4 +53,4 @@ pub use samples::PreparedPixel;
 pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
 pub use world::World;
-pub(crate) use world::{Held, Precision};
+pub(crate) use world::{Held, KEPT, Precision};

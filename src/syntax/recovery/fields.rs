@@ -243,6 +243,7 @@ impl<'s> Recovery<'_, 's> {
                     && (self.starts_block()
                         || (self.is_on_new_line(0)
                             && !self.words.is_value(word)
+                            && !self.is_foreign_call()
                             && self.starts_value(1)))
             }
         };

@@ -155,7 +155,9 @@ impl<'s> Recovery<'_, 's> {
         let word = self.word(0);
         let is_new_name = self.is_name(0) && self.is_on_new_line(0);
         matches!(word, "" | "let" | "{" | "}" | ";")
-            || (is_new_name && (!self.words.is_value(word) || self.is_head(0)))
+            || (is_new_name
+                && !self.is_foreign_call()
+                && (!self.words.is_value(word) || self.is_head(0)))
     }
 
     // Blocks.

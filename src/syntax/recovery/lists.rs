@@ -88,6 +88,11 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
+    /// Whether the call of a function of another language starts here. It is a value on a new line, too.
+    pub(super) fn is_foreign_call(&mut self) -> bool {
+        self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
+    }
+
     /// `vec3(1, 2, 3)` and `rgba(255, 0, 0, 1)`
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);

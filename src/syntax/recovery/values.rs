@@ -107,10 +107,10 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// `multi-jittered`
+    /// `multi-jittered`. A comment or the end of a line does not belong into a name.
     fn hyphenated(&mut self) -> Value<'s> {
         let mut span = self.bump();
-        while self.is(0, "-") && self.is_name(1) {
+        while self.is(0, "-") && self.is_name(1) && self.is_adjacent(0) && self.is_adjacent(1) {
             self.bump();
             span = span.to(self.bump());
         }

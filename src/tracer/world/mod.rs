@@ -11,7 +11,7 @@ mod precision;
 mod prepare;
 
 pub(crate) use self::{
-    precise_cache::Held,
+    precise_cache::{Held, KEPT},
     precision::{Geometry, Precision},
 };
 

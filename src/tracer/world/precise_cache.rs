@@ -9,9 +9,9 @@ use std::{
 
 use crate::{math::Real, tracer::object::Object};
 
-/// Places for as many objects as people write by hand and more. It is a prime number, so that objects in rows, whose indices often are a
+/// As many objects are kept as people write by hand and more. It is a prime number, so that objects in rows, whose indices often are a
 /// power of two or of ten apart, do not take each other's.
-const PLACES: usize = 4093;
+pub const KEPT: usize = 4093;
 
 /// Objects in one precision, each prepared when it is first asked for and kept, of many until another takes its place.
 ///
@@ -50,7 +50,7 @@ impl<T: Real> Deref for Held<'_, T> {
 impl<T: Real> Kept<T> {
     /// Places for the objects of a scene, of which there are so many.
     pub fn new(objects: usize) -> Self {
-        Self((0..objects.min(PLACES)).map(|_| Mutex::default()).collect())
+        Self((0..objects.min(KEPT)).map(|_| Mutex::default()).collect())
     }
 
     /// The object with an index.
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn an_object_is_prepared_once_until_another_takes_its_place() {
-        let kept = Kept::<f64>::new(3 * PLACES);
+        let kept = Kept::<f64>::new(3 * KEPT);
         let times = |index| {
             let mut times = 0;
             kept.object(index, || {
@@ -98,7 +98,7 @@ mod tests {
             times
         };
         assert_eq!([1, 2, 1, 2].map(times), [1, 1, 0, 0]);
-        assert_eq!([PLACES + 1, 1, 1, 2].map(times), [1, 1, 0, 0]);
+        assert_eq!([KEPT + 1, 1, 1, 2].map(times), [1, 1, 0, 0]);
         assert_eq!(kept.len(), 2);
     }
 }

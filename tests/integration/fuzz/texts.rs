@@ -67,7 +67,8 @@ fn is_laid_out(text: &str) {
 }
 
 /// Texts that once were not: fixes that take the same space away, a label in the middle of a sign,
-/// a parenthesis for each of two hundred fixes in one place, and a comment with empty lines.
+/// a parenthesis for each of two hundred fixes in one place, and a comment with empty lines. A
+/// comment in the middle of a hyphenated name, and functions of other languages on a new line.
 #[test]
 fn what_was_found_stays_mended() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));
@@ -76,6 +77,10 @@ fn what_was_found_stays_mended() {
         format!("let e = 2 {minuses} 3"),
         format!("camera {{ eye {deep}0, 1, 0) roll 45deg }}"),
         "triangle { /* nothing\n\n\nbut this */ }".to_owned(),
+        "sampler { method multi-// no\n jittered }".to_owned(),
+        "sampler { method multi /* no */ - jittered }".to_owned(),
+        "camera { eye\nvec3(1, 2, 3) }".to_owned(),
+        "let a =\nrgba(1, 2, 3, 4)".to_owned(),
     ] {
         gets_an_answer(text.clone().into());
         is_laid_out(&text);
