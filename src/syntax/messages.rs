@@ -5,7 +5,7 @@ use crate::{diagnostic::Diagnostic, source::Span};
 
 pub const INVALID_UTF8: Message = Message::new("invalid_utf8", "this file is not valid UTF-8{0}", "this byte is part of no character", "save the file as UTF-8");
 pub const UTF16: Message = Message::new("invalid_utf8", "this file is UTF-16, not UTF-8", "each character takes two bytes", "save the file as UTF-8");
-pub const FOREIGN_FILE: Message = Message::new("foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`");
+pub const FOREIGN_FILE: Message = Message::new("foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`{1}");
 pub const NOT_IN_LANGUAGE: Message = Message::new("not_in_language", "the language has no {0}", "not a part of the language", "{1}");
 // Text.
 pub const CARRIAGE_RETURN: Message = Message::new("odd_space", "a carriage return alone ends no line{0}", "no line feed follows", "write a line feed in its place");
@@ -79,6 +79,9 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
+
+/// What is said besides of programs whose z points away from the viewer.
+pub const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[

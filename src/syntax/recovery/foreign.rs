@@ -142,7 +142,9 @@ impl Recovery<'_, '_> {
         let first = Lexer::past_comments(self.text, 0);
         let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
-        self.report(&say::FOREIGN_FILE, place, &[what], None);
+        let is_left_handed = matches!(*what, "a scene of POV-Ray" | "a scene of pbrt");
+        let z = if is_left_handed { say::LEFT_HANDED } else { "" };
+        self.report(&say::FOREIGN_FILE, place, &[what, z], None);
         self.cut = Some(0);
         true
     }
