@@ -7,6 +7,7 @@ use crate::{
     syntax::{
         messages::{self as say, FOREIGN_FILES, statement},
         tokens::{Lexer, is_color_code, line_end},
+        tree::Item,
     },
 };
 
@@ -29,6 +30,8 @@ impl Recovery<'_, '_> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
+        // What it may have defined is no second mistake.
+        self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
             self.skip_block();
