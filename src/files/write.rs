@@ -51,7 +51,7 @@ pub fn write(
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    write_at_once(path, purpose, cancel, write).map_err(in_words)
+    write_at_once(path, purpose, cancel, write).map_err(|error| told(path, error))
 }
 
 fn write_at_once(
@@ -102,7 +102,17 @@ pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
         Ok(Place::Stream) => Ok(()),
         Err(error) => Err(error),
     };
-    is_writable.map_err(in_words)
+    is_writable.map_err(|error| told(path, error))
+}
+
+/// Why nothing can be written at a path, in words.
+fn told(path: &Path, error: io::Error) -> io::Error {
+    match error.kind() {
+        kind @ io::ErrorKind::NotFound if !folder(path).exists() => {
+            io::Error::new(kind, "there is no such folder")
+        }
+        _ => in_words(error),
+    }
 }
 
 /// Where the content goes.
