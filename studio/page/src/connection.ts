@@ -1,6 +1,7 @@
-// The connection to the engine: a web socket to the served host, or a web worker, carrying one JSON-RPC message a text. It is the transport of the editor's
-// language client, and carries the page's own requests beside it. A lost connection is opened anew after growing pauses, unless the host has said that it will not
-// have this page any more.
+// The connection to the engine: a web socket to the served host, or a web worker, carrying one
+// JSON-RPC message a text. It is the transport of the editor's language client, and carries the
+// page's own requests beside it. A lost connection is opened anew after growing pauses, unless the
+// host has said that it will not have this page any more.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
@@ -11,24 +12,28 @@ interface Wire {
   send(text: string): void;
 }
 
-/** Why there is no connection, and will be none before an address is opened that the host has printed. */
+/** Why there is no connection, and will be none before an address is opened that the host has
+ *  printed. */
 export type Refused = "keyless" | "unknown" | "restarted" | "late" | "twice";
 
-/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own word; `failed` is a worker. These are tried again. */
+/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own
+ *  word; `failed` is a worker. These are tried again. */
 export type Closed = "lost" | "ended" | "failed" | Refused;
 
 /** `silent` is a connection that is lost for long. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
 /** Opens a wire; the three functions are called as it opens, brings a text, and closes. */
-type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void, closed: (why: Closed) => void) => void;
+type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
+  closed: (why: Closed) => void) => void;
 
 interface Waiting {
   resolve(result: unknown): void;
   reject(error: Error): void;
 }
 
-/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of them the host is most likely gone. */
+/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of
+ *  them the host is most likely gone. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 
 const NO_CONNECTION = "This cannot be done without a connection.";
@@ -43,7 +48,8 @@ export class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
   onNotification: (method: string, params: unknown) => void = () => {};
-  /** Resolves as soon as the server has been told who we are, so that what is sent then comes after all that the editor has sent before. */
+  /** Resolves as soon as the server has been told who we are, so that what is sent then comes
+   *  after all that the editor has sent before. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
@@ -93,7 +99,8 @@ export class Connection implements Transport {
     this.handlers.delete(handler);
   }
 
-  /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the connection is lost. */
+  /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the
+   *  connection is lost. */
   async request<Result>(method: string, params: unknown): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);
@@ -131,11 +138,13 @@ export class Connection implements Transport {
 
   private lose(why: Closed): void {
     this.wire = null;
-    for (const waiting of this.waiting.values()) waiting.reject(new Error("The connection was lost."));
+    const lost = new Error("The connection was lost.");
+    for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (why !== "lost" && why !== "ended" && why !== "failed") return this.enter(why);
     // What the host has said holds until it answers again.
-    if (this.state !== "ended") this.enter(why === "lost" && this.attempts >= PAUSES.length ? "silent" : why);
+    const isSilent = why === "lost" && this.attempts >= PAUSES.length;
+    if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
     this.timer = setTimeout(() => this.open(), pause);
   }
@@ -147,7 +156,8 @@ export class Connection implements Transport {
   }
 }
 
-/** A web socket on the page's own host. Its first message is the token; the host's first one is the token for the next time. */
+/** A web socket on the page's own host. Its first message is the token; the host's first one is
+ *  the token for the next time. */
 export function webSocket(path: string): Connector {
   return (opened, receive, closed) => {
     const { token } = session;
@@ -166,12 +176,14 @@ export function webSocket(path: string): Connector {
     });
     socket.addEventListener("close", ({ code }) => {
       if (code === UNKNOWN) closed(session.isFresh ? "unknown" : "restarted");
-      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended" : "lost");
+      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended"
+        : "lost");
     });
   };
 }
 
-/** A web worker that runs the engine. It is open when it says its first word, after it has loaded the engine; one that fails is replaced. */
+/** A web worker that runs the engine. It is open when it says its first word, after it has
+ *  loaded the engine; one that fails is replaced. */
 export function worker(path: string): Connector {
   return (opened, receive, closed) => {
     const engine = new Worker(new URL(path, location.href), { type: "module" });

@@ -1,13 +1,17 @@
-// The editor: CodeMirror with what the server gives through the language client. Fixes and hints have files of their own.
+// The editor: CodeMirror with what the server gives through the language client. Fixes and hints
+// have files of their own.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
-import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
+import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
+  serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, EditorState, StateEffect, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
+import { ChangeSet, Compartment, EditorState, StateEffect, type ChangeSpec, type Extension,
+  type Text } from "@codemirror/state";
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
+  highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
 import { gestureHistory } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
@@ -15,7 +19,8 @@ import { isSuperseded, type Position, type Published, type Range, type TextEdit 
 import { sanitized } from "./sanitize";
 
 class SceneFile implements WorkspaceFile {
-  constructor(readonly uri: string, readonly languageId: string, public version: number, public doc: Text, readonly view: EditorView) {}
+  constructor(readonly uri: string, readonly languageId: string, public version: number,
+    public doc: Text, readonly view: EditorView) {}
 
   getView(): EditorView {
     return this.view;
@@ -57,14 +62,17 @@ class SceneWorkspace extends Workspace {
   }
 }
 
-/** Halves of surrogate pairs stand for no character; no file can hold them, and no message to the server. */
+/** Halves of surrogate pairs stand for no character; no file can hold them, and no message to
+ *  the server. */
 const HALVES = /\p{Surrogate}/gu;
 
-/** Has the character for what cannot be shown in the place of halves that are typed or pasted, as a file would. */
+/** Has the character for what cannot be shown in the place of halves that are typed or pasted,
+ *  as a file would. */
 const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   const changes: ChangeSpec[] = [];
   transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
-    for (const { index } of inserted.toString().matchAll(HALVES)) changes.push({ from: from + index, to: from + index + 1, insert: "\ufffd" });
+    for (const { index } of inserted.toString().matchAll(HALVES)) changes.push(
+      { from: from + index, to: from + index + 1, insert: "\ufffd" });
   });
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
@@ -83,7 +91,8 @@ export class SceneEditor {
   diagnosed: (published: Published) => void = () => undefined;
   private readonly history = new Compartment();
 
-  constructor(parent: HTMLElement, private readonly connection: Connection, nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
+  constructor(parent: HTMLElement, private readonly connection: Connection,
+    nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
     this.client = new LSPClient({
       workspace: client => new SceneWorkspace(client),
       // A busy machine may take its time; a lost connection is told by the connection.
@@ -118,7 +127,8 @@ export class SceneEditor {
         sceneLanguage,
         sceneHighlighting,
         EditorView.lineWrapping,
-        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
+        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
+          spellcheck: "false", autocapitalize: "off" }),
         keymap.of([
           ...formatKeymap,
           ...renameKeymap,
@@ -149,7 +159,8 @@ export class SceneEditor {
     return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** The same where an answer that does not come is not worth a message: it is null then, as it is where the text has errors. */
+  /** The same where an answer that does not come is not worth a message: it is null then, as it
+   *  is where the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -161,13 +172,15 @@ export class SceneEditor {
 
   /** The place of all the text. */
   get whole(): Range {
-    return { start: { line: 0, character: 0 }, end: { line: this.view.state.doc.lines, character: 0 } };
+    return { start: { line: 0, character: 0 },
+      end: { line: this.view.state.doc.lines, character: 0 } };
   }
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */
   open(text: string): void {
     this.view.dispatch({ effects: this.history.reconfigure([]) });
-    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, selection: { anchor: 0 } });
+    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text },
+      selection: { anchor: 0 } });
     this.view.dispatch({ effects: this.history.reconfigure(gestureHistory()) });
   }
 
@@ -175,22 +188,26 @@ export class SceneEditor {
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
-    this.view.dispatch({ effects: StateEffect.appendConfig.of(this.client.plugin(this.uri, "pinhole")) });
+    this.view.dispatch({ effects: StateEffect.appendConfig.of(
+      this.client.plugin(this.uri, "pinhole")) });
   }
 
-  /** Puts another text in place, changing no more than differs, so that the cursor stays where it is. */
+  /** Puts another text in place, changing no more than differs, so that the cursor stays where
+   *  it is. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     const shorter = Math.min(old.length, text.length);
     let start = 0;
     while (start < shorter && old[start] === text[start]) start++;
     let end = 0;
-    while (end < shorter - start && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
+    while (end < shorter - start
+      && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
     // Characters beyond the first 65536 have two units, and change as one.
     if (/[\ud800-\udbff]/.test(text.charAt(start - 1))) start--;
     if (/[\udc00-\udfff]/.test(text.charAt(text.length - end))) end--;
     if (start < old.length - end || start < text.length - end) {
-      this.view.dispatch({ changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
+      this.view.dispatch({ changes: { from: start, to: old.length - end,
+        insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
     }
   }
 
@@ -222,10 +239,12 @@ export class SceneEditor {
   }
 
   changes(edits: readonly TextEdit[]): ChangeSpec {
-    return edits.map(({ range, newText }) => ({ from: this.offset(range.start), to: this.offset(range.end), insert: newText }));
+    return edits.map(({ range, newText }) =>
+      ({ from: this.offset(range.start), to: this.offset(range.end), insert: newText }));
   }
 
-  /** Tells the server what has changed. What changes without a connection is told with the whole text, when there is one. */
+  /** Tells the server what has changed. What changes without a connection is told with the whole
+   *  text, when there is one. */
   private sync(): void {
     if (this.connection.state === "open") this.client.sync();
   }

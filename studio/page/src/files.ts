@@ -1,4 +1,5 @@
-// Where the scene is kept: the host's file, which other editors may change at the same time, or a file of this computer that the browser opens and saves.
+// Where the scene is kept: the host's file, which other editors may change at the same time, or a
+// file of this computer that the browser opens and saves.
 
 import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
@@ -23,10 +24,12 @@ interface FilePickers {
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
 
-/** More lines than these are not compared one by one: the table has a place of two bytes for each pair of lines, 18 MB here. */
+/** More lines than these are not compared one by one: the table has a place of two bytes for
+ *  each pair of lines, 18 MB here. */
 const MOST_LINES = 3000;
 
-/** The host keeps a file of its own with the text as the page last saw it there; a static page has local files alone. */
+/** The host keeps a file of its own with the text as the page last saw it there; a static page
+ *  has local files alone. */
 export class Files {
   name = "scene.scn";
   /** What the file held when it was last seen; null where there was none. */
@@ -37,11 +40,13 @@ export class Files {
   /** Whether the host's file is still to be made, under a name that Save asks for. */
   private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for a file. */
+  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it.
+   *  Null for a file. */
   private untouched: string | null = null;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection, private readonly status: Status, private readonly isServed: boolean) {
+  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
+    private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
     byId("open").hidden = isServed;
@@ -57,7 +62,8 @@ export class Files {
 
   get isUnsaved(): boolean {
     const { text } = this.editor;
-    return this.opened && text !== this.untouched && (this.isGone || this.seen === null || text !== withLf(this.seen));
+    return this.opened && text !== this.untouched
+      && (this.isGone || this.seen === null || text !== withLf(this.seen));
   }
 
   /** The text with its file's ends of lines. */
@@ -66,7 +72,8 @@ export class Files {
     return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
   }
 
-  /** The host says what file it has: at first, after the connection was lost, when a new scene has got its name, and when the file has changed. */
+  /** The host says what file it has: at first, after the connection was lost, when a new scene
+   *  has got its name, and when the file has changed. */
   hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
     this.name = name;
     this.isNew = this.isServed && !saved;
@@ -97,7 +104,8 @@ export class Files {
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
-    } else if (this.editor.text === withLf(text) || (seen !== null && this.editor.text === withLf(seen))) {
+    } else if (this.editor.text === withLf(text)
+      || (seen !== null && this.editor.text === withLf(seen))) {
       this.conflict.close();
       this.seen = text;
       this.editor.replace(text);
@@ -110,7 +118,8 @@ export class Files {
 
   private tellGone(reason?: string | null): void {
     this.isGone = true;
-    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}` : `${this.shownName} is gone; Save writes it anew.`, "warning");
+    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}`
+      : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
   /** Shows whether everything is saved. */
@@ -127,7 +136,8 @@ export class Files {
       if (this.isServed) await this.saveHosted();
       else await this.saveLocal();
     } catch (error) {
-      if ((error as Error).name !== "AbortError") this.status.say((error as Error).message, "warning");
+      const { name, message } = error as Error;
+      if (name !== "AbortError") this.status.say(message, "warning");
     }
     this.show();
   }
@@ -162,13 +172,15 @@ export class Files {
     dialog.showModal();
     field.select();
     return new Promise(resolve => {
-      dialog.addEventListener("close", () => resolve(dialog.returnValue === "save" && field.value.trim() !== "" ? field.value.trim() : null), { once: true });
+      const name = () => (dialog.returnValue === "save" ? field.value.trim() : "");
+      dialog.addEventListener("close", () => resolve(name() || null), { once: true });
     });
   }
 
   private async saveLocal(): Promise<void> {
     const text = this.textToSave;
-    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name })) ?? null;
+    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name }))
+      ?? null;
     if (this.handle === null) {
       download(this.name, text, "text/plain");
     } else {
@@ -181,7 +193,8 @@ export class Files {
   }
 
   private async open(): Promise<void> {
-    if (this.isUnsaved && !confirm("The scene on the page is not saved. Open another one in its place?")) return;
+    const question = "The scene on the page is not saved. Open another one in its place?";
+    if (this.isUnsaved && !confirm(question)) return;
     try {
       if (pickers.showOpenFilePicker !== undefined) {
         const [handle] = await pickers.showOpenFilePicker(SCENES);
@@ -197,14 +210,16 @@ export class Files {
       });
       input.click();
     } catch (error) {
-      if ((error as Error).name !== "AbortError") this.status.say((error as Error).message, "warning");
+      const { name, message } = error as Error;
+      if (name !== "AbortError") this.status.say(message, "warning");
     }
   }
 
   private async take(file: File, handle: FileHandle | null): Promise<void> {
     try {
       // Other encodings would come back from Save as another text.
-      const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(await file.arrayBuffer());
+      const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
+        .decode(await file.arrayBuffer());
       this.editor.open(text);
       this.handle = handle;
       this.name = file.name;
@@ -216,9 +231,11 @@ export class Files {
     this.show();
   }
 
-  /** Both the page and the file have changed: shows the difference, and asks. Whatever is chosen, undo brings the other text back. */
+  /** Both the page and the file have changed: shows the difference, and asks. Whatever is
+   *  chosen, undo brings the other text back. */
   private ask(theirs: string): void {
-    const lines = difference(withLf(theirs), this.editor.text).map(({ sign, text }) => create("div", sign === "-" ? "removed" : sign === "+" ? "added" : "", `${sign} ${text}`));
+    const lines = difference(withLf(theirs), this.editor.text)
+      .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
     setText(byId("conflict-name"), this.shownName);
     const choose = (act: () => void) => () => {
@@ -242,39 +259,47 @@ export class Files {
   }
 }
 
+const CLASSES = { " ": "", "-": "removed", "+": "added" };
+
 interface DifferenceLine {
   sign: " " | "-" | "+";
   text: string;
 }
 
-/** The lines of two texts: those of the first alone by -, those of the second alone by +, with up to two common ones around (longest common subsequence). */
+/** The lines of two texts: those of the first alone by -, those of the second alone by +, with
+ *  up to two common ones around (longest common subsequence). */
 export function difference(one: string, other: string): DifferenceLine[] {
   const [a, b] = [one.split("\n"), other.split("\n")];
   let start = 0;
   while (start < a.length && start < b.length && a[start] === b[start]) start++;
   let end = 0;
-  while (end < a.length - start && end < b.length - start && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
+  while (end < a.length - start && end < b.length - start
+    && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
   const common = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
   const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...common(a.slice(Math.max(0, start - 2), start)), ...middle, ...common(a.slice(a.length - end, a.length - end + 2))];
+  return [...common(a.slice(Math.max(0, start - 2), start)), ...middle,
+    ...common(a.slice(a.length - end, a.length - end + 2))];
 }
 
 function changedLines(a: string[], b: string[]): DifferenceLine[] {
   const lines: DifferenceLine[] = [];
   const [n, m] = [a.length, b.length];
-  // lengths[i * (m + 1) + j] is that of the longest common subsequence of a from i on and b from j on.
+  // lengths[i * (m + 1) + j] is that of the longest common subsequence of a from i on and b from j
+  // on.
   const isLong = n > MOST_LINES || m > MOST_LINES;
   const lengths = isLong ? new Uint16Array(0) : new Uint16Array((n + 1) * (m + 1));
   const at = (i: number, j: number) => lengths[i * (m + 1) + j] ?? 0;
   if (!isLong) {
-    for (let i = n - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] = a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
+    for (let i = n - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
+      a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
   }
   let [i, j] = [0, 0];
   while (i < n || j < m) {
     if (!isLong && i < n && j < m && a[i] === b[j]) {
       lines.push({ sign: " ", text: a[i++] ?? "" });
       j++;
-    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push({ sign: "-", text: a[i++] ?? "" });
+    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push(
+      { sign: "-", text: a[i++] ?? "" });
     else lines.push({ sign: "+", text: b[j++] ?? "" });
   }
   return lines;

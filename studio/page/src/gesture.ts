@@ -1,8 +1,9 @@
-// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo takes back. What it changes is marked, so that one sees which
-// numbers move.
+// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo
+// takes back. What it changes is marked, so that one sees which numbers move.
 
 import { history, isolateHistory, undo } from "@codemirror/commands";
-import { Annotation, EditorState, StateField, type ChangeSpec, type Extension, type Range } from "@codemirror/state";
+import { Annotation, EditorState, StateField, type ChangeSpec, type Extension,
+  type Range } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */
@@ -33,9 +34,11 @@ export function gestureHistory(): Extension {
   let last = 0;
   return [
     history({
-      // The history itself joins all but what it was told to isolate, which it knows by a time of 0: so this is less than the time since 1970.
+      // The history itself joins all but what it was told to isolate, which it knows by a time of
+      // 0: so this is less than the time since 1970.
       newGroupDelay: 1e11,
-      joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next" || (isAdjacent && Date.now() - last < TYPING_PAUSE),
+      joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
+        || (isAdjacent && Date.now() - last < TYPING_PAUSE),
     }),
     EditorState.transactionExtender.of(transaction => {
       if (transaction.docChanged) queueMicrotask(() => (last = Date.now()));
@@ -57,8 +60,10 @@ export class Gesture {
     const changes = this.view.state.changes(spec);
     let place = 0;
     changes.iterChangedRanges((_fromOld, _toOld, from) => (place ||= from));
-    const annotations = this.steps++ === 0 ? [step.of("first"), isolateHistory.of("before")] : [step.of("next")];
-    this.view.dispatch({ changes, annotations, effects: EditorView.scrollIntoView(place, { y: "nearest" }) });
+    const annotations = this.steps++ === 0 ? [step.of("first"), isolateHistory.of("before")]
+      : [step.of("next")];
+    this.view.dispatch({ changes, annotations,
+      effects: EditorView.scrollIntoView(place, { y: "nearest" }) });
   }
 
   end(): void {

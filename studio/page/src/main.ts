@@ -1,4 +1,5 @@
-// Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes the other. This file puts the parts together.
+// Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes
+// the other. This file puts the parts together.
 
 import { session, takeToken } from "./address";
 import { redo, undo } from "@codemirror/commands";
@@ -20,7 +21,8 @@ import { offerSharing, sceneInAddress } from "./share";
 import { Status } from "./status";
 import { followTheme, themeExtension } from "./theme";
 
-const meta = (name: string) => document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
+const meta = (name: string) => document.querySelector<HTMLMetaElement>(
+  `meta[name="pinhole-${name}"]`)?.content;
 const isServed = meta("host") !== "static";
 
 const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
@@ -51,7 +53,9 @@ const frames = new Frames(
   },
   state => {
     if (state === "good") status.stale(null);
-    else if (state === "broken") status.stale(picture.isEmpty ? "The text has errors, so there is no picture yet." : "The text has errors. This is its last good picture.");
+    else if (state === "broken") status.stale(picture.isEmpty
+      ? "The text has errors, so there is no picture yet."
+      : "The text has errors. This is its last good picture.");
     else status.stale(`No picture of the newest text: ${state.message}`);
   },
 );
@@ -127,7 +131,8 @@ byId("redo").addEventListener("click", () => redo(editor.view));
 document.addEventListener("keydown", event => {
   const key = event.key.toLowerCase();
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-  const isElsewhere = !editor.view.hasFocus && !(event.target instanceof HTMLInputElement && event.target.type === "text");
+  const isElsewhere = !editor.view.hasFocus
+    && !(event.target instanceof HTMLInputElement && event.target.type === "text");
   if (key === "s") void files.save();
   else if (isElsewhere && key === "z") (event.shiftKey ? redo : undo)(editor.view);
   else if (isElsewhere && key === "y") redo(editor.view);

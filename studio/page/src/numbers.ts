@@ -1,8 +1,10 @@
-// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that opens below a number on a click or by Alt-Enter.
+// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that
+// opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type ViewUpdate } from "@codemirror/view";
+import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView,
+  type ViewUpdate } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
@@ -18,11 +20,13 @@ interface Literal {
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
-/** A minus sign that belongs to the number: nothing stands before it that it could subtract from. */
+/** A minus sign that belongs to the number: nothing stands before it that it could subtract
+ *  from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 function literalAt(state: EditorState, at: number): Literal | null {
-  const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1)).find(it => it.name === "number");
+  const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1))
+    .find(it => it.name === "number");
   if (node === undefined) return null;
   const written = NUMBER.exec(state.sliceDoc(node.from, node.to))?.[0];
   if (written === undefined) return null;
@@ -30,10 +34,12 @@ function literalAt(state: EditorState, at: number): Literal | null {
   const before = state.sliceDoc(line.from, node.from);
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
-  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, endsInWholeField(before)) };
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value,
+    step: stepOf(value, written, endsInWholeField(before)) };
 }
 
-/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero ends; and no coarser than how it is written. */
+/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
+ *  ends; and no coarser than how it is written. */
 function stepOf(value: number, written: string, isWhole: boolean): number {
   if (isWhole) return 1;
   const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];
@@ -78,9 +84,14 @@ const sliderField = StateField.define<Tooltip | null>({
   update(tooltip, transaction) {
     let next = tooltip;
     // Typing closes it; what the slider itself writes does not.
-    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
+    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null
+      : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
     if (next !== null && transaction.selection !== undefined) next = null;
-    for (const effect of transaction.effects) if (effect.is(openSlider)) next = effect.value === null ? null : { pos: effect.value, create: createSlider, strictSide: false };
+    for (const effect of transaction.effects) {
+      if (!effect.is(openSlider)) continue;
+      const pos = effect.value;
+      next = pos === null ? null : { pos, create: createSlider, strictSide: false };
+    }
     return next;
   },
   provide: field => showTooltip.from(field),
@@ -144,7 +155,8 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   event.preventDefault();
   const turn = new Turn(view, literal);
   document.body.classList.add("scrubbing");
-  const move = (next: PointerEvent) => turn.set(literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
+  const move = (next: PointerEvent) => turn.set(
+    literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
   followPointer(event, move, () => {
     document.body.classList.remove("scrubbing");
     turn.end();

@@ -1,5 +1,5 @@
-// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the horizon, the view axis, the pixel grid, the planes near and far,
-// and the samples of a pixel.
+// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the
+// horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
 
 import { createSvg, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
@@ -32,7 +32,8 @@ export class OverlayLayer {
 
   constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
     const layers = remembered("layers")?.split(" ") ?? [];
-    for (const layer of Object.keys(LAYERS) as Layer[]) if (layers.includes(layer)) this.on.add(layer);
+    const known = Object.keys(LAYERS) as Layer[];
+    for (const layer of known) if (layers.includes(layer)) this.on.add(layer);
   }
 
   isOn(layer: Layer): boolean {
@@ -72,7 +73,8 @@ export class OverlayLayer {
       const d = lines.map(line => `M${line.join("L")}`).join("");
       if (d === "") return;
       // A dark line under a light one is seen on every ground.
-      group.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }));
+      group.append(createSvg("path", { d, class: `line under ${name}` }),
+        createSvg("path", { d, class: `line ${name}` }));
     };
     if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid(picture));
     if (this.isOn("near")) {
@@ -80,12 +82,15 @@ export class OverlayLayer {
       path("far", data.far);
     }
     if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
-    if (this.isOn("vanishing")) for (const { axis, lines } of data.vanishing) path(`axis-${axis}`, lines);
+    const vanishing = this.isOn("vanishing") ? data.vanishing : [];
+    for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
     if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
     const hovered = data.objects.find(it => it.index === this.hovered);
     if (hovered !== undefined) path("outline hovered", hovered.outline);
     if (this.selected !== null) path("outline selected", this.selected.outline);
-    if (this.isOn("vanishing")) for (const { axis, point } of data.vanishing) if (point !== null) this.mark(point, `axis-${axis}`, axis);
+    for (const { axis, point } of vanishing) {
+      if (point !== null) this.mark(point, `axis-${axis}`, axis);
+    }
     if (this.isOn("axis")) this.mark(data.axis, "view-axis", "view axis");
     if (this.isOn("samples")) this.drawSamples();
   }
@@ -96,7 +101,8 @@ export class OverlayLayer {
     const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
     const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
     setText(label, text);
-    this.svg.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }), label);
+    this.svg.append(createSvg("path", { d, class: `line under ${name}` }),
+      createSvg("path", { d, class: `line ${name}` }), label);
   }
 
   private drawSamples(): void {
@@ -106,7 +112,8 @@ export class OverlayLayer {
     const size = this.picture.zoom;
     this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
     samples.points.forEach(([dx, dy], i) => {
-      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size, r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
+      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size,
+        r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
       dot.style.fill = samples.colors[i] ?? "";
       this.svg.append(dot);
     });

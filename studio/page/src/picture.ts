@@ -49,7 +49,8 @@ export class Picture {
       this.size = size;
       this.fit();
     }
-    canvas.dispatchEvent(new CustomEvent("pinhole-frame", { bubbles: true, detail: { fineness, version } }));
+    canvas.dispatchEvent(new CustomEvent("pinhole-frame",
+      { bubbles: true, detail: { fineness, version } }));
   }
 
   /** Whether there has been no picture yet. */
@@ -86,7 +87,8 @@ export class Picture {
     this.fitted = true;
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
-    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width, (clientHeight - 2 * MARGIN) / height));
+    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width,
+      (clientHeight - 2 * MARGIN) / height));
     this.center();
   }
 
@@ -97,7 +99,8 @@ export class Picture {
     this.center();
   }
 
-  zoomBy(factor: number, about: Point = [this.stage.clientWidth / 2, this.stage.clientHeight / 2]): void {
+  zoomBy(factor: number, about?: Point): void {
+    about ??= [this.stage.clientWidth / 2, this.stage.clientHeight / 2];
     const [x, y] = this.toPicture(about);
     this.fitted = false;
     this.zoom = Math.min(MOST_ZOOM, Math.max(0.02, this.zoom * factor));

@@ -1,4 +1,5 @@
-// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
+// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and
+// `studio/…`, as docs/protocol.md describes them.
 
 export interface Position {
   line: number;
