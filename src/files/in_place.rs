@@ -2,15 +2,15 @@
 //! written to, or that something is mounted on.
 
 use std::{
-    env,
     fs::{self, OpenOptions},
     io::{self, Write},
-    path::{Path, PathBuf},
+    path::Path,
 };
 
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
+    kept::state_folder,
     kind::{Kind, without_waiting},
     original::Original,
 };
@@ -74,20 +74,4 @@ fn copy_beside(path: &Path) -> Option<NamedTempFile> {
         fs::create_dir_all(&folder).ok()?;
         copy_in(&folder)
     })
-}
-
-/// The folder for what programs keep of a user, where the system has one.
-fn state_folder() -> Option<PathBuf> {
-    let absolute = |name| {
-        env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|p| p.is_absolute())
-    };
-    let base = match cfg!(windows) {
-        true => absolute("LOCALAPPDATA")?,
-        false => {
-            absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
-        }
-    };
-    Some(base.join("pinhole"))
 }

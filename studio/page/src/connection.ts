@@ -36,6 +36,12 @@ interface Waiting {
  *  them the host is most likely gone. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 
+/** After so many milliseconds of silence the server is asked whether it lives, which it answers in
+ *  so many more, unless it hangs. */
+const QUIET = 700;
+const HANGING = 1200;
+const ALIVE = "studio/alive";
+
 const NO_CONNECTION = "This cannot be done without a connection.";
 
 /** The codes with which the host closes a web socket. */
@@ -47,6 +53,8 @@ const TWICE = 4003;
 export class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
+  /** Told when nothing has come back for long, and when something has again. */
+  onHang: (isHanging: boolean) => void = () => {};
   onNotification: (method: string, params: unknown) => void = () => {};
   /** Resolves as soon as the server has been told who we are, so that what is sent then comes
    *  after all that the editor has sent before. */
@@ -60,8 +68,28 @@ export class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Counts attempts to connect: of an older one nothing is heard any more. */
   private current = 0;
+  /** When something was heard last, when the server was asked whether it lives, and whether it was
+   *  said that it does not answer. */
+  private heard = 0;
+  private asked = 0;
+  private hangs = false;
 
-  constructor(private readonly connector: Connector) {}
+  constructor(private readonly connector: Connector) {
+    setInterval(() => this.listen(), 250);
+    // A browser stops the clocks of pages that nobody sees.
+    document.addEventListener("visibilitychange", () => (this.asked = 0));
+  }
+
+  /** Asks a silent server whether it lives. */
+  private listen(): void {
+    const now = performance.now();
+    if (this.wire === null || document.hidden) return;
+    if (this.asked === 0) {
+      if (now - this.heard < QUIET) return;
+      this.asked = now;
+      this.wire.send(JSON.stringify({ jsonrpc: "2.0", id: ALIVE, method: ALIVE }));
+    } else if (now - this.asked > HANGING && !this.hangs) this.onHang((this.hangs = true));
+  }
 
   open(): void {
     const attempt = ++this.current;
@@ -120,7 +148,11 @@ export class Connection implements Transport {
   private receive(text: string): void {
     // What opens and closes at once has not come back.
     this.attempts = 0;
+    this.heard = performance.now();
+    this.asked = 0;
+    if (this.hangs) this.onHang((this.hangs = false));
     const message = JSON.parse(text);
+    if (message.id === ALIVE) return;
     const waiting = "method" in message ? undefined : this.waiting.get(message.id);
     if (waiting !== undefined) {
       this.waiting.delete(message.id);
@@ -138,6 +170,8 @@ export class Connection implements Transport {
 
   private lose(why: Closed): void {
     this.wire = null;
+    this.asked = 0;
+    this.hangs = false;
     const lost = new Error("The connection was lost.");
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();

@@ -8,12 +8,12 @@ import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
   serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, EditorState, StateEffect, type ChangeSpec, type Extension,
+import { ChangeSet, EditorState, StateEffect, type ChangeSpec, type Extension,
   type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
-import { gestureHistory } from "./gesture";
+import { gestureHistory, rewrite } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded, type Position, type Published, type Range, type TextEdit } from "./protocol";
 import { sanitized } from "./sanitize";
@@ -89,7 +89,6 @@ export class SceneEditor {
   uri = "";
   /** What to do with the diagnostics that the server publishes. */
   diagnosed: (published: Published) => void = () => undefined;
-  private readonly history = new Compartment();
 
   constructor(parent: HTMLElement, private readonly connection: Connection,
     nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
@@ -123,7 +122,7 @@ export class SceneEditor {
         dropCursor(),
         bracketMatching(),
         closeBrackets(),
-        this.history.of(gestureHistory()),
+        gestureHistory(),
         sceneLanguage,
         sceneHighlighting,
         EditorView.lineWrapping,
@@ -178,10 +177,23 @@ export class SceneEditor {
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */
   open(text: string): void {
-    this.view.dispatch({ effects: this.history.reconfigure([]) });
-    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text },
-      selection: { anchor: 0 } });
-    this.view.dispatch({ effects: this.history.reconfigure(gestureHistory()) });
+    const changes = { from: 0, to: this.view.state.doc.length, insert: text };
+    rewrite(this.view, { changes, selection: { anchor: 0 } });
+  }
+
+  /** Tells the server about a text beside the scene's, under an address of its own; forgets it. */
+  openAside(uri: string, text: string): void {
+    const textDocument = { uri, languageId: "pinhole", version: 0, text };
+    this.tell("textDocument/didOpen", { textDocument });
+  }
+
+  closeAside(uri: string): void {
+    this.tell("textDocument/didClose", { textDocument: { uri } });
+  }
+
+  private tell(method: string, params: object): void {
+    if (this.connection.state !== "open") return;
+    this.connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
   /** Tells the server about the text, unless it was told already. */
@@ -224,23 +236,17 @@ export class SceneEditor {
     this.view.dispatch({ selection: { anchor: this.offset(position) }, scrollIntoView: true });
   }
 
-  offset({ line, character }: Position): number {
-    const { doc } = this.view.state;
+  offset({ line, character }: Position, doc = this.view.state.doc): number {
     if (line >= doc.lines) return doc.length;
     const { from, to } = doc.line(line + 1);
     return Math.min(from + character, to);
   }
 
-  /** The object that a place of the text is in. At the border of two it is the second one. */
-  objectAt<T extends { range: Range }>(objects: readonly T[], offset: number): T | undefined {
-    const spans = (it: T) => [this.offset(it.range.start), this.offset(it.range.end)] as const;
-    const touching = objects.filter(it => spans(it)[0] <= offset && offset <= spans(it)[1]);
-    return touching.find(it => offset < spans(it)[1]) ?? touching[0];
-  }
-
-  changes(edits: readonly TextEdit[]): ChangeSpec {
-    return edits.map(({ range, newText }) =>
-      ({ from: this.offset(range.start), to: this.offset(range.end), insert: newText }));
+  /** Edits of a text, which is the scene's unless another one is given, as changes. */
+  changes(edits: readonly TextEdit[], doc = this.view.state.doc): ChangeSet {
+    const change = ({ range: { start, end }, newText }: TextEdit) =>
+      ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });
+    return ChangeSet.of(edits.map(change), doc.length, "\n");
   }
 
   /** Tells the server what has changed. What changes without a connection is told with the whole

@@ -5,7 +5,7 @@ import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
-import type { HostedFile, Saved } from "./protocol";
+import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
 import type { Status } from "./status";
 import { setText, visibleLine } from "./visible";
 
@@ -24,6 +24,12 @@ interface FilePickers {
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
 
+/** How long a save may take before it is said that it is not done, in milliseconds. */
+const SLOW = 800;
+
+const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
+const NOT_YET = "Nothing is saved yet: Studio does not answer.";
+
 /** More lines than these are not compared one by one: the table has a place of two bytes for
  *  each pair of lines, 18 MB here. */
 const MOST_LINES = 3000;
@@ -32,8 +38,10 @@ const MOST_LINES = 3000;
  *  has local files alone. */
 export class Files {
   name = "scene.scn";
+  /** Called when the file has got the page's text. */
+  onSaved: () => void = () => {};
   /** What the file held when it was last seen; null where there was none. */
-  private seen: string | null = null;
+  seen: string | null = null;
   /** Whether the file has gone since. */
   private isGone = false;
   private handle: FileHandle | null = null;
@@ -68,8 +76,14 @@ export class Files {
 
   /** The text with its file's ends of lines. */
   get textToSave(): string {
-    const { text } = this.editor;
-    return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
+    return withEndsOf(this.seen ?? "", this.editor.text);
+  }
+
+  /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
+  restore(draft: Draft): void {
+    if (this.isServed && this.seen !== null) this.seen = draft.base;
+    this.editor.replace(draft.text);
+    this.show();
   }
 
   /** The host says what file it has: at first, after the connection was lost, when a new scene
@@ -143,16 +157,27 @@ export class Files {
   }
 
   private async saveHosted(): Promise<void> {
+    if (this.isNew) this.askName();
+    else await this.saveAs(this.name);
+  }
+
+  private async saveAs(name: string): Promise<void> {
+    if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const name = this.isNew ? await this.askName() : this.name;
-    if (name === null) return;
     const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
-    const answer = await this.connection.request<Saved>("studio/save", about);
-    if (answer.ok) {
-      this.saved(name, text);
-      this.isNew = false;
-    } else if (answer.text === null) this.changed(null);
-    else this.ask(answer.text);
+    const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
+    try {
+      const answer = await this.connection.request<Saved>("studio/save", about);
+      if (answer.ok) {
+        this.saved(name, text);
+        this.isNew = false;
+      } else if (answer.text === null) this.changed(null);
+      else this.ask(answer.text);
+    } catch (error) {
+      throw error instanceof Refusal ? error : new Error(NOT_SAVED);
+    } finally {
+      clearTimeout(slow);
+    }
   }
 
   private saved(name: string, text: string): void {
@@ -161,20 +186,31 @@ export class Files {
     this.isGone = false;
     this.untouched = null;
     this.status.say(`${this.shownName} is saved.`);
+    this.onSaved();
   }
 
-  /** The name that a new file shall have; null if it shall not be saved. */
-  private askName(): Promise<string | null> {
+  /** Asks for the name of a new file, and saves it. While that fails, the dialog stays. */
+  private askName(): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
+    const problem = byId("name-problem");
+    setText(problem, "");
     field.value = this.name;
-    dialog.returnValue = "";
+    byId("name-form").onsubmit = async event => {
+      if ((event.submitter as HTMLButtonElement | null)?.value === "") return;
+      event.preventDefault();
+      const name = field.value.trim();
+      try {
+        await this.saveAs(name.endsWith(".scn") ? name : `${name}.scn`);
+        dialog.close();
+      } catch (error) {
+        setText(problem, (error as Error).message);
+        field.select();
+      }
+      this.show();
+    };
     dialog.showModal();
     field.select();
-    return new Promise(resolve => {
-      const name = () => (dialog.returnValue === "save" ? field.value.trim() : "");
-      dialog.addEventListener("close", () => resolve(name() || null), { once: true });
-    });
   }
 
   private async saveLocal(): Promise<void> {
@@ -259,6 +295,35 @@ export class Files {
   }
 }
 
+/** A text whose lines end by LF, with the ends that a file has: each line that is still there keeps
+ *  its own, and a new one has that of the line before it. */
+export function withEndsOf(file: string, text: string): string {
+  if (!file.includes("\r")) return text;
+  const ends = file.match(/\r\n?|\n/g) ?? [];
+  const [a, b] = [withLf(file).split("\n"), text.split("\n")];
+  let [i, end, made] = [0, ends[0] ?? "\n", ""];
+  const [start, rest] = common(a, b);
+  const middle = changedLines(a.slice(start, a.length - rest), b.slice(start, b.length - rest));
+  const kept = (lines: string[]) => lines.map(text => ({ sign: " " as const, text }));
+  const lines = [...kept(b.slice(0, start)), ...middle, ...kept(b.slice(b.length - rest))];
+  const last = lines.findLastIndex(line => line.sign !== "-");
+  lines.forEach(({ sign, text }, at) => {
+    if (sign !== "+") end = ends[i++] ?? end;
+    if (sign !== "-") made += at === last ? text : text + end;
+  });
+  return made;
+}
+
+/** How many lines two texts have in common at the start and at the end. */
+function common(a: string[], b: string[]): [number, number] {
+  let start = 0;
+  while (start < a.length && start < b.length && a[start] === b[start]) start++;
+  let end = 0;
+  while (end < a.length - start && end < b.length - start
+    && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
+  return [start, end];
+}
+
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 
 interface DifferenceLine {
@@ -270,15 +335,11 @@ interface DifferenceLine {
  *  up to two common ones around (longest common subsequence). */
 export function difference(one: string, other: string): DifferenceLine[] {
   const [a, b] = [one.split("\n"), other.split("\n")];
-  let start = 0;
-  while (start < a.length && start < b.length && a[start] === b[start]) start++;
-  let end = 0;
-  while (end < a.length - start && end < b.length - start
-    && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
-  const common = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
+  const [start, end] = common(a, b);
+  const same = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
   const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...common(a.slice(Math.max(0, start - 2), start)), ...middle,
-    ...common(a.slice(a.length - end, a.length - end + 2))];
+  return [...same(a.slice(Math.max(0, start - 2), start)), ...middle,
+    ...same(a.slice(a.length - end, a.length - end + 2))];
 }
 
 function changedLines(a: string[], b: string[]): DifferenceLine[] {

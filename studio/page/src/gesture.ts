@@ -1,9 +1,9 @@
 // A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo
 // takes back. What it changes is marked, so that one sees which numbers move.
 
-import { history, isolateHistory, undo } from "@codemirror/commands";
-import { Annotation, EditorState, StateField, type ChangeSpec, type Extension,
-  type Range } from "@codemirror/state";
+import { history, historyField, isolateHistory } from "@codemirror/commands";
+import { Annotation, Compartment, EditorState, StateField, type ChangeSpec, type Extension,
+  type Range, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */
@@ -29,8 +29,10 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** The history of changes: typing is grouped by pauses, gestures as a whole. */
-export function gestureHistory(): Extension {
+/** Where the history is kept, so that it can be put back as it was. */
+const kept = new Compartment();
+
+function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
@@ -44,15 +46,32 @@ export function gestureHistory(): Extension {
       if (transaction.docChanged) queueMicrotask(() => (last = Date.now()));
       return null;
     }),
-    touchedField,
+    past,
   ];
+}
+
+/** The history of changes: typing is grouped by pauses, gestures as a whole. */
+export function gestureHistory(): Extension {
+  return [kept.of(grouped()), touchedField];
+}
+
+/** Changes the text as if nothing had happened after some past; without one, as if nothing ever
+ *  had. */
+export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
+  view.dispatch({ effects: kept.reconfigure([]) });
+  view.dispatch(change);
+  view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
 export class Gesture {
   private steps = 0;
   private over = false;
+  private readonly past: Extension;
 
-  constructor(private readonly view: EditorView) {}
+  constructor(private readonly view: EditorView) {
+    const past = view.state.field(historyField, false);
+    this.past = historyField.init(() => past);
+  }
 
   /** Changes the text, and shows the first place of it. */
   apply(spec: ChangeSpec): void {
@@ -72,9 +91,10 @@ export class Gesture {
     if (this.steps > 0) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  cancel(): void {
+  /** Ends as if nothing had happened, by a change that leads back: neither Undo nor Redo knows. */
+  cancel(back: ChangeSpec): void {
     if (this.over) return;
-    this.end();
-    if (this.steps > 0) undo(this.view);
+    this.over = true;
+    if (this.steps > 0) rewrite(this.view, { changes: back }, this.past);
   }
 }

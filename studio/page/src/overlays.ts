@@ -3,7 +3,7 @@
 
 import { createSvg, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
-import type { DrawnObject, Overlays, Point, Polyline, Samples } from "./protocol";
+import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
 /** What can be switched on, with its name in the menu. */
@@ -25,8 +25,13 @@ const GRID_ZOOM = 6;
 export class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
   data: Overlays | null = null;
-  private selected: DrawnObject | null = null;
-  private hovered: number | null = null;
+  /** Whether they are those of the text that is there. */
+  isTrue = true;
+  /** The index of the object under the pointer. */
+  hovered: number | null = null;
+  /** Called when something is to be drawn that may not be known yet. */
+  onNeed: () => void = () => {};
+  private selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
   private readonly on = new Set<Layer>();
 
@@ -45,9 +50,20 @@ export class OverlayLayer {
     else this.on.delete(layer);
     remember("layers", [...this.on].join(" "));
     this.draw();
+    if (on) this.onNeed();
   }
 
-  select(selected: DrawnObject | null): void {
+  /** Whether anything is switched on that the server has to be asked about. */
+  get needsAny(): boolean {
+    return this.needsAll || (["horizon", "near"] as const).some(layer => this.isOn(layer));
+  }
+
+  /** Whether something is switched on that all objects have. */
+  get needsAll(): boolean {
+    return this.isOn("outlines") || this.isOn("vanishing");
+  }
+
+  select(selected: number | null): void {
     this.selected = selected;
     this.draw();
   }
@@ -56,6 +72,7 @@ export class OverlayLayer {
     if (hovered === this.hovered) return;
     this.hovered = hovered;
     this.draw();
+    if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
   showSamples(pixel: Point, samples: Samples | null): void {
@@ -85,9 +102,12 @@ export class OverlayLayer {
     const vanishing = this.isOn("vanishing") ? data.vanishing : [];
     for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
     if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
-    const hovered = data.objects.find(it => it.index === this.hovered);
-    if (hovered !== undefined) path("outline hovered", hovered.outline);
-    if (this.selected !== null) path("outline selected", this.selected.outline);
+    const outline = (index: number | null, name: string) => {
+      const object = this.isTrue ? data.objects.find(it => it.index === index) : undefined;
+      if (object !== undefined) path(`outline ${name}`, object.outline);
+    };
+    outline(this.hovered, "hovered");
+    outline(this.selected, "selected");
     for (const { axis, point } of vanishing) {
       if (point !== null) this.mark(point, `axis-${axis}`, axis);
     }

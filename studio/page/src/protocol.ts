@@ -74,6 +74,8 @@ export type Along = "x" | "y" | "z" | "floor";
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
+  /** What else moves with it, as `camera.lookat`. */
+  also?: string[];
 }
 
 export interface Samples {
@@ -89,6 +91,15 @@ export interface HostedFile {
   /** Why there is no text, where something else is there. */
   reason?: string | null;
   saved: boolean;
+  /** What was written and not saved, when a page comes that is new. */
+  draft?: Draft | null;
+}
+
+/** A text that was not saved: what it was made from, and when, in seconds since 1970. */
+export interface Draft {
+  text: string;
+  base: string | null;
+  time: number;
 }
 
 /** Whether the file was saved; if not, what is in it now. */

@@ -30,6 +30,8 @@ const CONNECTION: Record<ConnectionState, string> = {
     + `somebody else on this computer. Its session has ended: ${OPEN_PRINTED}.`,
 };
 
+const HANGS = "Nothing has come back for two seconds: Studio is stopped, or has too much to do.";
+
 /** What becomes of a text until there is a connection again. */
 const KEPT = " What is written here stays, and can be downloaded.";
 
@@ -48,6 +50,11 @@ export class Status {
     this.said.dataset["tone"] = tone;
   }
 
+  /** The text has changed: what was said of the one before is not true any more. */
+  changed(): void {
+    if (this.said.dataset["tone"] !== "warning") this.say("");
+  }
+
   picture([width, height]: [number, number], fineness: Fineness): void {
     setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
   }
@@ -58,6 +65,13 @@ export class Status {
     note.hidden = why === null;
     setText(note, why ?? "");
     byId("stage").toggleAttribute("data-stale", why !== null);
+  }
+
+  /** Says that nothing comes back, although there is a connection. */
+  hanging(isHanging: boolean): void {
+    byId("connection-bar").hidden = !isHanging;
+    byId("connection-download").hidden = !isHanging;
+    if (isHanging) setText(byId("connection"), HANGS + KEPT);
   }
 
   /** Says whether there is a connection, and if not, what to do and what becomes of the text, if
