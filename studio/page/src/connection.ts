@@ -8,9 +8,7 @@ import { session } from "./address";
 import { Refusal } from "./protocol";
 
 /** Something that carries texts. */
-interface Wire {
-  send(text: string): void;
-}
+interface Wire { send(text: string): void }
 
 /** Why there is no connection, and will be none before an address is opened that the host has
  *  printed. */
@@ -27,10 +25,7 @@ export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
-interface Waiting {
-  resolve(result: unknown): void;
-  reject(error: Error): void;
-}
+interface Waiting { resolve(result: unknown): void; reject(error: Error): void }
 
 /** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of
  *  them the host is most likely gone. */

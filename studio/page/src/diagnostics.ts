@@ -1,7 +1,7 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action,
-  type Diagnostic } from "@codemirror/lint";
+import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
+  Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";

@@ -15,9 +15,7 @@ const BEHIND = 500;
 /** So many drafts are in the browser. */
 const MOST = 10;
 
-interface Kept extends Draft {
-  id: string;
-}
+interface Kept extends Draft { id: string }
 
 export class Drafts {
   private timer = 0;

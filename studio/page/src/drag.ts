@@ -13,11 +13,7 @@ import { setText } from "./visible";
 
 /** What is held, and where it was seen at the press: a handle of an object; or, without an object,
  *  the camera. */
-export interface Held {
-  object: number | null;
-  handle: string;
-  at: Point;
-}
+export interface Held { object: number | null; handle: string; at: Point }
 
 /** Why a drag could not be done stays readable for so many milliseconds after it. */
 const REFUSAL_STAYS = 5000;

@@ -8,8 +8,8 @@ import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
   serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, EditorState, StateEffect, type ChangeSpec, type Extension,
-  type Text } from "@codemirror/state";
+import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension, type Text } from
+  "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
@@ -77,6 +77,21 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
+/** A brace that is typed where its block has one already, behind nothing but space, takes that one
+ *  over: the editor has written it when the block was begun. */
+const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
+  const { doc } = view.state;
+  const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
+  const before = doc.sliceString(0, from).replace(/\/\/.*|\/\*[^]*?\*\//g, "");
+  if (space === undefined || before.lastIndexOf("{") <= before.lastIndexOf("}")) return false;
+  const line = doc.lineAt(from);
+  const start = /^\s*$/.test(doc.sliceString(line.from, from)) ? line.from : from;
+  const end = to + space.length;
+  view.dispatch({ changes: { from: start, to: end }, selection: { anchor: start + 1 },
+    scrollIntoView: true, userEvent: "input.type" });
+  return true;
+}));
+
 /** A text with lines that end by LF, as the editor has them. */
 export function withLf(text: string): string {
   return text.replace(/\r\n?/g, "\n");
@@ -122,6 +137,7 @@ export class SceneEditor {
         dropCursor(),
         bracketMatching(),
         closeBrackets(),
+        closingBrace,
         gestureHistory(),
         sceneLanguage,
         sceneHighlighting,
@@ -240,6 +256,11 @@ export class SceneEditor {
     if (line >= doc.lines) return doc.length;
     const { from, to } = doc.line(line + 1);
     return Math.min(from + character, to);
+  }
+
+  position(offset: number): Position {
+    const line = this.view.state.doc.lineAt(offset);
+    return { line: line.number - 1, character: offset - line.from };
   }
 
   /** Edits of a text, which is the scene's unless another one is given, as changes. */

@@ -326,10 +326,7 @@ function common(a: string[], b: string[]): [number, number] {
 
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 
-interface DifferenceLine {
-  sign: " " | "-" | "+";
-  text: string;
-}
+interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
 /** The lines of two texts: those of the first alone by -, those of the second alone by +, with
  *  up to two common ones around (longest common subsequence). */

@@ -2,8 +2,8 @@
 // takes back. What it changes is marked, so that one sees which numbers move.
 
 import { history, historyField, isolateHistory } from "@codemirror/commands";
-import { Annotation, Compartment, EditorState, StateField, type ChangeSpec, type Extension,
-  type Range, type TransactionSpec } from "@codemirror/state";
+import { Annotation, Compartment, EditorState, StateField, type ChangeSpec, type Extension, type
+  Range, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */

@@ -8,22 +8,11 @@ import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
 import type { Position, Range, TextEdit } from "./protocol";
 
-interface InlayHint {
-  position: Position;
-  label: string;
-}
+interface InlayHint { position: Position; label: string }
 
-interface Color {
-  red: number;
-  green: number;
-  blue: number;
-  alpha: number;
-}
+interface Color { red: number; green: number; blue: number; alpha: number }
 
-interface ColorInformation {
-  range: Range;
-  color: Color;
-}
+interface ColorInformation { range: Range; color: Color }
 
 /** How long the text has to rest before hints are asked for, in milliseconds. */
 const REST = 150;
@@ -144,8 +133,7 @@ export class Hints {
     const { doc } = editor.view.state;
     const written = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/.exec(
       doc.sliceString(offset, offset + 200))?.[0] ?? "";
-    const line = doc.lineAt(offset);
-    const start = { line: line.number - 1, character: offset - line.from };
+    const start = editor.position(offset);
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };

@@ -22,12 +22,7 @@ const FUNCTIONS = words(
 /** Fields that take whole numbers. */
 const WHOLE_FIELDS = words("width height per_pixel total seed");
 
-interface State {
-  comment: boolean;
-  block: boolean;
-  parentheses: number;
-  defines: boolean;
-}
+interface State { comment: boolean; block: boolean; parentheses: number; defines: boolean }
 
 /** Whether the word that a text ends in is a field that takes whole numbers. */
 export function endsInWholeField(text: string): boolean {
@@ -76,8 +71,10 @@ export const sceneLanguage = StreamLanguage.define<State>({
     state.defines = false;
     return "+-*/=".includes(character ?? "") ? "operator" : "punctuation";
   },
+  indent: (state, after, context) =>
+    state.block && !/^\s*\}/.test(after) ? context.unit : 0,
   languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } },
-    closeBrackets: { brackets: ["(", "{"] } },
+    closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
 export const sceneHighlighting = syntaxHighlighting(

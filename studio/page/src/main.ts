@@ -20,7 +20,7 @@ import { Outlines } from "./outlines";
 import { OverlayLayer } from "./overlays";
 import { Picture } from "./picture";
 import { Pointers } from "./pointers";
-import type { HostedFile } from "./protocol";
+import type { HostedFile, Limits } from "./protocol";
 import { Selection } from "./selection";
 import { offerSharing, sceneInAddress } from "./share";
 import { Status } from "./status";
@@ -36,11 +36,13 @@ const status = new Status();
 const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
 const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElement, picture);
 
-const editor = new SceneEditor(
+const limitsAt = (at: number) =>
+  editor.ask<Limits>("pinhole/limits", { position: editor.position(at) });
+const editor: SceneEditor = new SceneEditor(
   byId("editor"),
   connection,
   meta("nonce"),
-  [keymap.of([fixKey]), numberControls(), hintField, themeExtension()],
+  [keymap.of([fixKey]), numberControls(limitsAt), hintField, themeExtension()],
   update => {
     if (update.docChanged) selection.mapped(update.changes);
     if (update.selectionSet) selection.cursorMoved();

@@ -2,20 +2,16 @@
 // opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
-import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView,
-  type ViewUpdate } from "@codemirror/view";
+import { Facet, StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
+import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type
+  ViewUpdate } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
+import type { Limits } from "./protocol";
 
 /** A number literal, with the sign that belongs to it. */
-interface Literal {
-  from: number;
-  to: number;
-  value: number;
-  step: number;
-}
+interface Literal { from: number; to: number; value: number; step: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
@@ -54,26 +50,49 @@ function format(value: number, step: number): string {
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
-/** Turns one number through a gesture. */
+/** Says between which numbers the one at a place of the text may be; null if nobody knows. */
+const limitSource = Facet.define<(at: number) => Promise<Limits | null>>();
+
+async function limitsOf({ state }: EditorView, literal: Literal): Promise<Limits | null> {
+  return (await state.facet(limitSource)[0]?.(literal.to)) ?? null;
+}
+
+/** The least and the greatest value that a number can be turned to. */
+function bounds({ step }: Literal, limits: Limits | null): [number, number] {
+  const margin = limits?.open ? step : 0;
+  return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
+}
+
+/** Turns one number through a gesture, as far as its limits allow, which the server knows. */
 class Turn {
   private readonly gesture: Gesture;
   private to: number;
+  private written: string;
+  private readonly bounds: Promise<[number, number]>;
+  private wanted = 0;
 
   constructor(private readonly view: EditorView, private readonly literal: Literal) {
     this.gesture = new Gesture(view);
     this.to = literal.to;
+    this.written = view.state.sliceDoc(literal.from, literal.to);
+    this.bounds = limitsOf(view, literal).then(limits => bounds(literal, limits));
   }
 
-  set(value: number): void {
+  async set(value: number): Promise<void> {
     const { from, step } = this.literal;
-    const text = format(value, step);
-    if (text === this.view.state.sliceDoc(from, this.to)) return;
+    this.wanted = value;
+    const [least, most] = await this.bounds;
+    const text = format(Math.min(most, Math.max(least, this.wanted)), step);
+    const now = this.view.state.sliceDoc(from, this.to);
+    // Whoever has changed the number otherwise keeps it.
+    if (text === now || now !== this.written) return;
     this.gesture.apply({ from, to: this.to, insert: text });
     this.to = from + text.length;
+    this.written = text;
   }
 
   end(): void {
-    this.gesture.end();
+    void this.bounds.then(() => this.gesture.end());
   }
 }
 
@@ -108,17 +127,22 @@ function createSlider(view: EditorView): TooltipView {
     const found = literal();
     if (found === null || turn !== null || found.value === shown) return;
     const span = Math.max(Math.abs(found.value), 50 * found.step);
-    range.min = String(found.value - span);
-    range.max = String(found.value + span);
-    range.step = String(found.step);
-    range.value = String(found.value);
+    const offer = (limits: Limits | null) => {
+      const [least, most] = bounds(found, limits);
+      range.min = String(Math.max(least, found.value - span));
+      range.max = String(Math.min(most, found.value + span));
+      range.step = String(found.step);
+      range.value = String(found.value);
+    };
     range.setAttribute("aria-label", `Value ${found.value}`);
     shown = found.value;
+    offer(null);
+    void limitsOf(view, found).then(limits => found.value === shown && turn === null && offer(limits));
   };
   range.addEventListener("input", () => {
     const found = literal();
     if (found !== null) turn ??= new Turn(view, found);
-    turn?.set(Number(range.value));
+    void turn?.set(Number(range.value));
   });
   range.addEventListener("change", () => {
     turn?.end();
@@ -155,7 +179,7 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   event.preventDefault();
   const turn = new Turn(view, literal);
   document.body.classList.add("scrubbing");
-  const move = (next: PointerEvent) => turn.set(
+  const move = (next: PointerEvent) => void turn.set(
     literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
   followPointer(event, move, () => {
     document.body.classList.remove("scrubbing");
@@ -167,7 +191,7 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
 function turnOnce(view: EditorView, literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(view, literal);
-  turn.set(literal.value + direction * literal.step);
+  void turn.set(literal.value + direction * literal.step);
   turn.end();
   return true;
 }
@@ -185,8 +209,9 @@ const openAtCursor: Command = view => {
   return true;
 };
 
-export function numberControls(): Extension {
+export function numberControls(limits: (at: number) => Promise<Limits | null>): Extension {
   return [
+    limitSource.of(limits),
     sliderField,
     EditorView.domEventHandlers({
       pointerdown(event, view) {

@@ -22,11 +22,7 @@ for (const ring of [1, 2]) {
 }
 
 /** An object, and its block's place in the text, which follows changes. */
-interface Placed {
-  object: SceneObject;
-  from: number;
-  to: number;
-}
+interface Placed { object: SceneObject; from: number; to: number }
 
 /** An object as it is called in sentences. */
 export function nameOf(object: SceneObject): string {

@@ -11,7 +11,7 @@ import { chromium } from "playwright-core";
 const PINHOLE = process.env.PINHOLE ?? "pinhole";
 
 /** What hosts keep of their user, here. */
-const STATE = mkdtempSync(path.join(tmpdir(), "pinhole-state-"));
+export const STATE = mkdtempSync(path.join(tmpdir(), "pinhole-state-"));
 process.on("exit", () => rmSync(STATE, { recursive: true, force: true }));
 
 export const FIGURE = readFileSync(new URL("../../../examples/figure_9_9.scn", import.meta.url), "utf8");
