@@ -70,9 +70,7 @@ class Session {
 function remembered(): string | null {
   try {
     return sessionStorage.getItem(REMEMBERED);
-  } catch {
-    return null;
-  }
+  } catch { return null; }
 }
 
 export const session = new Session();

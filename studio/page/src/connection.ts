@@ -114,13 +114,9 @@ export class Connection implements Transport {
     this.wire.send(text);
   }
 
-  subscribe(handler: (text: string) => void): void {
-    this.handlers.add(handler);
-  }
+  subscribe(handler: (text: string) => void): void { this.handlers.add(handler); }
 
-  unsubscribe(handler: (text: string) => void): void {
-    this.handlers.delete(handler);
-  }
+  unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
 
   /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the
    *  connection is lost. */

@@ -71,9 +71,7 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
 export function remembered(key: string): string | null {
   try {
     return localStorage.getItem(`pinhole-${key}`);
-  } catch {
-    return null;
-  }
+  } catch { return null; }
 }
 
 export function remember(key: string, value: string): void {

@@ -100,9 +100,7 @@ async function inStore<T>(act: (store: IDBObjectStore) => IDBRequest<T>): Promis
   const database = await settled(opening);
   try {
     return await settled(act(database.transaction("drafts", "readwrite").objectStore("drafts")));
-  } finally {
-    database.close();
-  }
+  } finally { database.close(); }
 }
 
 /** The drafts in this browser, the newest first. */

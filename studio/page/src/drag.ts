@@ -117,9 +117,7 @@ export class Drag {
     void this.run();
   }
 
-  by([dx, dy]: Point): void {
-    this.to([this.target[0] + dx, this.target[1] + dy]);
-  }
+  by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
   /** Ends when the last place of the hand has been reached. */
   end(): void {

@@ -22,9 +22,7 @@ class SceneFile implements WorkspaceFile {
   constructor(readonly uri: string, readonly languageId: string, public version: number,
     public doc: Text, readonly view: EditorView) {}
 
-  getView(): EditorView {
-    return this.view;
-  }
+  getView(): EditorView { return this.view; }
 }
 
 /** The one file that the page has open. */
@@ -93,9 +91,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
 }));
 
 /** A text with lines that end by LF, as the editor has them. */
-export function withLf(text: string): string {
-  return text.replace(/\r\n?/g, "\n");
-}
+export function withLf(text: string): string { return text.replace(/\r\n?/g, "\n"); }
 
 export class SceneEditor {
   readonly view: EditorView;
@@ -165,9 +161,7 @@ export class SceneEditor {
   }
 
   /** The text, with lines that end by LF. */
-  get text(): string {
-    return this.view.state.doc.toString();
-  }
+  get text(): string { return this.view.state.doc.toString(); }
 
   /** Asks the server about the scene, as `Connection.request` does. */
   request<Result>(method: string, params: object): Promise<Result> {
@@ -203,9 +197,7 @@ export class SceneEditor {
     this.tell("textDocument/didOpen", { textDocument });
   }
 
-  closeAside(uri: string): void {
-    this.tell("textDocument/didClose", { textDocument: { uri } });
-  }
+  closeAside(uri: string): void { this.tell("textDocument/didClose", { textDocument: { uri } }); }
 
   private tell(method: string, params: object): void {
     if (this.connection.state !== "open") return;
@@ -239,13 +231,9 @@ export class SceneEditor {
     }
   }
 
-  connected(): void {
-    this.client.connect(this.connection);
-  }
+  connected(): void { this.client.connect(this.connection); }
 
-  disconnected(): void {
-    this.client.disconnect();
-  }
+  disconnected(): void { this.client.disconnect(); }
 
   /** Moves the cursor to a place of the text, and shows it. */
   jump(position: Position): void {
@@ -272,7 +260,5 @@ export class SceneEditor {
 
   /** Tells the server what has changed. What changes without a connection is told with the whole
    *  text, when there is one. */
-  private sync(): void {
-    if (this.connection.state === "open") this.client.sync();
-  }
+  private sync(): void { if (this.connection.state === "open") this.client.sync(); }
 }

@@ -58,15 +58,11 @@ export class Files {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
     byId("open").hidden = isServed;
-    addEventListener("beforeunload", event => {
-      if (this.isUnsaved) event.preventDefault();
-    });
+    addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
   /** The name as people may see it. */
-  private get shownName(): string {
-    return visibleLine(this.name);
-  }
+  private get shownName(): string { return visibleLine(this.name); }
 
   get isUnsaved(): boolean {
     const { text } = this.editor;
@@ -75,9 +71,7 @@ export class Files {
   }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string {
-    return withEndsOf(this.seen ?? "", this.editor.text);
-  }
+  get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
 
   /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
   restore(draft: Draft): void {
@@ -124,9 +118,7 @@ export class Files {
       this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
-    } else {
-      this.ask(text);
-    }
+    } else { this.ask(text); }
     this.show();
   }
 
@@ -175,9 +167,7 @@ export class Files {
       else this.ask(answer.text);
     } catch (error) {
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
-    } finally {
-      clearTimeout(slow);
-    }
+    } finally { clearTimeout(slow); }
   }
 
   private saved(name: string, text: string): void {
@@ -261,9 +251,7 @@ export class Files {
       this.name = file.name;
       this.seen = text;
       this.untouched = null;
-    } catch {
-      this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning");
-    }
+    } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
   }
 

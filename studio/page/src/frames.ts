@@ -41,6 +41,7 @@ export class Frames {
   private generation = 0;
   private shown = 0;
   private size: [number, number] = [1280, 720];
+  private askedFor = this.size;
   private lastTook = Infinity;
   /** The generation whose picture the server has refused. */
   private refused = 0;
@@ -56,15 +57,19 @@ export class Frames {
   /** The size of the scene's picture, as soon as something else knows it. A picture that was
    *  refused is asked for anew: it may have been too large. */
   resized(size: [number, number]): void {
-    const isOther = size[0] !== this.size[0] || size[1] !== this.size[1];
     this.size = size;
+    this.retry();
+  }
+
+  private retry(): void {
+    const isOther = String(this.size) !== String(this.askedFor);
     if (isOther && this.refused === this.generation) this.changed();
   }
 
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
     if (this.editor.uri === "" || this.connection.state !== "open") return;
-    const [width, height] = this.size;
+    const [width, height] = (this.askedFor = this.size);
     const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE,
       Math.sqrt((width * height) / MOST_PIXELS), 1));
     const coarse = Math.max(least, Math.round(Math.sqrt((width * height) / COARSE_PIXELS)));
@@ -115,6 +120,7 @@ export class Frames {
         || this.connection.state !== "open") return false;
       this.refused = generation;
       this.told(error as Error);
+      this.retry();
       return false;
     }
   }

@@ -51,9 +51,7 @@ function grouped(past: Extension = []): Extension {
 }
 
 /** The history of changes: typing is grouped by pauses, gestures as a whole. */
-export function gestureHistory(): Extension {
-  return [kept.of(grouped()), touchedField];
-}
+export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
 /** Changes the text as if nothing had happened after some past; without one, as if nothing ever
  *  had. */

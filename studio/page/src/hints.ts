@@ -30,24 +30,16 @@ export const hintField = StateField.define<DecorationSet>({
 });
 
 class HintWidget extends WidgetType {
-  constructor(private readonly text: string) {
-    super();
-  }
+  constructor(private readonly text: string) { super(); }
 
-  override eq(other: HintWidget): boolean {
-    return other.text === this.text;
-  }
+  override eq(other: HintWidget): boolean { return other.text === this.text; }
 
-  toDOM(): HTMLElement {
-    return create("span", "hint", this.text);
-  }
+  toDOM(): HTMLElement { return create("span", "hint", this.text); }
 }
 
 class SwatchWidget extends WidgetType {
   constructor(private readonly hints: Hints, private readonly color: string,
-    private readonly written: string) {
-    super();
-  }
+    private readonly written: string) { super(); }
 
   override eq(other: SwatchWidget): boolean {
     return other.color === this.color && other.written === this.written;
@@ -86,9 +78,7 @@ class SwatchWidget extends WidgetType {
     return true;
   }
 
-  override ignoreEvent(): boolean {
-    return true;
-  }
+  override ignoreEvent(): boolean { return true; }
 }
 
 export class Hints {

@@ -56,6 +56,4 @@ function described({ object, point, distance, color }: Pick, at: Point): string 
   return `${nameOf(object)} at (${place}) · ${short(distance)} away · ${color} · ${pixel}`;
 }
 
-function short(value: number): string {
-  return String(Number(value.toPrecision(4)));
-}
+function short(value: number): string { return String(Number(value.toPrecision(4))); }

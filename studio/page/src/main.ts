@@ -110,9 +110,7 @@ connection.onState = state => {
   if (state === "open") {
     editor.connected();
     changed();
-  } else if (isConnected) {
-    editor.disconnected();
-  }
+  } else if (isConnected) { editor.disconnected(); }
   isConnected = state === "open";
 };
 

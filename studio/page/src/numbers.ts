@@ -91,9 +91,7 @@ class Turn {
     this.written = text;
   }
 
-  end(): void {
-    void this.bounds.then(() => this.gesture.end());
-  }
+  end(): void { void this.bounds.then(() => this.gesture.end()); }
 }
 
 const openSlider = StateEffect.define<number | null>();

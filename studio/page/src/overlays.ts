@@ -41,9 +41,7 @@ export class OverlayLayer {
     for (const layer of known) if (layers.includes(layer)) this.on.add(layer);
   }
 
-  isOn(layer: Layer): boolean {
-    return this.on.has(layer);
-  }
+  isOn(layer: Layer): boolean { return this.on.has(layer); }
 
   turn(layer: Layer, on: boolean): void {
     if (on) this.on.add(layer);
@@ -59,9 +57,7 @@ export class OverlayLayer {
   }
 
   /** Whether something is switched on that all objects have. */
-  get needsAll(): boolean {
-    return this.isOn("outlines") || this.isOn("vanishing");
-  }
+  get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
 
   select(selected: number | null): void {
     this.selected = selected;

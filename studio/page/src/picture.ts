@@ -54,14 +54,10 @@ export class Picture {
   }
 
   /** Whether there has been no picture yet. */
-  get isEmpty(): boolean {
-    return this.canvas.dataset["fineness"] === undefined;
-  }
+  get isEmpty(): boolean { return this.canvas.dataset["fineness"] === undefined; }
 
   /** A point of the stage, in screen pixels, from a point of the picture. */
-  toScreen([x, y]: Point): Point {
-    return [this.left + x * this.zoom, this.top + y * this.zoom];
-  }
+  toScreen([x, y]: Point): Point { return [this.left + x * this.zoom, this.top + y * this.zoom]; }
 
   toPicture([x, y]: Point): Point {
     return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
@@ -78,9 +74,7 @@ export class Picture {
   }
 
   /** The matrix that takes points of the picture to the stage, for SVG. */
-  get matrix(): string {
-    return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`;
-  }
+  get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
   /** Shows the whole picture, as large as the stage allows. */
   fit(): void {

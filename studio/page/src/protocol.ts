@@ -86,9 +86,7 @@ export type Saved = { ok: true } | { ok: false; text: string | null };
 
 /** An error that the server answered with. */
 export class Refusal extends Error {
-  constructor(readonly code: number, message: string) {
-    super(message);
-  }
+  constructor(readonly code: number, message: string) { super(message); }
 }
 
 /** Codes of answers that a newer question has made pointless. */

@@ -25,9 +25,7 @@ for (const ring of [1, 2]) {
 interface Placed { object: SceneObject; from: number; to: number }
 
 /** An object as it is called in sentences. */
-export function nameOf(object: SceneObject): string {
-  return object.name ?? object.kind;
-}
+export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
 
 export class Selection {
   /** The index of the object that is selected. */
@@ -94,7 +92,7 @@ export class Selection {
 
   private follow(): void {
     const { head } = this.editor.view.state.selection.main;
-    const touching = this.placed.filter(({ from, to }) => from <= head && head <= to);
+    const touching = this.placed.filter(it => it.from < it.to && it.from <= head && head <= it.to);
     // At the border of two it is the second one.
     const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
     const index = found?.object.index ?? null;

@@ -64,9 +64,7 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
         "warning");
       download(`${stem()}.${kind}`, fromBase64(bytes), type);
       status.say(`${stem()}.${kind} is downloaded.`);
-    } catch (error) {
-      status.say((error as Error).message, "warning");
-    }
+    } catch (error) { status.say((error as Error).message, "warning"); }
   };
   byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
   byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));

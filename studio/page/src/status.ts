@@ -40,9 +40,7 @@ export class Status {
   private readonly said = byId("said");
 
   /** Names what is under the pointer. */
-  point(text: string): void {
-    setText(this.pointed, text);
-  }
+  point(text: string): void { setText(this.pointed, text); }
 
   /** Says what has happened. */
   say(text: string, tone: "plain" | "warning" = "plain"): void {
@@ -51,9 +49,7 @@ export class Status {
   }
 
   /** The text has changed: what was said of the one before is not true any more. */
-  changed(): void {
-    if (this.said.dataset["tone"] !== "warning") this.say("");
-  }
+  changed(): void { if (this.said.dataset["tone"] !== "warning") this.say(""); }
 
   picture([width, height]: [number, number], fineness: Fineness): void {
     setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);

@@ -10,15 +10,11 @@ const BREAKS = /[\n\t\u2028\u2029]/g;
 const code = (character: string): string => `\\u{${character.codePointAt(0)?.toString(16)}}`;
 
 /** The text with such characters as `\u{202e}`. */
-export function visible(text: string): string {
-  return text.replace(INVISIBLE, code);
-}
+export function visible(text: string): string { return text.replace(INVISIBLE, code); }
 
 /** A name, or whatever else stands within one line: its line feeds and tabs are made visible,
  *  too. */
-export function visibleLine(text: string): string {
-  return visible(text).replace(BREAKS, code);
-}
+export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
 /** Shows a text in an element. It is never read as HTML. */
 export function setText(element: Element, text: string): void {
