@@ -24,28 +24,25 @@ pub(super) fn state_folder() -> Option<PathBuf> {
     Some(base.join("pinhole"))
 }
 
-/// A folder of this name for what is kept, which no other user can look into.
+/// Where the folder of this name is for what is kept, if the system has a place for it.
 #[cfg(feature = "studio")]
 pub fn kept_folder(name: &str) -> Option<PathBuf> {
-    let folder = state_folder()?.join(name);
+    Some(state_folder()?.join(name))
+}
+
+/// Keeps a text in a file of such a folder, which no other user can look into.
+#[cfg(feature = "studio")]
+pub fn keep(path: &Path, text: &str) -> io::Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(&folder).ok()?;
-    Some(folder)
-}
-
-/// Keeps a text in a file of such a folder.
-#[cfg(feature = "studio")]
-pub fn keep(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    write(
-        path,
-        Purpose::Within(folder),
-        &AtomicBool::new(false),
-        |file| file.write_all(text.as_bytes()),
-    )
+    builder.create(folder)?;
+    let purpose = Purpose::Within(folder);
+    write(path, purpose, &AtomicBool::new(false), |file| {
+        file.write_all(text.as_bytes())
+    })
 }
 
 /// Removes a file that is kept. It is no matter if there is none.

@@ -197,13 +197,15 @@ impl Conversation<'_> {
         let draft = is_first.then(|| file.draft()).flatten();
         self.known = version;
         let held = file.held().as_ref();
-        let params = json!({
+        let mut params = json!({
             "name": file.name(),
             "text": held.ok(),
             "reason": held.err(),
             "saved": file.path().is_some(),
-            "draft": draft,
         });
+        if let Some(draft) = draft {
+            params["draft"] = draft;
+        }
         drop(file);
         self.say(vec![
             Notification::new("studio/file".to_owned(), params).into(),

@@ -112,9 +112,17 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let alone = read(analysis, [&edits, &without_others]);
         match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found) => {
-                // The others may depend on the same numbers.
-                let whole = read(analysis, [&edits, &[]])?;
-                let also = others_changed(analysis, drag.object, [scene, &whole]);
+                // What stands in the block itself concerns no other one, which saves reading a long text.
+                let is_own = |edit: &Edit| {
+                    block.span.start <= edit.span.start && edit.span.end <= block.span.end
+                };
+                let also = match edits.iter().all(is_own) {
+                    true => Vec::new(),
+                    false => {
+                        let whole = read(analysis, [&edits, &[]])?;
+                        others_changed(analysis, drag.object, [scene, &whole])
+                    }
+                };
                 let value = |change: &Change| {
                     let after = found.value(change.name)?;
                     let is_new = after != change.from;

@@ -23,8 +23,7 @@ export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Takes the token out of the address, so that it is not shown, copied or kept in the history,
- *  and leaves all else; null if there is none. */
+/** Takes the token, and nothing else, out of the address; null if there is none. */
 export function takeToken(): string | null {
   const token = inAddress(TOKEN);
   if (token === null) return null;
@@ -35,12 +34,10 @@ export function takeToken(): string | null {
   return token;
 }
 
-/** What the host knows this tab by, as long as the tab lives: reloading keeps it, and another
- *  tab has its own. */
+/** What the host knows this tab by. Reloading keeps it, and another tab has its own. */
 class Session {
   token: string | null = null;
-  /** Whether the token comes from an address that was just opened, and not from the host or an
-   *  earlier load of the page. */
+  /** Whether the token comes from an address that was just opened. */
   isFresh = false;
 
   constructor() {

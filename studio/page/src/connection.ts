@@ -10,8 +10,7 @@ import { Refusal } from "./protocol";
 /** Something that carries texts. */
 interface Wire { send(text: string): void }
 
-/** Why there is no connection, and will be none before an address is opened that the host has
- *  printed. */
+/** Why there will be no connection before an address is opened that the host has printed. */
 export type Refused = "keyless" | "unknown" | "restarted" | "late" | "twice";
 
 /** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own
@@ -27,8 +26,7 @@ type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
 
 interface Waiting { resolve(result: unknown): void; reject(error: Error): void }
 
-/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of
- *  them the host is most likely gone. */
+/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 
 /** After so many milliseconds of silence the server is asked whether it lives, which it answers in
@@ -51,8 +49,7 @@ export class Connection implements Transport {
   /** Told when nothing has come back for long, and when something has again. */
   onHang: (isHanging: boolean) => void = () => {};
   onNotification: (method: string, params: unknown) => void = () => {};
-  /** Resolves as soon as the server has been told who we are, so that what is sent then comes
-   *  after all that the editor has sent before. */
+  /** Resolves once the server has been told who we are and all that was sent before. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
@@ -63,8 +60,7 @@ export class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Counts attempts to connect: of an older one nothing is heard any more. */
   private current = 0;
-  /** When something was heard last, when the server was asked whether it lives, and whether it was
-   *  said that it does not answer. */
+  /** When something was heard last, when the server was asked, and whether it was given up. */
   private heard = 0;
   private asked = 0;
   private hangs = false;
@@ -118,8 +114,7 @@ export class Connection implements Transport {
 
   unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
 
-  /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the
-   *  connection is lost. */
+  /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost. */
   async request<Result>(method: string, params: unknown): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);
@@ -207,8 +202,7 @@ export function webSocket(path: string): Connector {
   };
 }
 
-/** A web worker that runs the engine. It is open when it says its first word, after it has
- *  loaded the engine; one that fails is replaced. */
+/** A web worker that runs the engine, whose first word opens it. One that fails is replaced. */
 export function worker(path: string): Connector {
   return (opened, receive, closed) => {
     const engine = new Worker(new URL(path, location.href), { type: "module" });

@@ -69,8 +69,7 @@ export function changesDiagnostics(update: ViewUpdate): boolean {
     it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** The list of all that is wrong, which the button in the status line opens: each message leads
- *  to its place, and has its fixes. */
+/** The list of all that is wrong: each message leads to its place, and has its fixes. */
 export class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");

@@ -11,8 +11,7 @@ import type { Picture } from "./picture";
 import { isSuperseded, Refusal, type Along, type Dragged, type Point } from "./protocol";
 import { setText } from "./visible";
 
-/** What is held, and where it was seen at the press: a handle of an object; or, without an object,
- *  the camera. */
+/** What is held, and where it was seen at the press; without an object it is the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 /** Why a drag could not be done stays readable for so many milliseconds after it. */

@@ -8,8 +8,8 @@ import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint
 import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
   serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension, type Text } from
-  "@codemirror/state";
+import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension,
+  type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
@@ -60,12 +60,10 @@ class SceneWorkspace extends Workspace {
   }
 }
 
-/** Halves of surrogate pairs stand for no character; no file can hold them, and no message to
- *  the server. */
+/** Halves of surrogate pairs, which no file and no message can hold. */
 const HALVES = /\p{Surrogate}/gu;
 
-/** Has the character for what cannot be shown in the place of halves that are typed or pasted,
- *  as a file would. */
+/** Has the replacement character for such halves that are typed or pasted, as a file would. */
 const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   const changes: ChangeSpec[] = [];
   transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
@@ -75,8 +73,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** A brace that is typed where its block has one already, behind nothing but space, takes that one
- *  over: the editor has written it when the block was begun. */
+/** A brace that is typed takes over the one that its block has already, behind space alone. */
 const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
   const { doc } = view.state;
   const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
@@ -168,8 +165,7 @@ export class SceneEditor {
     return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** The same where an answer that does not come is not worth a message: it is null then, as it
-   *  is where the text has errors. */
+  /** The same; null where no answer comes, as it is where the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -212,8 +208,7 @@ export class SceneEditor {
       this.client.plugin(this.uri, "pinhole")) });
   }
 
-  /** Puts another text in place, changing no more than differs, so that the cursor stays where
-   *  it is. */
+  /** Puts another text in place. No more changes than differs, so that the cursor stays. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     const shorter = Math.min(old.length, text.length);
@@ -258,7 +253,6 @@ export class SceneEditor {
     return ChangeSet.of(edits.map(change), doc.length, "\n");
   }
 
-  /** Tells the server what has changed. What changes without a connection is told with the whole
-   *  text, when there is one. */
+  /** Tells the server what has changed; without a connection, it hears of it later. */
   private sync(): void { if (this.connection.state === "open") this.client.sync(); }
 }

@@ -30,12 +30,10 @@ const SLOW = 800;
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
-/** More lines than these are not compared one by one: the table has a place of two bytes for
- *  each pair of lines, 18 MB here. */
+/** More lines than these are not compared: the table has two bytes for each pair, 18 MB here. */
 const MOST_LINES = 3000;
 
-/** The host keeps a file of its own with the text as the page last saw it there; a static page
- *  has local files alone. */
+/** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
   /** Called when the file has got the page's text. */
@@ -48,8 +46,7 @@ export class Files {
   /** Whether the host's file is still to be made, under a name that Save asks for. */
   private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it.
-   *  Null for a file. */
+  /** The text that a new scene starts with, which is not worth saving; null for a file. */
   private untouched: string | null = null;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
@@ -118,7 +115,7 @@ export class Files {
       this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
-    } else { this.ask(text); }
+    } else this.ask(text);
     this.show();
   }
 
@@ -255,8 +252,7 @@ export class Files {
     this.show();
   }
 
-  /** Both the page and the file have changed: shows the difference, and asks. Whatever is
-   *  chosen, undo brings the other text back. */
+  /** Shows how page and file differ, and asks. Undo brings back what is not chosen. */
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), this.editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));

@@ -24,12 +24,10 @@ const COARSE_PIXELS = 320 * 180;
 const MOST_PIXELS = 16_000_000;
 const LONGEST_SIDE = 8192;
 
-/** While something is dragged, finer pictures wait for so many milliseconds: a hand that moves
- *  is heard of with every frame of the screen, 60 times a second. */
+/** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
 const HAND_RESTS = 20;
 
-/** Where the last finished picture took less than so many milliseconds, none is shown between it
- *  and the coarse one. */
+/** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
 const SOON = 200;
 
 export class Frames {
@@ -95,8 +93,7 @@ export class Frames {
     return this.editor.request("pinhole/frame", how);
   }
 
-  /** Shows a picture that was asked for. Says whether its text is still the newest, so that
-   *  finer ones are worth asking for. */
+  /** Shows a picture that was asked for. Says whether its text is still the newest. */
   private async present(generation: number, fineness: Fineness,
     answer: Promise<Frame | null>): Promise<boolean> {
     try {

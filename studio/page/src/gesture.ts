@@ -53,8 +53,7 @@ function grouped(past: Extension = []): Extension {
 /** The history of changes: typing is grouped by pauses, gestures as a whole. */
 export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
-/** Changes the text as if nothing had happened after some past; without one, as if nothing ever
- *  had. */
+/** Changes the text, and gives it the history that it had in the past, or a new one. */
 export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
   view.dispatch({ effects: kept.reconfigure([]) });
   view.dispatch(change);

@@ -116,8 +116,7 @@ export class Hints {
     editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
   }
 
-  /** Writes a picked colour in place of the one that begins at an offset, in the way it is
-   *  written there. */
+  /** Writes a picked colour over the one at an offset, in the way it is written there. */
   async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
     const { editor } = this;
     const { doc } = editor.view.state;

@@ -51,8 +51,8 @@ export class Hover {
 /** A sentence on what is seen at a point. */
 function described({ object, point, distance, color }: Pick, at: Point): string {
   const pixel = `pixel ${Math.floor(at[0])}, ${Math.floor(at[1])}`;
-  if (object === null || point === null || distance === null) return `background ${color} · ${pixel}`;
-  const place = point.map(short).join(", ");
+  const place = point?.map(short).join(", ");
+  if (!object || !place || distance === null) return `background ${color} · ${pixel}`;
   return `${nameOf(object)} at (${place}) · ${short(distance)} away · ${color} · ${pixel}`;
 }
 

@@ -73,7 +73,10 @@ const selection = new Selection(editor, picture, overlays);
 const outlines = new Outlines(editor, connection, frames, overlays, selection);
 const tools = new Tools(picture.stage, status);
 const bench = {
-  editor, frames, picture, along: () => tools.along, rested: () => void outlines.rested(),
+  editor, frames, picture, along: () => tools.along, rested: () => {
+    void outlines.rested();
+    rested();
+  },
 };
 new Pointers(bench, selection, tools, new Keys(bench, selection, tools, status));
 new Hover(editor, picture, overlays, status);
@@ -85,10 +88,15 @@ function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
   outlines.changed();
-  hints.changed();
   files.show();
-  drafts.changed();
+  // Nobody looks at these while a hand moves.
+  if (frames.dragging === null) rested();
   status.changed();
+}
+
+function rested(): void {
+  hints.changed();
+  drafts.changed();
 }
 
 /** Undo and Redo are offered where there is something. */
@@ -110,7 +118,7 @@ connection.onState = state => {
   if (state === "open") {
     editor.connected();
     changed();
-  } else if (isConnected) { editor.disconnected(); }
+  } else if (isConnected) editor.disconnected();
   isConnected = state === "open";
 };
 

@@ -2,7 +2,8 @@
 // opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
-import { Facet, StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
+import { Facet, StateEffect, StateField, type EditorState,
+  type Extension } from "@codemirror/state";
 import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type
   ViewUpdate } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
@@ -16,8 +17,7 @@ interface Literal { from: number; to: number; value: number; step: number }
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
-/** A minus sign that belongs to the number: nothing stands before it that it could subtract
- *  from. */
+/** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 function literalAt(state: EditorState, at: number): Literal | null {
@@ -135,7 +135,8 @@ function createSlider(view: EditorView): TooltipView {
     range.setAttribute("aria-label", `Value ${found.value}`);
     shown = found.value;
     offer(null);
-    void limitsOf(view, found).then(limits => found.value === shown && turn === null && offer(limits));
+    const isStill = () => found.value === shown && turn === null;
+    void limitsOf(view, found).then(limits => isStill() && offer(limits));
   };
   range.addEventListener("input", () => {
     const found = literal();

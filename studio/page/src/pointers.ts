@@ -100,7 +100,7 @@ export class Pointers {
     const at = picture.local(event);
     const other = [...this.places].find(([id]) => id !== event.pointerId)?.[1];
     if (other !== undefined) {
-      const distance = (one: Point) => Math.max(1, Math.hypot(one[0] - other[0], one[1] - other[1]));
+      const distance = ([x, y]: Point) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
       picture.zoomBy(distance(at) / distance(before), other);
       picture.panBy((at[0] - before[0]) / 2, (at[1] - before[1]) / 2);
     } else if (event.buttons === 4 || (this.keys.space && event.buttons === 1)) {

@@ -9,17 +9,13 @@ import type { OverlayLayer } from "./overlays";
 import type { Picture } from "./picture";
 import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
 
-/** Targets of pointers have so many screen pixels from middle to middle, at least. */
-const APART = 26;
+/** The middles of two targets are so many screen pixels apart, to the side or in height, at least. */
+const APART = 25;
 
-/** Where a handle goes, in steps of `APART`, whose place is taken by another one. */
-const RINGS: Point[] = [[0, 0]];
-for (const ring of [1, 2]) {
-  for (let i = 0; i < 8 * ring; i++) {
-    const angle = (i * Math.PI) / (4 * ring);
-    RINGS.push([ring * Math.cos(angle), -ring * Math.sin(angle)]);
-  }
-}
+/** Where a handle goes, from where it is, if that place is taken: the nearest first. */
+const ASIDE: Point[] = [];
+for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
+ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
 /** An object, and its block's place in the text, which follows changes. */
 interface Placed { object: SceneObject; from: number; to: number }
@@ -152,7 +148,7 @@ export class Selection {
 
 /** Where a handle is put that would lie on others: beside them. */
 function apart([x, y]: Point, taken: readonly Point[]): Point {
-  const isFree = ([x, y]: Point) => taken.every(it => Math.hypot(x - it[0], y - it[1]) >= APART);
-  const places = RINGS.map(([dx, dy]): Point => [x + dx * APART * 1.1, y + dy * APART * 1.1]);
-  return places.find(isFree) ?? [x, y];
+  const isFree = ([x, y]: Point) =>
+    taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
+  return ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).find(isFree) ?? [x, y];
 }

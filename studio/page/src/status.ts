@@ -70,8 +70,7 @@ export class Status {
     if (isHanging) setText(byId("connection"), HANGS + KEPT);
   }
 
-  /** Says whether there is a connection, and if not, what to do and what becomes of the text, if
-   *  there is one. */
+  /** Says whether there is a connection, and if not, what becomes of the text. */
   connection(state: ConnectionState, hasText: boolean): void {
     const isKept = hasText && state !== "connecting";
     byId("connection-bar").hidden = state === "open";

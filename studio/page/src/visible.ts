@@ -12,8 +12,7 @@ const code = (character: string): string => `\\u{${character.codePointAt(0)?.toS
 /** The text with such characters as `\u{202e}`. */
 export function visible(text: string): string { return text.replace(INVISIBLE, code); }
 
-/** A name, or whatever else stands within one line: its line feeds and tabs are made visible,
- *  too. */
+/** A name, or another text of one line: line feeds and tabs are made visible, too. */
 export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
 /** Shows a text in an element. It is never read as HTML. */
