@@ -2,7 +2,6 @@
 //! written to, or that something is mounted on.
 
 use std::{
-    env,
     fs::{self, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
@@ -13,6 +12,7 @@ use tempfile::{Builder, NamedTempFile};
 use super::{
     kind::{self, Kind, folder, without_waiting},
     original::Original,
+    state::state_folder,
     words::in_words,
 };
 
@@ -107,20 +107,4 @@ fn copy_beside(path: &Path) -> Option<NamedTempFile> {
         fs::create_dir_all(&folder).ok()?;
         copy_in(&folder)
     })
-}
-
-/// The folder for what programs keep of a user, where the system has one.
-fn state_folder() -> Option<PathBuf> {
-    let absolute = |name| {
-        env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|p| p.is_absolute())
-    };
-    let base = match cfg!(windows) {
-        true => absolute("LOCALAPPDATA")?,
-        false => {
-            absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
-        }
-    };
-    Some(base.join("pinhole"))
 }

@@ -1,6 +1,7 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
+import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
+  Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
@@ -14,15 +15,18 @@ interface CodeAction {
   edit: { changes?: Record<string, TextEdit[]> };
 }
 
-/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */
+/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip
+ *  closes when there are new diagnostics. */
 export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
-  if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
+  if (file === null || file.doc !== doc || (published.version !== undefined
+    && published.version !== file.version)) return;
   // A drag is told of every text that nothing is wrong with it.
   if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   const isRight = published.diagnostics.length === 0;
-  const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction", { range: editor.whole, context: { diagnostics: [] } });
+  const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
+    { range: editor.whole, context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
   if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
 }
@@ -53,17 +57,19 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
     name: visible(action.title),
     apply(view) {
       // The edits are for the text that was judged; a newer one is being judged now.
-      if (view.state.doc === doc) view.dispatch({ changes: editor.changes(edits), userEvent: "input.fix" });
+      if (view.state.doc !== doc) return;
+      view.dispatch({ changes: editor.changes(edits), userEvent: "input.fix" });
     },
   };
 }
 
 /** Whether an update of the editor brings other diagnostics, or moves them. */
 export function changesDiagnostics(update: ViewUpdate): boolean {
-  return update.docChanged || update.transactions.some(it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
+  return update.docChanged || update.transactions.some(
+    it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** The list of all that is wrong, which the button in the status line opens: each message leads to its place, and has its fixes. */
+/** The list of all that is wrong: each message leads to its place, and has its fixes. */
 export class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");
@@ -85,12 +91,16 @@ export class Problems {
         view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
         view.focus();
       };
-      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`, "place", jump));
-      for (const { name, apply } of diagnostic.actions ?? []) item.append(createButton(name, "fix", () => apply(view, from, to)));
+      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
+        "place", jump));
+      for (const { name, apply } of diagnostic.actions ?? []) {
+        item.append(createButton(name, "fix", () => apply(view, from, to)));
+      }
       items.push(item);
     });
     const count = items.length;
-    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`);
+    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem"
+      : `${count} problems`);
     this.button.toggleAttribute("data-some", count > 0);
     // While it is closed nobody sees it: a drag changes the text many times a second.
     this.list.replaceChildren(...(this.list.hidden ? [] : items));

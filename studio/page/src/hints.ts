@@ -1,4 +1,5 @@
-// What the editor shows between the letters: values that the server works out, and a swatch before each colour, which opens a picker.
+// What the editor shows between the letters: values that the server works out, and a swatch before
+// each colour, which opens a picker.
 
 import { StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type DecorationSet } from "@codemirror/view";
@@ -7,22 +8,11 @@ import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
 import type { Position, Range, TextEdit } from "./protocol";
 
-interface InlayHint {
-  position: Position;
-  label: string;
-}
+interface InlayHint { position: Position; label: string }
 
-interface Color {
-  red: number;
-  green: number;
-  blue: number;
-  alpha: number;
-}
+interface Color { red: number; green: number; blue: number; alpha: number }
 
-interface ColorInformation {
-  range: Range;
-  color: Color;
-}
+interface ColorInformation { range: Range; color: Color }
 
 /** How long the text has to rest before hints are asked for, in milliseconds. */
 const REST = 150;
@@ -40,23 +30,16 @@ export const hintField = StateField.define<DecorationSet>({
 });
 
 class HintWidget extends WidgetType {
-  constructor(private readonly text: string) {
-    super();
-  }
+  constructor(private readonly text: string) { super(); }
 
-  override eq(other: HintWidget): boolean {
-    return other.text === this.text;
-  }
+  override eq(other: HintWidget): boolean { return other.text === this.text; }
 
-  toDOM(): HTMLElement {
-    return create("span", "hint", this.text);
-  }
+  toDOM(): HTMLElement { return create("span", "hint", this.text); }
 }
 
 class SwatchWidget extends WidgetType {
-  constructor(private readonly hints: Hints, private readonly color: string, private readonly written: string) {
-    super();
-  }
+  constructor(private readonly hints: Hints, private readonly color: string,
+    private readonly written: string) { super(); }
 
   override eq(other: SwatchWidget): boolean {
     return other.color === this.color && other.written === this.written;
@@ -95,9 +78,7 @@ class SwatchWidget extends WidgetType {
     return true;
   }
 
-  override ignoreEvent(): boolean {
-    return true;
-  }
+  override ignoreEvent(): boolean { return true; }
 }
 
 export class Hints {
@@ -122,32 +103,39 @@ export class Hints {
     // A newer text or connection brings new ones.
     if (hints === null || colors === null || editor.view.state.doc !== doc) return;
     const decorations = [
-      ...hints.map(({ position, label }) => Decoration.widget({ widget: new HintWidget(label), side: 1 }).range(editor.offset(position))),
+      ...hints.map(({ position, label }) =>
+        Decoration.widget({ widget: new HintWidget(label), side: 1 })
+        .range(editor.offset(position))),
       ...colors.map(({ range, color }) => {
         const from = editor.offset(range.start);
-        const widget = new SwatchWidget(this, hex(color), doc.sliceString(from, editor.offset(range.end)));
+        const widget = new SwatchWidget(this, hex(color),
+          doc.sliceString(from, editor.offset(range.end)));
         return Decoration.widget({ widget, side: -1 }).range(from);
       }),
     ];
     editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
   }
 
-  /** Writes a picked colour in place of the one that begins at an offset, in the way it is written there. */
+  /** Writes a picked colour over the one at an offset, in the way it is written there. */
   async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
     const { editor } = this;
     const { doc } = editor.view.state;
-    const written = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
-    const line = doc.lineAt(offset);
-    const start = { line: line.number - 1, character: offset - line.from };
+    const written = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/.exec(
+      doc.sliceString(offset, offset + 200))?.[0] ?? "";
+    const start = editor.position(offset);
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", { color, range });
-    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways?.[0];
-    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
+    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>(
+      "textDocument/colorPresentation", { color, range });
+    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
+      ?? ways?.[0];
+    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(
+      editor.changes([way.textEdit]));
   }
 }
 
 function hex({ red, green, blue }: Color): string {
-  return `#${[red, green, blue].map(it => Math.round(it * 255).toString(16).padStart(2, "0")).join("")}`;
+  const channel = (value: number) => Math.round(value * 255).toString(16).padStart(2, "0");
+  return `#${[red, green, blue].map(channel).join("")}`;
 }

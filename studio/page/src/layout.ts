@@ -1,4 +1,5 @@
-// The layout: the divider between text and picture, the zoom buttons, the menus, and the list of keys.
+// The layout: the divider between text and picture, the zoom buttons, the menus, and the list of
+// keys.
 
 import { byId, create, followPointer, remember, remembered } from "./dom";
 import { LAYERS, type Layer, type OverlayLayer } from "./overlays";
@@ -18,7 +19,8 @@ export function layOut(picture: Picture): void {
     divider.setAttribute("aria-valuenow", String(bounded));
     remember("text-share", String(bounded));
   };
-  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal" : "vertical");
+  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal"
+    : "vertical");
   isNarrow.addEventListener("change", orient);
   orient();
   share(Number(remembered("text-share") ?? 42));
@@ -27,7 +29,8 @@ export function layOut(picture: Picture): void {
     event.preventDefault();
     const { left, top, width, height } = panes.getBoundingClientRect();
     // On narrow screens the picture is above the text.
-    const move = ({ clientX, clientY }: PointerEvent) => share(isNarrow.matches ? 100 - ((clientY - top) / height) * 100 : ((clientX - left) / width) * 100);
+    const move = ({ clientX, clientY }: PointerEvent) =>
+      share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
     followPointer(event, move, () => {});
   });
   divider.addEventListener("keydown", event => {
@@ -54,7 +57,8 @@ export function layOut(picture: Picture): void {
       menu.open = false;
       menu.querySelector("summary")?.focus();
     });
-    for (const button of menu.querySelectorAll("button")) button.addEventListener("click", () => (menu.open = false));
+    const close = () => (menu.open = false);
+    for (const button of menu.querySelectorAll("button")) button.addEventListener("click", close);
   }
 }
 

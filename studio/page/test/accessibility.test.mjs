@@ -26,8 +26,11 @@ for (const colorScheme of ["dark", "light"]) {
       await page.waitForSelector(".hint");
       await audit(page, "at first");
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the page");
-      await page.selectOption("#objects", { label: "Ball (sphere)" });
-      await page.waitForSelector(".handle");
+      for (const label of ["Sail (triangle)", "Crate (box)", "checkerboard (19)", "Ball (sphere)"]) {
+        await page.selectOption("#objects", { label });
+        await page.waitForSelector(`.handle[aria-label^="${label.split(" ")[0]}"]`);
+        await audit(page, `with ${label} selected`);
+      }
       await page.click("summary:text('Show')");
       await audit(page, "with handles and a menu");
       await page.keyboard.press("Escape");

@@ -142,6 +142,7 @@ test("every handle moves its object, and every tool the camera, and nothing else
   for (const [object, names] of Object.entries(handles)) {
     const option = await page.locator("#objects option", { hasText: object }).getAttribute("value");
     await page.selectOption("#objects", option);
+    await page.waitForSelector(`.handle[data-handle=${names[0]}][data-object="${option}"]`);
     assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
     for (const name of names) {
       await page.focus(`.handle[data-handle=${name}]`);

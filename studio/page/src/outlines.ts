@@ -1,0 +1,64 @@
+// Asks for what is drawn over the picture: of the newest text, and no more than is shown.
+
+import type { Connection } from "./connection";
+import type { SceneEditor } from "./editor";
+import type { Frames } from "./frames";
+import type { OverlayLayer } from "./overlays";
+import type { Overlays, SceneObject } from "./protocol";
+import type { Selection } from "./selection";
+
+/** How long the text has to rest before its objects are listed, in milliseconds. */
+const REST = 150;
+
+export class Outlines {
+  private asking = false;
+  private outdated = false;
+  private timer = 0;
+
+  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
+    private readonly frames: Frames, private readonly overlays: OverlayLayer,
+    private readonly selection: Selection) {}
+
+  /** The text has changed, or the server. The coarse picture comes first. */
+  changed(): void {
+    void this.frames.coarse.then(() => this.refresh());
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.rested(), REST);
+  }
+
+  /** The names and places of the objects, once nothing moves any more. */
+  async rested(): Promise<void> {
+    const { editor, frames, selection } = this;
+    const { doc } = editor.view.state;
+    if (frames.dragging !== null || this.connection.state !== "open") return;
+    const about = { object: selection.index };
+    const objects = await editor.ask<SceneObject[]>("pinhole/objects", about);
+    if (objects !== null && editor.view.state.doc === doc) selection.list(objects);
+  }
+
+  async refresh(): Promise<void> {
+    const { connection, editor, frames, overlays, selection } = this;
+    this.outdated = true;
+    if (this.asking) return;
+    this.asking = true;
+    while (this.outdated && connection.state === "open") {
+      this.outdated = false;
+      const { doc } = editor.view.state;
+      const shown = [selection.index, overlays.hovered].filter(it => it !== null);
+      const needsNone = shown.length === 0 && !overlays.needsAny;
+      if (frames.dragging !== null && needsNone) continue;
+      const only = overlays.needsAll ? null : shown;
+      const about = { object: selection.index, only };
+      const answer = await editor.ask<Overlays>("pinhole/overlays", about);
+      // A text with errors has the last good picture, which nothing can be taken hold of in.
+      overlays.isTrue = answer !== null;
+      if (answer !== null && editor.view.state.doc === doc) {
+        overlays.data = answer;
+        frames.resized(answer.size);
+      }
+      overlays.draw();
+      selection.draw();
+    }
+    this.asking = false;
+  }
+}
