@@ -145,7 +145,7 @@ fn no_error_carries_much_of_a_file() {
             .chars()
             .map(|c| c as u8)
             .collect();
-        let said = pinhole::film::read_picture(&bytes).unwrap_err().to_string();
+        let said = read_picture(&bytes).unwrap_err().to_string();
         assert!(said.chars().count() <= 300, "{head}: {said}");
     }
 }
