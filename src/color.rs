@@ -135,3 +135,11 @@ mod tests {
         }
     }
 }
+
+/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be another colour from 0 to 255.
+pub fn are_shares(parts: &[&str]) -> bool {
+    let separates = |c: char| c == ',' || c.is_whitespace();
+    let parts = parts.iter().flat_map(|part| part.split(separates));
+    let mut parts = parts.filter(|part| !part.is_empty());
+    parts.all(|part| part.parse().is_ok_and(|part: f64| part <= 1.0))
+}

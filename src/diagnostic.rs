@@ -10,7 +10,7 @@ mod report;
 #[cfg(any(feature = "cli", feature = "report"))]
 mod visible;
 
-pub use fix::{Edit, Fix, apply};
+pub use fix::{Applicability, Edit, Fix, apply};
 pub use problems::{MOST_PROBLEMS, Problems};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};
@@ -116,7 +116,11 @@ pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
             json["text"] = edit.text.as_str().into();
             json
         });
-        json!({ "title": fix.title, "edits": edits.collect::<Vec<_>>() })
+        json!({
+            "title": fix.title,
+            "applicability": fix.applicability.word(),
+            "edits": edits.collect::<Vec<_>>(),
+        })
     });
     json!({
         "file": sources.file.name(),

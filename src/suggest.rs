@@ -47,6 +47,28 @@ pub fn nearest_name<'c>(
     }
 }
 
+/// Whether no other candidate is as near to what was written as this one, which is the nearest. A name of other digits is another
+/// name, and words that stand apart are one only if they have its letters.
+pub fn is_only_near<'c>(
+    written: &str,
+    near: &str,
+    candidates: impl IntoIterator<Item = &'c str>,
+) -> bool {
+    let written = written.to_ascii_lowercase();
+    let slips = |name: &str| osa_distance(&written, &name.to_ascii_lowercase());
+    let least = slips(near);
+    let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
+    let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
+    let near_letters = letters(near).to_ascii_lowercase();
+    if digits(&written) != digits(near)
+        || (written.contains(char::is_whitespace) && letters(&written) != near_letters)
+    {
+        return false;
+    }
+    let mut candidates = candidates.into_iter();
+    least == 0 || candidates.all(|other| other == near || slips(other) > least)
+}
+
 /// Apart from what is generic, so that it is compiled once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
     // A name that nobody would mistype so: comparing it would only take long.

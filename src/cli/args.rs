@@ -145,9 +145,15 @@ pub struct CheckArgs {
     /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Apply the first fix of each error that has one
+    /// Apply the safe fixes of errors: those that keep all that was written and have one meaning
     #[arg(long)]
     pub fix: bool,
+    /// With --fix, apply also fixes that choose among meanings, or remove or change something
+    #[arg(long = "unsafe", requires = "fix")]
+    pub unsafe_fixes: bool,
+    /// With --fix, print the changes as a unified diff, and write nothing
+    #[arg(long, requires = "fix")]
+    pub diff: bool,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]

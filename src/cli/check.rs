@@ -9,10 +9,11 @@ use super::{
     input::{Input, change, check_standard, is_standard},
     interrupt::Interrupt,
     output,
+    unified::unified_diff,
 };
 use crate::{
-    diagnostic::{self, visible_line},
-    scene,
+    diagnostic::{self, Applicability, visible_line},
+    scene::{self, Fixed},
     source::Source,
 };
 
@@ -24,6 +25,12 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         let hint = "the text of `-` goes to standard output itself";
         return Err(Trouble(format!(
             "--fix and --format json do not go together here: {hint}"
+        )));
+    }
+    if args.diff && is_json {
+        let hint = "both go to standard output";
+        return Err(Trouble(format!(
+            "--diff and --format json do not go together: {hint}"
         )));
     }
     Ok(each(&args.scenes, interrupt, |path| {
@@ -42,8 +49,17 @@ fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, T
 /// Fixes the errors of a file, and says what was done.
 fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, Trouble> {
     let (mut input, original) = Input::to_change(path, &args.overrides, "--fix")?;
-    let fixed = scene::fix_all(&input.sources);
+    let most = match args.unsafe_fixes {
+        true => Applicability::Unsafe,
+        false => Applicability::Safe,
+    };
+    let fixed = scene::fix_all(&input.sources, most);
     match &original {
+        _ if args.diff => {
+            let name = visible_line(input.sources.file.name());
+            let changes = unified_diff(&name, input.sources.file.text(), &fixed.text);
+            output::to_programs(changes.as_bytes())?;
+        }
         None => output::to_programs(fixed.text.as_bytes())?,
         Some(original) if fixed.text != input.sources.file.text() => {
             change(path, original, &fixed.text, interrupt)?;
@@ -57,10 +73,37 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, 
         let name = visible_line(&name);
         output::to_people(&format!("{name}:{line}:{column}: {title}\n"));
     }
+    output::to_people(&held_back(&visible_line(&name), &fixed));
     if !fixed.done.is_empty() {
         input.sources.file = Source::from_text(name, fixed.text);
     }
     Ok(input)
+}
+
+/// What was not applied, and how it is had.
+fn held_back(name: &str, fixed: &Fixed) -> String {
+    let mut text = String::new();
+    let fixes = |count, one, more| match count {
+        1 => format!("{name}: 1 fix {one}"),
+        _ => format!("{name}: {count} fixes {more}"),
+    };
+    if fixed.held_back > 0 {
+        let which = fixes(
+            fixed.held_back,
+            "is held back, as it chooses among meanings, or removes or changes something",
+            "are held back, as they choose among meanings, or remove or change something",
+        );
+        text += &format!("{which}; `--fix --unsafe` applies such fixes\n");
+    }
+    if fixed.placeholders > 0 {
+        let which = fixes(
+            fixed.placeholders,
+            "would make up a value",
+            "would make up values",
+        );
+        text += &format!("{which}, and no command applies such fixes: write your own\n");
+    }
+    text
 }
 
 fn report(input: &Input, format: Format) -> Result<Status, Trouble> {

@@ -26,13 +26,17 @@ pub const CHECK_EXAMPLES: &str = "\
 Examples:
   pinhole check figure.scn
   pinhole check *.scn --format json              one line for each problem
-  pinhole check figure.scn --fix                 and correct what can be corrected
+  pinhole check figure.scn --fix                 and correct what can be corrected safely
+  pinhole check figure.scn --fix --unsafe        and what has several meanings, in the likeliest one
+  pinhole check figure.scn --fix --diff          and show the changes instead of writing them
 
---fix applies the first fix of each error that has one, again until nothing changes, says what it did, and reports what is \
-left. A file is written whole or not at all; with -, the text goes to standard output.
+Fixes are of three kinds. A safe one keeps all that was written, and there is one meaning: --fix applies these, again until \
+nothing changes, says what it did and how many fixes it held back, and reports what is left. An unsafe one chooses among \
+meanings, or removes or changes something: it takes --unsafe, too. A placeholder makes up a value, and no command applies \
+it. A file is written whole or not at all; with -, the text goes to standard output.
 
 JSON, an object a line: file, severity, code, message, help, labels [{offset, length, line, column, end_line, \
-end_column, message}], fixes [{title, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
+end_column, message}], fixes [{title, applicability, edits [{offset, length, text}]}]. The first label is the place to jump to. A fix \
 is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
 was. A label or an edit within a --set argument has a file of its own. Of a file with more than 1000 problems the last line says how many more there are.";
 

@@ -34,6 +34,7 @@ mod speed;
 #[cfg(feature = "studio")]
 mod studio;
 mod thumbnails;
+mod unified;
 #[cfg(feature = "preview")]
 mod watch;
 

@@ -2,11 +2,43 @@
 
 use crate::source::{SourceId, Sources, Span};
 
+/// What a fix does to what the author wrote, and so who may apply it. The later ones include what the earlier ones may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Applicability {
+    /// All that was written stays, and there is one plausible meaning: it can be applied without being asked.
+    Safe,
+    /// One of several meanings is chosen, or something that was written is removed or changed.
+    Unsafe,
+    /// A value is made up, which the author is to replace.
+    Placeholder,
+}
+
+impl Applicability {
+    /// Safe or not.
+    pub const fn safe_if(is_safe: bool) -> Self {
+        match is_safe {
+            true => Self::Safe,
+            false => Self::Unsafe,
+        }
+    }
+
+    /// Its word in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Safe => "safe",
+            Self::Unsafe => "unsafe",
+            Self::Placeholder => "placeholder",
+        }
+    }
+}
+
 /// One way out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
     /// What it does, as a request: "write `30deg`".
     pub title: String,
+    /// Who may apply it.
+    pub applicability: Applicability,
     /// What has to be changed; the places do not overlap.
     pub edits: Vec<Edit>,
 }
@@ -21,7 +53,7 @@ pub struct Edit {
 }
 
 impl Fix {
-    /// A way out that takes these edits.
+    /// A way out that takes these edits. It is unsafe unless whoever makes it says otherwise.
     pub fn new(title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Self {
         Self::sorted(title.into(), edits.into_iter().collect())
     }
@@ -38,7 +70,44 @@ impl Fix {
                 span.end = span.end.max(span.start);
             }
         }
-        Self { title, edits }
+        Self {
+            title,
+            applicability: Applicability::Unsafe,
+            edits,
+        }
+    }
+
+    /// The same with another applicability.
+    pub fn being(self, applicability: Applicability) -> Self {
+        Self {
+            applicability,
+            ..self
+        }
+    }
+
+    /// The same, which keeps all that was written and has one meaning.
+    pub fn safe(self) -> Self {
+        self.being(Applicability::Safe)
+    }
+
+    /// The same, whose value is made up.
+    pub fn placeholder(self) -> Self {
+        self.being(Applicability::Placeholder)
+    }
+
+    /// Makes it unsafe if it takes a comment of the text away with something else, or joins two words.
+    pub fn mind(&mut self, sources: &Sources) {
+        let mut edits = self.edits.iter();
+        if self.is_safe()
+            && edits.any(|edit| edit.is_careless(sources.get(edit.span.source).text()))
+        {
+            self.applicability = Applicability::Unsafe;
+        }
+    }
+
+    /// Whether it can be applied without being asked.
+    pub fn is_safe(&self) -> bool {
+        self.applicability == Applicability::Safe
     }
 
     /// Writes something else in a place; the title is what is written.
@@ -183,6 +252,31 @@ impl Edit {
             false => end,
         };
         Self::new(Span::new(source, outer.len(), end), text)
+    }
+}
+
+impl Edit {
+    /// Whether it takes a comment away with something else, or joins two words.
+    fn is_careless(&self, text: &str) -> bool {
+        let is_comment = |sign: &str| {
+            let rest = |text: &str| text.find(sign).map(|at| text.len() - at - sign.len());
+            let taken = rest(text.get(self.span.range()).unwrap_or_default());
+            taken.is_some_and(|rest| rest > 0) && !self.text.contains(sign)
+        };
+        let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '#');
+        let before = text.get(..self.span.start).unwrap_or_default();
+        let after = text.get(self.span.end..).unwrap_or_default();
+        let taken = text.get(self.span.range()).unwrap_or_default();
+        let joins = |middle: &str| match middle.is_empty() {
+            true => [before.ends_with(is_word) && after.starts_with(is_word); 2],
+            false => [
+                before.ends_with(is_word) && middle.starts_with(is_word),
+                middle.ends_with(is_word) && after.starts_with(is_word),
+            ],
+        };
+        let (old, new) = (joins(taken), joins(&self.text));
+        ["//", "/*", "# ", "--"].into_iter().any(is_comment)
+            || (0..2).any(|side| new[side] && !old[side])
     }
 }
 

@@ -1,11 +1,14 @@
 //! Changes of the text: the ways out of diagnostics, and the canonical layout.
 
+use std::ops::Range;
+
 use super::{analysis::Analysis, tokens::file};
 use crate::{
-    diagnostic::{Diagnostic, Edit, Fix},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix},
     format::format_parsed,
     scene,
     source::{SourceId, Span},
+    syntax::tokens::{Lexer, TokenKind},
 };
 
 /// The ways out of the problems that a range touches, each with its problem. A problem counts where its first place is: the place
@@ -29,11 +32,41 @@ pub fn fixes<'a>(
     })
 }
 
+/// Where the values stand that the author is to replace, in a text that a placeholder writes: numbers and lists, or all of it.
+pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
+    let mut values: Vec<Range<usize>> = Vec::new();
+    let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);
+    loop {
+        let token = lexer.token();
+        if token.kind == TokenKind::End {
+            break;
+        }
+        let word = written.get(token.start..token.end);
+        match values.last_mut() {
+            Some(last) if open > 0 => last.end = token.end,
+            _ if word == Some("(") || token.kind == TokenKind::Number => {
+                values.push(token.start..token.end);
+            }
+            _ => {}
+        }
+        match word {
+            Some("(") => open += 1,
+            Some(")") => open = open.saturating_sub(1),
+            _ => {}
+        }
+    }
+    if values.is_empty() {
+        let start = written.len() - written.trim_start().len();
+        values.push(start..written.trim_end().len().max(start));
+    }
+    values
+}
+
 /// All that can be put right without being asked, as one change; none if nothing can.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
-    let fixed = scene::fix_all(analysis.model.sources());
+    let fixed = scene::fix_all(analysis.model.sources(), Applicability::Safe);
     let edit = change(analysis.text(), &fixed.text);
-    (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed", edit))
+    (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed safely", edit).safe())
 }
 
 /// What leads to the canonical layout; none if the text has mistakes of syntax.

@@ -21,7 +21,7 @@ mod symbols;
 mod tokens;
 pub mod viewport;
 
-pub use actions::{fix_all, fixes, formatting};
+pub use actions::{fix_all, fixes, formatting, made_up_values};
 pub use analysis::Analysis;
 pub use colors::{Swatch, presentations, swatches};
 pub use completion::{Completion, CompletionKind, Piece, completions};

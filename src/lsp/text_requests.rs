@@ -8,7 +8,7 @@ use super::{
     params::{self, Answer, Refusal},
 };
 use crate::{
-    diagnostic::Edit,
+    diagnostic::{Diagnostic, Edit, Fix},
     editor::{self, Analysis},
 };
 
@@ -117,7 +117,8 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
     }
     // Beside a fix it is offered where there are others.
     let all = analysis.diagnostics().iter();
-    let is_more = !actions.is_empty() && all.filter(|it| !it.fixes.is_empty()).count() > 1;
+    let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
+    let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;
     if is_more || is_wanted(&["source", FIX_ALL]) {
         actions.extend(editor::fix_all(analysis).map(|fix| converter.action(&fix, None)));
     }

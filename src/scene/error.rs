@@ -1,7 +1,7 @@
 //! How problems of meaning are written where they arise.
 
 use crate::{
-    diagnostic::{Diagnostic, Fix, Label, Severity},
+    diagnostic::{Applicability, Diagnostic, Fix, Label, Severity},
     source::Span,
 };
 
@@ -58,9 +58,11 @@ impl Diagnostic {
     pub(super) fn writing<S: Into<String>>(
         self,
         span: Span,
+        applicability: Applicability,
         texts: impl IntoIterator<Item = S>,
     ) -> Self {
-        self.fixes(texts.into_iter().map(|text| Fix::write(span, text)))
+        let texts = texts.into_iter();
+        self.fixes(texts.map(|text| Fix::write(span, text).being(applicability)))
     }
 
     /// Whether it has this code.

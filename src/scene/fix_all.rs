@@ -1,10 +1,10 @@
-//! All that can be put right without being asked: the first fix of each error, again until nothing changes.
+//! All that can be put right at once: the first fix of each error that may be applied, again until nothing changes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::lower::read;
 use crate::{
-    diagnostic::{Diagnostic, Edit, Fix, apply},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, apply},
     source::{Place, Source, SourceId, Sources},
 };
 
@@ -15,6 +15,10 @@ pub struct Fixed {
     pub text: String,
     /// What was done, in order.
     pub done: Vec<Done>,
+    /// Number of errors left whose fixes choose among meanings, or remove or change something.
+    pub held_back: usize,
+    /// Number of errors left whose fixes only make up a value.
+    pub placeholders: usize,
 }
 
 /// A fix that was applied.
@@ -26,8 +30,10 @@ pub struct Done {
     pub title: String,
 }
 
-/// Fixes the errors of a file. Those in arguments stay, and warnings are not touched: what they tell of may be meant.
-pub fn fix_all(sources: &Sources) -> Fixed {
+/// Fixes the errors of a file by safe fixes, or by unsafe ones, too; values are never made up. Errors in arguments stay, and
+/// warnings are not touched: what they tell of may be meant.
+pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
+    let most = most.min(Applicability::Unsafe);
     /// A fix can show what another mistake hid; so many in a row are more than any text has.
     const ROUNDS: usize = 1000;
     /// So many bytes are read for it at most: of long texts with more mistakes than a reading
@@ -45,7 +51,7 @@ pub fn fix_all(sources: &Sources) -> Fixed {
         false => 0,
     };
     for _ in 0..rounds {
-        let round = Round::new(&sources, &problems, &staying);
+        let round = Round::new(&sources, &problems, &staying, most);
         let text = apply(&round.fix, SourceId::File, sources.file.text());
         if round.done.is_empty() || seen.contains(&text) {
             break;
@@ -68,9 +74,18 @@ pub fn fix_all(sources: &Sources) -> Fixed {
         (sources, problems) = (after, problems_after);
         done.extend(round.done);
     }
+    let errors = problems.iter().filter(|problem| problem.is_error());
+    let first = |problem: &Diagnostic| problem.fixes.iter().map(|fix| fix.applicability).min();
+    let left: Vec<Applicability> = errors.filter_map(first).collect();
+    let count = |kind| left.iter().filter(|&&other| other == kind).count();
     Fixed {
         text: sources.file.text().to_owned(),
         done,
+        held_back: match most {
+            Applicability::Safe => count(Applicability::Unsafe),
+            _ => 0,
+        },
+        placeholders: count(Applicability::Placeholder),
     }
 }
 
@@ -104,14 +119,20 @@ struct Round {
 }
 
 impl Round {
-    fn new(sources: &Sources, problems: &[Diagnostic], staying: &HashSet<Problem>) -> Self {
+    fn new(
+        sources: &Sources,
+        problems: &[Diagnostic],
+        staying: &HashSet<Problem>,
+        most: Applicability,
+    ) -> Self {
+        let may_apply = |fix: &&Fix| fix.applicability <= most;
         let mut edits: Vec<Edit> = Vec::new();
         // The ends of the places that are changed, by their starts. No two of them touch.
         let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
         let (mut lengthened, mut done) = (HashMap::<_, Vec<_>>::new(), Vec::new());
         for diagnostic in problems.iter().filter(|problem| problem.is_error()) {
-            let (Some(problem), Some(fix)) = (Problem::of(diagnostic), diagnostic.fixes.first())
-            else {
+            let fix = diagnostic.fixes.iter().find(may_apply);
+            let (Some(problem), Some(fix)) = (Problem::of(diagnostic), fix) else {
                 continue;
             };
             let is_free = |edit: &Edit| {

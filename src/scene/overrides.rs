@@ -8,7 +8,7 @@ use super::{
     eval::{Evaluator, Names, suits},
 };
 use crate::{
-    diagnostic::{Diagnostic, Problems},
+    diagnostic::{Applicability, Diagnostic, Problems},
     schema,
     source::{SourceId, Sources, Span},
     suggest::{self, Budget},
@@ -302,6 +302,7 @@ fn no_such_block<'s>(
         })
         .writing(
             block.span,
+            Applicability::Unsafe,
             near.filter(|near| {
                 let field = field(near, it.name.text, items);
                 field.is_some_and(|field| it.suits(Ok(field), items, sources, budget))
@@ -347,6 +348,7 @@ fn no_such_let<'s>(
         })
         .writing(
             name.span,
+            Applicability::Unsafe,
             meant.filter(|meant| {
                 let field = of_block.and_then(|block| block.field(name.text));
                 it.suits(field.ok_or(meant), items, sources, budget)

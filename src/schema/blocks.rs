@@ -31,6 +31,7 @@ const BLOCK: Block = Block {
     together: &[],
     several: &[],
     also_tried: "",
+    elsewhere: &[],
 };
 
 /// Every block of the language, in the order of the kinds.
@@ -60,18 +61,18 @@ pub const BLOCKS: &[Block] = &[
         fields: fields! {
             eye Vector Required "the point that all rays pass through" example("(0, 2, 8)")
                 also_tried("position pos from center centre origin location look_from");
-            lookat Vector Alternative "the point that it looks at" example("(0, 1, 0)") also_tried("look_at target at to");
+            lookat Vector Alternative "the point that it looks at" example("(0, 1, 0)") also_tried("look_at target at to") perhaps("look");
             direction Vector Alternative "the direction that it looks in, of any length" must(&[NotZero])
-                example("(0, 0, -1)") also_tried("dir forward");
+                example("(0, 0, -1)") also_tried("dir forward") perhaps("look");
             up Vector Value("(0, 1, 0)") "what is up in the picture" must(&[NotZero]);
             roll Angle Value("0deg") "the turn about the view direction; positive dips the right side"
-                example("30deg") also_tried("tilt rotation");
-            d Number Value("2") "the distance from the eye to the view plane" must(POSITIVE) also_tried("distance focal_length");
-            view_height Number Value("2") "the height of the window in the view plane" must(POSITIVE) also_tried("height");
+                example("30deg") perhaps("tilt rotation");
+            d Number Value("2") "the distance from the eye to the view plane" must(POSITIVE) perhaps("distance");
+            view_height Number Value("2") "the height of the window in the view plane" must(POSITIVE);
             fov Angle Nothing "the angle that the window's height takes up, instead of d" must(&[LessThanHalfTurn])
-                example("40deg") also_tried("field_of_view vfov yfov");
+                example("40deg") also_tried("field_of_view vfov yfov") perhaps("angle");
             hfov Angle Nothing "the angle that the window's width takes up, instead of d or fov" must(&[LessThanHalfTurn])
-                example("60deg") also_tried("angle xfov horizontal_fov");
+                example("60deg") also_tried("xfov horizontal_fov") perhaps("angle");
             near Number Value("0") "nothing at this depth or nearer is seen" must(&[AtLeast(0.0)]);
             far Number Nothing "nothing at this depth or farther is seen" example("100");
         },
@@ -87,6 +88,24 @@ pub const BLOCKS: &[Block] = &[
         ],
         together: &["lookat ≠ eye", "near < far"],
         also_tried: "cam view viewer eye",
+        elsewhere: &[
+            (
+                "aspect aspect_ratio ratio right",
+                "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9",
+            ),
+            (
+                "width height resolution size dimensions image_width image_height",
+                "write the picture's size in pixels as `image { width 640  height 480 }`; `view_height` is the height of the window in metres",
+            ),
+            (
+                "zoom zoom_factor scale",
+                "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`",
+            ),
+            (
+                "focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
+                "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm",
+            ),
+        ],
         ..BLOCK
     },
     Block {
@@ -97,7 +116,7 @@ pub const BLOCKS: &[Block] = &[
         fields: fields! {
             method Method Value("multi_jittered") "the sampling technique" also_tried("technique type kind pattern");
             per_pixel Number Value("16") "the samples in each pixel" must(&[Whole, AtLeast(1.0)])
-                also_tried("samples spp count n");
+                also_tried("samples spp") perhaps("count n");
             total Number Nothing "the samples in the whole picture, instead of per_pixel"
                 must(&[Whole, AtLeast(1.0), AtMostTwoTo(53)]) example("1_000_000");
             seed Number Value("0") "another seed gives other random samples" must(&[Whole, AtLeast(0.0), LessThanTwoTo(53)]);
@@ -118,7 +137,7 @@ pub const BLOCKS: &[Block] = &[
         help: "a sphere",
         fields: fields! {
             center Vector Required "its centre" example("(0, 1, 0)") also_tried(POSITION);
-            radius Number Value("1") "its radius" must(POSITIVE) also_tried("r size") doubled("diameter");
+            radius Number Value("1") "its radius" must(POSITIVE) also_tried("r") perhaps("size") doubled("diameter");
             color Color Value("olive") "its colour" also_tried(COLOR);
         },
         also_tried: "ball circle globe",
@@ -160,6 +179,7 @@ pub const BLOCKS: &[Block] = &[
             "v0, v1 and v2 do not lie on one line",
         ],
         also_tried: "tri sail polygon",
+        elsewhere: &[],
     },
     Block {
         kind: Kind::Box,
@@ -191,7 +211,7 @@ pub const BLOCKS: &[Block] = &[
         help: "the infinite checkered floor in a horizontal plane",
         fields: fields! {
             y Number Value("0") "the height of its plane" also_tried("height level");
-            square Number Value("1") "the side of a square" must(POSITIVE) also_tried("size side squares");
+            square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares") perhaps("size");
             colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
         },
         also_tried: "plane floor ground checker chessboard board",

@@ -70,6 +70,13 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
+/// Whether a method is the only one that is near to a word.
+pub fn is_sure_method(written: &str, near: &str) -> bool {
+    let mut tried = ALSO_TRIED.iter();
+    tried.any(|(method, words)| method.name() == near && is_among(written, words))
+        || suggest::is_only_near(written, near, method_names())
+}
+
 /// The names of the methods.
 pub fn method_names() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(method, _)| method.name())

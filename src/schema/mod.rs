@@ -14,7 +14,7 @@ mod types;
 
 pub use blocks::BLOCKS;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
-pub use methods::{METHODS, Method, method, method_names, nearest_method};
+pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
 pub use row_types::{Block, Choice, Condition, Field, Kind, Preset, Several};
 
 pub use types::{Type, Value};
@@ -24,6 +24,12 @@ use crate::suggest::{self, is_among};
 /// A block's row, found by its word.
 pub fn block(name: &str) -> Option<&'static Block> {
     BLOCKS.iter().find(|block| block.name == name)
+}
+
+/// Whether a word is that of a block or of a field.
+pub fn is_word(word: &str) -> bool {
+    let mut blocks = BLOCKS.iter();
+    blocks.any(|block| block.name == word || block.field(word).is_some())
 }
 
 /// The row of a kind of block.

@@ -52,6 +52,8 @@ pub struct Block {
     pub several: &'static [Several],
     /// Other words that people try for it.
     pub also_tried: &'static str,
+    /// Words of other languages for what is said elsewhere or otherwise here, with what to write instead.
+    pub elsewhere: &'static [(&'static str, &'static str)],
 }
 
 /// Ways to say the same thing, of which a block takes one.
@@ -87,6 +89,8 @@ pub struct Field {
     pub help: &'static str,
     /// Other words that people try for it.
     pub also_tried: &'static str,
+    /// Words that people try for it and for something else, so that a program cannot choose.
+    pub perhaps: &'static str,
     /// Words that people try for twice its value.
     pub doubled: &'static str,
     /// A value that it can have, as it is written: for messages, and to type over.
@@ -108,6 +112,7 @@ impl Field {
             must: &[],
             help,
             also_tried: "",
+            perhaps: "",
             doubled: "",
             example: match preset {
                 Preset::Value(written) => written,
@@ -196,6 +201,19 @@ impl Block {
     /// A field's row, found by its name.
     pub fn field(&self, name: &str) -> Option<&'static Field> {
         self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// The fields that a word may stand for, among other things.
+    pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static Field> {
+        let fields = self.fields.iter();
+        fields.filter(move |field| is_among(written, field.perhaps))
+    }
+
+    /// What to write instead of a word of other languages that no field stands for.
+    pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
+        let mut rows = self.elsewhere.iter();
+        let row = rows.find(|(words, _)| is_among(written, words));
+        row.map(|&(_, instead)| instead)
     }
 
     /// The names of its fields.

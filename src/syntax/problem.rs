@@ -1,16 +1,18 @@
 //! How a problem of syntax is made of what `messages` says.
 
 use crate::{
-    diagnostic::{Diagnostic, Edit, Fix, Label, Severity},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, Label, Severity},
     source::Span,
 };
 
 /// What is said of a slip.
+#[derive(Clone, Copy)]
 pub struct Message {
     code: &'static str,
     message: &'static str,
     label: &'static str,
     help: &'static str,
+    applicability: Applicability,
 }
 
 impl Message {
@@ -26,7 +28,19 @@ impl Message {
             message,
             label,
             help,
+            applicability: Applicability::Unsafe,
         }
+    }
+
+    /// The same, whose fix keeps all that was written and has one meaning.
+    pub const fn safe(self) -> Self {
+        self.safe_if(true)
+    }
+
+    /// The same, whose fix does so in some places.
+    pub const fn safe_if(mut self, is_safe: bool) -> Self {
+        self.applicability = Applicability::safe_if(is_safe);
+        self
     }
 
     /// Whether it is about something that is only too much.
@@ -48,7 +62,8 @@ impl Message {
             }
             filled
         };
-        let fixes: Vec<Fix> = fix.into().into_iter().collect();
+        let fix = fix.into().map(|fix| fix.being(self.applicability));
+        let fixes: Vec<Fix> = fix.into_iter().collect();
         let title = fixes.first().map(|fix| fix.title.clone());
         Diagnostic {
             severity: Severity::Error,

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     cancel,
-    diagnostic::{Diagnostic, Edit, Fix, MOST_PROBLEMS},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, MOST_PROBLEMS},
     source::{Source, SourceId, Span},
 };
 
@@ -164,16 +164,23 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
+            // Words with one between them that has no width may be one or two.
+            let has_width = sort.chars().all(char::is_whitespace);
+            let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
+            let is_safe = has_width || !places.iter().any(joins);
             let times = times(places.len() - 1);
             let mut found = if sort == "\r" {
                 say::CARRIAGE_RETURN.at(span, &[&times], all("write line feeds", "\n"))
             } else {
                 let words = [&name_of_space(sort), times.as_str()];
-                say::ODD_SPACE.at(span, &words, all("write plain spaces", " "))
+                let said = say::ODD_SPACE.safe_if(is_safe);
+                said.at(span, &words, all("write plain spaces", " "))
             };
             // What has no width, as a rule, is not meant to keep words apart.
-            if !sort.chars().all(char::is_whitespace) {
-                found.fixes.insert(0, all("take it away", ""));
+            if !has_width {
+                let applicability = Applicability::safe_if(is_safe);
+                let away = all("take it away", "").being(applicability);
+                found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
                 // There may be others.

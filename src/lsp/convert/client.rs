@@ -18,6 +18,8 @@ pub struct Client {
     pub snippets: bool,
     /// Whether changes may name the version that they are for.
     pub versioned_edits: bool,
+    /// Whether changes may be snippets.
+    pub snippet_edits: bool,
 }
 
 impl Client {
@@ -34,6 +36,8 @@ impl Client {
             encoding: encoding(words("/capabilities/general/positionEncodings")),
             snippets: can("/capabilities/textDocument/completion/completionItem/snippetSupport"),
             versioned_edits: can("/capabilities/workspace/workspaceEdit/documentChanges"),
+            snippet_edits: can("/capabilities/workspace/workspaceEdit/documentChanges")
+                && can("/capabilities/workspace/workspaceEdit/snippetEditSupport"),
         }
     }
 }

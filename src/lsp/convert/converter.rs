@@ -6,8 +6,10 @@ use serde_json::{Value, json};
 use super::client::{Client, FIX_ALL, QUICK_FIX};
 use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Edit, Fix, Severity},
-    editor::{Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, Severity},
+    editor::{
+        self, Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind,
+    },
     lsp::{
         documents::{Change, Document, Place},
         params::{Refusal, at},
@@ -142,16 +144,54 @@ impl Converter<'_> {
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// A way out of a diagnostic, or of all of them.
+    /// A way out of a diagnostic, or of all of them. Values that are made up are selected, where the client can do that.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
+        let is_made_up = fix.applicability == Applicability::Placeholder;
+        let edit = match (is_made_up, fix.edits.as_slice()) {
+            // A snippet's further lines are indented once more.
+            (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
+                self.snippet(only)
+            }
+            _ => self.edit(fix.edits.iter().cloned()),
+        };
+        let values = fix.edits.first().filter(|_| is_made_up);
+        let values = values.map(|edit| editor::made_up_values(&edit.text));
+        let values = values.into_iter().flatten();
+        let values: Vec<[usize; 2]> = values.map(|value| [value.start, value.end]).collect();
         without_nulls(json!({
-            "title": fix.title,
+            "title": match is_made_up {
+                true => format!("{}, to put in your own value", fix.title),
+                false => fix.title.clone(),
+            },
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
             "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
-            // The only way out is the one to take without asking.
-            "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1),
-            "edit": self.edit(fix.edits.iter().cloned()),
+            // A safe one that is the only way out is the one to take without asking.
+            "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
+            "edit": edit,
+            // docs/protocol.md
+            "data": of.map(|_| json!({
+                "applicability": fix.applicability.word(),
+                "values": values,
+            })),
         }))
+    }
+
+    /// An edit whose made-up values are to be typed over.
+    fn snippet(&self, edit: &Edit) -> Value {
+        let mut template = String::new();
+        let mut at = 0;
+        for (index, value) in (1..).zip(editor::made_up_values(&edit.text)) {
+            let part = |range| edit.text.get(range).unwrap_or_default();
+            let (before, value_text) =
+                (escaped(part(at..value.start)), escaped(part(value.clone())));
+            template += &format!("{before}${{{index}:{value_text}}}");
+            at = value.end;
+        }
+        template += &escaped(edit.text.get(at..).unwrap_or_default());
+        let snippet = json!({ "kind": "snippet", "value": template });
+        let edit = json!({ "range": self.range(edit.span), "snippet": snippet });
+        let document = json!({ "uri": self.uri, "version": self.document.version });
+        json!({ "documentChanges": [{ "textDocument": document, "edits": [edit] }] })
     }
 
     /// An entry of the outline.
@@ -229,6 +269,13 @@ pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
         Ok(Change { range, text })
     };
     changes.iter().map(change).collect()
+}
+
+/// A text within a snippet.
+fn escaped(text: &str) -> String {
+    text.replace('\\', "\\\\")
+        .replace('$', "\\$")
+        .replace('}', "\\}")
 }
 
 fn place(position: Position) -> Place {

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     color::Color,
+    diagnostic::Applicability,
     numbers,
     scene::{
         error::{error, warning},
@@ -90,10 +91,9 @@ impl<'s> Evaluator<'_, 's> {
         };
         let rows = schema::FUNCTIONS.iter().filter(fits);
         let near = suggest::nearest_name(name, rows.map(|row| row.name));
-        let all = format!(
-            "the functions are {}",
-            suggest::list(schema::FUNCTIONS.iter().map(|row| row.name))
-        );
+        let all_names = || schema::FUNCTIONS.iter().map(|row| row.name);
+        let is_sure = near.is_some_and(|near| suggest::is_only_near(name, near, all_names()));
+        let all = format!("the functions are {}", suggest::list(all_names()));
         if let Some(row) = near.and_then(schema::function) {
             self.names.suggestions.push(Suggestion {
                 name,
@@ -114,7 +114,7 @@ impl<'s> Evaluator<'_, 's> {
             error("unknown_function", format!("there is no function `{name}`"))
                 .at(function.span, label)
                 .help(help)
-                .writing(function.span, near),
+                .writing(function.span, Applicability::safe_if(is_sure), near),
         );
     }
 
@@ -144,7 +144,7 @@ impl<'s> Evaluator<'_, 's> {
             error("argument_count", message)
                 .at(span, format!("{found} given"))
                 .help(format!("write `{}`", shorten(&shown)))
-                .writing(span, meant),
+                .writing(span, Applicability::Safe, meant),
         );
     }
 
@@ -157,8 +157,9 @@ impl<'s> Evaluator<'_, 's> {
     ) {
         let name = row.name;
         let problem = match (takes, found) {
-            (Type::Angle, Value::Number(_)) => {
-                self.bare_angle(&format!("the argument of `{name}`"), argument, |_| true)
+            (Type::Angle, Value::Number(number)) => {
+                let what = format!("the argument of `{name}`");
+                self.bare_angle(&what, argument, number, |_| true)
             }
             _ => {
                 let all = match row.takes {
@@ -196,7 +197,7 @@ impl<'s> Evaluator<'_, 's> {
                 error("color_range", message)
                     .at(argument.value.span, label)
                     .help(format!("write `{bound}`, or a number that lies between"))
-                    .writing(argument.value.span, [bound]),
+                    .writing(argument.value.span, Applicability::Unsafe, [bound]),
             );
         }
         fits
@@ -219,7 +220,7 @@ impl<'s> Evaluator<'_, 's> {
                     Some(meant) => format!("write `{meant}`, if 1 is to be full light"),
                     None => "multiply each by 255, if 1 is to be full light".to_owned(),
                 })
-                .writing(span, meant),
+                .writing(span, Applicability::Unsafe, meant),
         );
     }
 

@@ -3,7 +3,7 @@
 use super::names::Names;
 use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Problems},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems},
     scene::error::{error, warning},
     schema::{self, Type, Value},
     source::{Source, SourceId, Sources, Span},
@@ -103,7 +103,7 @@ impl<'s> Evaluator<'_, 's> {
                 warning("number_underflow", message)
                     .at(span, "becomes 0")
                     .help("write 0 if that is meant; the least number above 0 is 5e-324")
-                    .writing(span, ["0"]),
+                    .writing(span, Applicability::Unsafe, ["0"]),
             );
         }
         Some(number)
@@ -114,49 +114,74 @@ impl<'s> Evaluator<'_, 's> {
         &self,
         what: &str,
         tree: &tree::Value<'s>,
+        number: f64,
         fits: impl Fn(Unit) -> bool,
     ) -> Diagnostic {
-        let units = self.units(tree);
-        let fitting = units.iter().filter(|(unit, _)| fits(*unit));
-        let fitting: Vec<&String> = fitting.map(|(_, text)| text).collect();
         let message = format!(
             "{what} is an angle, and {} has no unit",
             self.quoted(tree.span)
         );
-        let [(_, first), (_, second)] = &units;
+        let units = self.units(tree, number);
+        let shown = units.each_ref().map(|(_, fix)| fix.title.clone());
+        let mut fixes: Vec<Fix> = Vec::from(units)
+            .into_iter()
+            .filter_map(|(unit, fix)| fits(unit).then_some(fix))
+            .collect();
+        let help = match fixes.as_mut_slice() {
+            [only] => {
+                let is_plain = is_plain_number(tree);
+                only.applicability = Applicability::safe_if(is_plain);
+                only.title.clone()
+            }
+            _ => {
+                let [first, second] = shown;
+                let second = second.trim_start_matches("write ");
+                match second.ends_with(')') {
+                    true => format!("{first} or {second}"),
+                    false => format!("{first} (or {second})"),
+                }
+            }
+        };
         error("bare_angle", message)
             .at(tree.span, self.described(tree, Type::Number))
-            .help(match fitting.as_slice() {
-                [only] => format!("write `{}`", shorten(only)),
-                _ => format!("write `{}` (or `{}`)", shorten(first), shorten(second)),
-            })
-            .writing(tree.span, fitting)
+            .help(help)
+            .fixes(fixes)
     }
 
-    /// A number's spelling as an angle, in both units: what holds `pi` is more likely in radians, anything else in degrees.
-    pub(super) fn units(&self, value: &tree::Value<'s>) -> [(Unit, String); 2] {
+    /// Writes a number as an angle, in both units. What holds `pi` or is at most pi is more likely in radians, anything else in
+    /// degrees; what is more than a turn in radians is surely none. Where that is not sure, the titles say what each comes to.
+    pub(super) fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
-        let literal = match &value.kind {
-            ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
-            kind => matches!(kind, ValueKind::Number(_)),
-        };
+        let is_literal = is_plain_number(value);
         let is_sum = match &value.kind {
             ValueKind::Chain { rest, .. } => rest.iter().any(|step| !step.operator.is_of_product()),
             _ => false,
         };
-        let mut units = [Unit::Degrees, Unit::Radians];
         let letter = |c: char| !c.is_ascii_alphanumeric() && c != '_';
-        if text.split(letter).any(|word| word == "pi") {
+        let has_pi = text.split(letter).any(|word| word == "pi");
+        let is_small = number != 0.0 && number.abs() <= std::f64::consts::PI;
+        let is_sure = number == 0.0 || number.abs() > 2.0 * std::f64::consts::PI;
+        let mut units = [Unit::Degrees, Unit::Radians];
+        if has_pi || is_small {
             units.reverse();
         }
         units.map(|unit| {
             let name = unit.name();
-            let text = match (literal, is_sum) {
+            let text = match (is_literal, is_sum) {
                 (true, _) => format!("{text}{name}"),
                 (false, true) => format!("({text}) * 1{name}"),
                 (false, false) => format!("{text} * 1{name}"),
             };
-            (unit, text)
+            let mut title = format!("write `{}`", shorten(&text));
+            if !is_sure {
+                title += &match unit {
+                    Unit::Degrees => format!(" (= {}rad)", rounded(number.to_radians())),
+                    Unit::Radians => format!(" (= {}deg)", rounded(number.to_degrees())),
+                };
+            }
+            let is_safe = is_literal && is_sure && unit == Unit::Degrees;
+            let fix = Fix::new(title, [Edit::new(value.span, text)]);
+            (unit, fix.being(Applicability::safe_if(is_safe)))
         })
     }
 
@@ -186,4 +211,20 @@ pub(super) fn color_code(written: &str) -> Option<Color> {
         let byte = |shift: u32| ((code >> shift) & 0xff) as u8;
         [byte(16), byte(8), byte(0)]
     }))
+}
+
+/// Whether a number is written out, perhaps with a sign.
+fn is_plain_number(value: &tree::Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
+        kind => matches!(kind, ValueKind::Number(_)),
+    }
+}
+
+/// The other unit's number for people: of degrees tenths are enough, and of radians thousandths.
+fn rounded(number: f64) -> String {
+    match number.abs() < 1.0 {
+        true => format!("{number:.3}"),
+        false => format!("{number:.1}"),
+    }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::evaluator::Evaluator;
 use crate::{
+    diagnostic::Applicability,
     scene::error::error,
     schema::{Type, Value},
     source::Span,
@@ -91,12 +92,15 @@ impl<'s> Evaluator<'_, 's> {
     ) {
         let texts = elements.iter().map(|it| self.sources.text(it.value.span));
         let texts: Vec<&str> = texts.collect();
-        let meant = match texts[..] {
-            [x, y] if list == Type::Vector && wanted == Some(list) => {
-                third(x, y).map(|z| format!("({x}, {y}, {z})"))
+        let (meant, applicability) = match texts[..] {
+            [x, y] if list == Type::Vector && wanted.is_none_or(|wanted| wanted == list) => {
+                let meant = third(x, y).map(|z| format!("({x}, {y}, {z})"));
+                (meant, Applicability::Placeholder)
             }
-            [_, _, _, _] if list == Type::Vector => with_decimal_comma(elements, &texts),
-            _ => None,
+            [_, _, _, _] if list == Type::Vector => {
+                (with_decimal_comma(elements, &texts), Applicability::Unsafe)
+            }
+            _ => (None, Applicability::Unsafe),
         };
         let Some((part, most)) = list.parts() else {
             return;
@@ -113,7 +117,7 @@ impl<'s> Evaluator<'_, 's> {
                     Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
                     None => such_as(list).to_owned(),
                 })
-                .writing(span, meant),
+                .writing(span, applicability, meant),
         );
     }
 }

@@ -6,7 +6,7 @@ use super::{
     suggestion::{Meaning, Suggestion},
 };
 use crate::{
-    diagnostic::{Diagnostic, Edit, Label, MOST_PROBLEMS},
+    diagnostic::{Applicability, Diagnostic, Edit, Label, MOST_PROBLEMS},
     scene::error::error,
     schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
@@ -47,7 +47,7 @@ impl<'s> Evaluator<'_, 's> {
                     error("function_without_arguments", message)
                         .at(span, "a function")
                         .help(format!("write `{call}`"))
-                        .writing(span, [call]),
+                        .writing(span, Applicability::Placeholder, [call]),
                 );
                 return None;
             }
@@ -129,7 +129,7 @@ impl<'s> Evaluator<'_, 's> {
         wanted: Option<Type>,
     ) -> (Diagnostic, Option<Meaning>) {
         let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
-        let near = self.nearest(name, wanted, is_color);
+        let (near, applicability) = self.nearest(name, wanted, is_color).unzip();
         let problem = match is_color {
             true => error(
                 "unknown_color",
@@ -153,7 +153,8 @@ impl<'s> Evaluator<'_, 's> {
         let means = near
             .as_deref()
             .map(|near| Meaning::Value(self.meaning(near)));
-        (problem.help(help).writing(span, near), means)
+        let applicability = applicability.unwrap_or(Applicability::Unsafe);
+        (problem.help(help).writing(span, applicability, near), means)
     }
 
     /// The value of a name that is suggested, or of a colour's code.
@@ -169,17 +170,22 @@ impl<'s> Evaluator<'_, 's> {
 
     /// The nearest name: of the colours where one is wanted, otherwise of what can be computed
     /// with. What is known to be of another type than the one that is wanted is passed over.
-    fn nearest(&self, name: &str, wanted: Option<Type>, is_color: bool) -> Option<String> {
+    fn nearest(
+        &self,
+        name: &str,
+        wanted: Option<Type>,
+        is_color: bool,
+    ) -> Option<(String, Applicability)> {
         // `ff0000`, the code of a colour without its sign.
         let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());
         if is_color && matches!(name.len(), 3 | 6) && is_digits {
-            return Some(format!("#{name}"));
+            return Some((format!("#{name}"), Applicability::Safe));
         }
         // `olive green`: of two colours the first one.
         if let Some((first, _)) = name.split_once(char::is_whitespace)
             && css::color(first).is_some()
         {
-            return Some(first.to_owned());
+            return Some((first.to_owned(), Applicability::Unsafe));
         }
         let is_of_type = |name: &&str| match (self.meaning(name), wanted) {
             (Some(value), Some(wanted)) => value.kind() == wanted,
@@ -189,14 +195,18 @@ impl<'s> Evaluator<'_, 's> {
         let colors = css::names().map(|name| name as &str);
         let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
         let near = match is_color {
-            true => suggest::nearest_name(name, lets.chain(colors).filter(is_of_type)),
-            false => suggest::nearest_name(name, lets.chain(constants).filter(is_of_type)),
+            true => suggest::nearest_name(name, lets.clone().chain(colors).filter(is_of_type)),
+            false => suggest::nearest_name(name, lets.clone().chain(constants).filter(is_of_type)),
         };
         let near = near.or_else(|| match wanted {
             None => suggest::nearest_name(name, css::names()),
             Some(_) => None,
         });
-        near.map(str::to_owned)
+        let near = near?;
+        let all = lets.chain(css::names().map(|name| name as &str));
+        let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
+        let is_only = suggest::is_only_near(name, near, all.chain(constants).filter(is_of_type));
+        Some((near.to_owned(), Applicability::safe_if(is_only)))
     }
 
     /// What a value is, and where its name was defined if it is one.
@@ -229,6 +239,10 @@ fn no_other(name: &str, is_color: bool) -> String {
 
 /// Adds another place where the same name is used.
 fn and_here(problem: &mut Diagnostic, span: Span) {
+    // What is tried twice is there once.
+    if problem.labels.iter().any(|label| label.span == span) {
+        return;
+    }
     // More places than these would hide the first.
     const MOST: usize = 20;
     if problem.labels.len() <= MOST {

@@ -27,7 +27,7 @@ impl<'s> Evaluator<'_, 's> {
                     .at(sign, "here")
                     .at(operand.span, self.described(operand, value.kind()))
                     .help("take the `-` away; only numbers, angles and vectors have a sign")
-                    .fixes([Fix::remove("take the `-` away", sign, self.sources)]),
+                    .fixes([Fix::remove("take the `-` away", sign, self.sources).safe()]),
             );
         }
         negative
@@ -118,6 +118,7 @@ impl<'s> Evaluator<'_, 's> {
         let [a, b] = [left_text, right_text].map(shorten);
         let sign = step.operator.sign();
         let is_sum = !step.operator.is_of_product();
+        let values = (left, right);
         let (left, right) = (left.kind(), right.kind());
         let help = match (left, right, step.operator) {
             (Color | Colors, _, _) | (_, Color | Colors, _) => {
@@ -144,18 +145,19 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        let with_unit = |number: &tree::Value<'s>| {
-            let units = self.units(number).into_iter();
-            units
-                .map(|(_, text)| Fix::write(number.span, text))
-                .collect()
+        let with_unit = |tree: &tree::Value<'s>, value: Value| match value {
+            Value::Number(number) => self.units(tree, number).map(|(_, fix)| fix).into(),
+            _ => Vec::new(),
         };
         let fits = |gives| is_sum && wanted.is_none_or(|wanted| wanted == gives);
         let fixes = match (left, right) {
             (Vector, Number) if fits(Vector) => vector(right_span, right_text),
             (Number, Vector) if fits(Vector) => vector(left_span, left_text),
-            (Angle, Number) if fits(Angle) => with_unit(&step.operand),
-            (Number, Angle) if fits(Angle) => left_tree.map(with_unit).unwrap_or_default(),
+            (Angle, Number) if fits(Angle) => with_unit(&step.operand, values.1),
+            (Number, Angle) if fits(Angle) => {
+                let fixes = left_tree.map(|tree| with_unit(tree, values.0));
+                fixes.unwrap_or_default()
+            }
             _ => Vec::new(),
         };
         let left_label = match left_tree {

@@ -6,7 +6,7 @@ use super::{
     lowering::{Lowering, mentions},
 };
 use crate::{
-    diagnostic::{Diagnostic, Fix},
+    diagnostic::{Applicability, Diagnostic, Fix},
     scene::{
         error::{error, warning},
         model::{Count, Image, SMALLEST, Sampler},
@@ -141,7 +141,7 @@ impl<'s> Lowering<'s> {
                     warning("few_samples", message)
                         .at(given.span, "fewer than there are pixels")
                         .help(help)
-                        .writing(given.span, [pixels.to_string()]),
+                        .writing(given.span, Applicability::Placeholder, [pixels.to_string()]),
                 );
             }
             (Count::PerPixel(count), Some(pixels), Some(given))
@@ -156,7 +156,7 @@ impl<'s> Lowering<'s> {
                     error("too_many_samples", message)
                         .at(given.span, "too many")
                         .help(help)
-                        .writing(given.span, [most.to_string()]),
+                        .writing(given.span, Applicability::Placeholder, [most.to_string()]),
                 );
             }
             _ => {}

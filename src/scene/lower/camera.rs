@@ -7,7 +7,7 @@ use super::{
     lowering::Lowering,
 };
 use crate::{
-    diagnostic::Fix,
+    diagnostic::{Applicability, Fix},
     math::predicates,
     numbers,
     scene::{
@@ -206,7 +206,7 @@ impl<'s> Lowering<'s> {
                 )]),
             (_, Some(towards)) => problem
                 .help(format!("look at an object, such as `{field} {towards}`"))
-                .writing(given.span, [towards]),
+                .writing(given.span, Applicability::Unsafe, [towards]),
             (_, None) => problem.help("turn the camera, or move it"),
         });
     }
@@ -239,7 +239,7 @@ impl Lowering<'_> {
                 )
                 .at(place, "so small from here that all of them get one colour")
                 .help(help)
-                .writing(place, larger.filter(|_| is_given)),
+                .writing(place, Applicability::Unsafe, larger.filter(|_| is_given)),
             );
         }
     }

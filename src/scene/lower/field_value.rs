@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::lowering::Lowering;
 use crate::{
-    diagnostic::Diagnostic,
+    diagnostic::{Applicability, Diagnostic},
     math::Angle,
     numbers,
     scene::{
@@ -66,12 +66,12 @@ impl<'s> Lowering<'s> {
             _ => written,
         };
         let message = format!("`{}` must be {condition}, and it is {found}", row.name);
-        let allowed = allowed(row, condition, value);
+        let (allowed, applicability) = allowed(row, condition, value);
         self.problems.push(
             error("out_of_range", message)
                 .at(tree.span, "out of range")
                 .help(format!("write, for example, `{} {allowed}`", row.name))
-                .writing(tree.span, [allowed]),
+                .writing(tree.span, applicability, [allowed]),
         );
         None
     }
@@ -95,6 +95,7 @@ impl<'s> Lowering<'s> {
             }
             _ => None,
         };
+        let meant = meant.map(|meant| (meant, Applicability::Unsafe));
         let problem = self
             .of_type(row, tree, "a list", meant)
             .at(tree.span, "a list");
@@ -107,6 +108,7 @@ impl<'s> Lowering<'s> {
         }
         let list = suggest::list(schema::method_names());
         let near = schema::nearest_method(written);
+        let is_sure = near.is_some_and(|near| schema::is_sure_method(written, near));
         self.problems.push(
             error("unknown_method", format!("there is no method `{written}`"))
                 .at(tree.span, "not a method")
@@ -114,7 +116,7 @@ impl<'s> Lowering<'s> {
                     Some(near) => format!("did you mean `{near}`? The methods are {list}."),
                     None => format!("the methods are {list}"),
                 })
-                .writing(tree.span, near),
+                .writing(tree.span, Applicability::safe_if(is_sure), near),
         );
         None
     }
@@ -124,7 +126,7 @@ impl<'s> Lowering<'s> {
             let what = format!("`{}`", row.name);
             // `fov 45rad` would be the next mistake.
             let fits = |unit: Unit| row.allows(Value::Angle(unit.of(number)));
-            return self.evaluator().bare_angle(&what, tree, fits);
+            return self.evaluator().bare_angle(&what, tree, number, fits);
         }
         let meant = self.converted(row, tree, value);
         let label = self.evaluator().described(tree, value.kind());
@@ -132,27 +134,28 @@ impl<'s> Lowering<'s> {
             .at(tree.span, label)
     }
 
-    /// How a value of another type has to be written for a field, if that can be told.
+    /// How a value of another type has to be written for a field, if that can be told, and whether that is sure.
     pub(super) fn converted(
         &self,
         row: &Field,
         tree: &tree::Value<'s>,
         value: Value,
-    ) -> Option<String> {
+    ) -> Option<(String, Applicability)> {
         let text = self.sources.text(tree.span);
+        let unsure = |text: String| (text, Applicability::Unsafe);
         match (row.takes, value, &tree.kind) {
             (Type::Angle, Value::Number(number), ValueKind::Number(_)) => {
                 let angle = Value::Angle(Unit::Degrees.of(number));
-                row.allows(angle).then(|| format!("{text}deg"))
+                row.allows(angle).then(|| unsure(format!("{text}deg")))
             }
             (Type::Number, Value::Angle(_), ValueKind::Angle { number, .. }) => {
                 let fits = row.allows(Value::Number(number.parse().ok()?));
-                fits.then(|| (*number).to_owned())
+                fits.then(|| unsure((*number).to_owned()))
             }
             (Type::Vector, Value::Number(_), ValueKind::Number(_))
                 if row.must.contains(&Condition::EachMoreThanZero) =>
             {
-                Some(format!("({text}, {text}, {text})"))
+                Some(unsure(format!("({text}, {text}, {text})")))
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
             _ => None,
@@ -165,10 +168,11 @@ impl<'s> Lowering<'s> {
         row: &Field,
         tree: &tree::Value<'s>,
         found: &str,
-        meant: Option<String>,
+        meant: Option<(String, Applicability)>,
     ) -> Diagnostic {
         let (name, takes) = (row.name, row.takes.noun());
         let written = self.evaluator().quoted(tree.span);
+        let (meant, applicability) = meant.unzip();
         error(
             "wrong_type",
             format!("`{name}` is {takes}, and {written} is {found}"),
@@ -177,7 +181,11 @@ impl<'s> Lowering<'s> {
             Some(meant) => format!("write `{}`", shorten(meant)),
             None => format!("write {takes}, such as `{}`", row.example),
         })
-        .writing(tree.span, meant)
+        .writing(
+            tree.span,
+            applicability.unwrap_or(Applicability::Unsafe),
+            meant,
+        )
     }
 
     pub(super) fn evaluate(
@@ -197,26 +205,28 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// A value that keeps a condition, in the place of one that does not.
-fn allowed(row: &Field, condition: Condition, value: Value) -> String {
-    match (condition, value) {
+/// A value that keeps a condition, in the place of one that does not: made of it, or made up.
+fn allowed(row: &Field, condition: Condition, value: Value) -> (String, Applicability) {
+    let allowed = match (condition, value) {
         (Condition::Whole, Value::Number(number))
             if row.allows(Value::Number(number.round().max(1.0))) =>
         {
-            number.round().max(1.0).to_string()
+            let whole = number.round().max(1.0).to_string();
+            return (whole, Applicability::Unsafe);
         }
         (Condition::MoreThan(bound), Value::Number(number)) if number < bound => {
-            numbers::short(-number)
+            return (numbers::short(-number), Applicability::Unsafe);
         }
         (Condition::AtLeast(bound), _) => bound.to_string(),
         (Condition::AtMostTwoTo(power), _) => (1_u64 << power).to_string(),
         (Condition::LessThanTwoTo(power), _) => ((1_u64 << power) - 1).to_string(),
         _ => row.example.to_owned(),
-    }
+    };
+    (allowed, Applicability::Placeholder)
 }
 
 /// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to 255.
-fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
+fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;
     };
@@ -225,9 +235,9 @@ fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<String> {
         return None;
     }
     if parts.max_element() > 1.0 {
-        return Some(format!("rgb{text}"));
+        return Some((format!("rgb{text}"), Applicability::Safe));
     }
     let bytes = parts.to_array().map(in_bytes).join(", ");
     let are_literals = elements.iter().all(is_literal);
-    are_literals.then(|| format!("rgb({bytes})"))
+    are_literals.then(|| (format!("rgb({bytes})"), Applicability::Unsafe))
 }

@@ -2,14 +2,14 @@
 
 use super::{block::Block, lowering::Lowering};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Applicability, Edit, Fix},
     scene::examples::example_beside,
     schema::{Choice, Preset},
     source::{SourceId, Sources, Span},
     suggest,
 };
 
-/// Adds lines at the end of the file.
+/// Adds lines with made-up values at the end of the file.
 pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -> Fix {
     let text = sources.file.text();
     let line_end = sources.file.line_end();
@@ -18,20 +18,32 @@ pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -
         false => line_end,
     };
     let added = format!("{apart}{}", lines.replace('\n', line_end));
-    Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)])
+    Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)]).placeholder()
 }
 
-/// Of a thing that is there twice, keeps the first or the second one.
+/// Of a thing that is there twice, keeps the first or the second one. Of equal ones either will do.
 pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sources) -> [Fix; 2] {
     let ways = [("first", "second", second), ("second", "first", first)];
     ways.map(|(kept, removed, span)| {
         let title = format!("keep the {kept} `{name}`, remove the {removed}");
-        Fix::remove_whole(title, span, sources)
+        let words = |span| sources.text(span).split_whitespace();
+        match words(first).eq(words(second)) {
+            true => remove_equal(title, span, sources),
+            false => Fix::remove_whole(title, span, sources),
+        }
     })
 }
 
+/// Takes away what stands elsewhere, too: nothing is lost, unless a comment goes with it or stands in it.
+pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
+    let fix = Fix::remove_whole(title, span, sources);
+    let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
+    let is_safe = taken.all(|text| !text.contains("//") && !text.contains("/*"));
+    fix.being(Applicability::safe_if(is_safe))
+}
+
 impl Lowering<'_> {
-    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their own.
+    /// Adds fields with made-up values at the end of a block that stands in the file: on its line, or on lines of their own.
     pub(super) fn add_fields(
         &self,
         block: &Block<'_>,
@@ -39,7 +51,7 @@ impl Lowering<'_> {
         fields: &[String],
     ) -> Option<Fix> {
         let edit = Edit::add_fields(block.span, self.sources, fields)?;
-        Some(Fix::new(title, [edit]))
+        Some(Fix::new(title, [edit]).placeholder())
     }
 
     /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and nothing else stands

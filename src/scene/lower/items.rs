@@ -6,7 +6,7 @@ use super::{
     lowering::{Lowering, mentions},
 };
 use crate::{
-    diagnostic::{Diagnostic, Edit, Fix},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix},
     scene::{
         error::{error, twice},
         model::Shape,
@@ -67,11 +67,21 @@ impl<'s> Lowering<'s> {
             (None, Some(first)) => {
                 let message = format!("`{}` is defined twice", name.text);
                 let title = format!("remove this `let {}`", name.text);
+                let written = self.sources.text(name.span.to(definition.value.span));
+                let text = self.sources.get(first.source).text();
+                let text = text.get(first.start..).unwrap_or_default();
+                let is_equal = value.is_some()
+                    && value == self.names.value(name.text)
+                    && text.starts_with(written);
+                let fix = match is_equal {
+                    true => fixes::remove_equal(title, definition.span, self.sources),
+                    false => Fix::remove_whole(title, definition.span, self.sources),
+                };
                 let help = "remove one of them, or give it another name; a name keeps its value";
                 self.problems.push(
                     twice("duplicate_let", message, [first, name.span])
                         .help(help)
-                        .fixes([Fix::remove_whole(title, definition.span, self.sources)]),
+                        .fixes([fix]),
                 );
             }
         }
@@ -136,6 +146,11 @@ impl<'s> Lowering<'s> {
             return row;
         }
         let near = schema::nearest_block(kind.text);
+        let is_sure = |near: &schema::Block| {
+            let is_tried = suggest::is_among(kind.text, near.also_tried);
+            is_tried && !schema::is_word(kind.text)
+                || suggest::is_only_near(kind.text, near.name, schema::block_names())
+        };
         // Nobody can tell what it was to be: an object, perhaps.
         self.has_objects |= near.is_none();
         // Of a block that is only begun, the parser says all.
@@ -152,7 +167,11 @@ impl<'s> Lowering<'s> {
             error("unknown_kind", message)
                 .at(kind.span, "not a kind of block")
                 .help(help)
-                .writing(kind.span, near.map(|near| near.name)),
+                .writing(
+                    kind.span,
+                    Applicability::safe_if(near.is_some_and(is_sure)),
+                    near.map(|near| near.name),
+                ),
         );
         near
     }
@@ -234,7 +253,7 @@ impl<'s> Lowering<'s> {
                 .help(format!(
                     "write {noun} after it, such as `{field} {example}`"
                 ))
-                .fixes([Fix::new(format!("write `{field} {example}`"), [edit])])
+                .fixes([Fix::new(format!("write `{field} {example}`"), [edit]).placeholder()])
         });
     }
 

@@ -143,6 +143,10 @@ impl<'s> Lowering<'s> {
         let found = Vec::from(std::mem::take(&mut self.problems)).into_iter();
         diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
         invalid_utf8(self.sources, &mut diagnostics);
+        let fixes = diagnostics
+            .iter_mut()
+            .flat_map(|problem| &mut problem.fixes);
+        fixes.for_each(|fix| fix.mind(self.sources));
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
     }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::{Diagnostic, Fix},
+    diagnostic::{Applicability, Diagnostic, Fix},
     scene::{error::error, eval::literal, examples::example_beside, model::Image},
     schema::{self, Field, Kind, Type, Value, css},
     source::{SourceId, Span},
@@ -32,7 +32,7 @@ struct Meant {
     /// The same in words.
     shown: String,
     /// Writes them, where that will do.
-    fix: Option<Fix>,
+    fixes: Vec<Fix>,
 }
 
 impl<'s> Lowering<'s> {
@@ -63,15 +63,18 @@ impl<'s> Lowering<'s> {
             format!("{noun} has no field `{}`", name.text),
         )
         .at(name.span, format!("not a field of {noun}"));
-        let (help, fields, fix) = match meant {
+        let (help, fields, fixes) = match meant {
             Some(meant) => {
                 let takes = takes.replacen('a', "A", 1);
                 let help = format!("did you mean {}? {takes}.", meant.shown);
-                (help, meant.fields, meant.fix)
+                (help, meant.fields, meant.fixes)
             }
-            None => (takes, Vec::new(), None),
+            None => match block.row.elsewhere(name.text) {
+                Some(elsewhere) => (elsewhere.to_owned(), Vec::new(), Vec::new()),
+                None => (takes, Vec::new(), Vec::new()),
+            },
         };
-        self.problems.push(problem.help(help).fixes(fix));
+        self.problems.push(problem.help(help).fixes(fixes));
         fields
     }
 
@@ -87,16 +90,39 @@ impl<'s> Lowering<'s> {
         let is_of_file = value.span.source == SourceId::File;
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
-            return Some(self.renamed(block, field, name, value, whole));
+            let meant = self.renamed(block, field, name, value, whole);
+            // What means something elsewhere may belong there.
+            return Some(match schema::is_word(word) {
+                true => meant.unsure(),
+                false => meant,
+            });
+        }
+        if row.elsewhere(word).is_some() {
+            return None;
+        }
+        let mut perhaps: Vec<&Field> = row.fields_perhaps(word).collect();
+        // A vector of length 1 is a direction rather than a point.
+        let is_unit = |text: &str| match literal(text, Type::Vector) {
+            Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
+            _ => false,
+        };
+        if perhaps.len() > 1 && is_unit(self.sources.text(value.span)) {
+            perhaps.reverse();
+        }
+        let perhaps = perhaps.into_iter();
+        let perhaps = perhaps.map(|field| self.renamed(block, field, name, value, whole).unsure());
+        if let Some(perhaps) = perhaps.reduce(Meant::or) {
+            return Some(perhaps);
         }
         if let Some(field) = row.fields.iter().find(|field| is_tried(field.doubled)) {
             let number = match (self.fitting(block, field, value), &value.kind) {
-                (Some(number), ValueKind::Number(_)) => number.parse().ok(),
+                (Some((number, _)), ValueKind::Number(_)) => number.parse().ok(),
                 _ => None,
             };
             let written = number.map(|number: f64| format!("{} {}", field.name, number / 2.0));
+            let written = written.map(|written| (written, Applicability::Unsafe));
             let shown = match &written {
-                Some(written) => format!("`{written}`"),
+                Some((written, _)) => format!("`{written}`"),
                 None => format!("`{}` with half of it", field.name),
             };
             return Some(Meant::new(&[field.name], shown, whole, written));
@@ -123,11 +149,19 @@ impl<'s> Lowering<'s> {
             }
             let written = format!("{} {word}", field.name);
             let shown = format!("`{written}`");
-            let written = block.has_place(field).then_some(written);
+            let has_place = block.has_place(field);
+            let written = has_place.then_some((written, Applicability::Safe));
             return Some(Meant::new(&[field.name], shown, whole, written));
         }
         let near = row.nearest_field(word)?;
-        Some(self.renamed(block, near, name, value, whole))
+        let meant = self.renamed(block, near, name, value, whole);
+        let is_near = suggest::nearest(word, [near.name]).is_some()
+            && suggest::is_only_near(word, near.name, row.field_names())
+            && !schema::is_word(word);
+        Some(match is_near {
+            true => meant,
+            false => meant.unsure(),
+        })
     }
 
     /// What was meant is this field. An argument keeps the sign between its name and its value.
@@ -142,13 +176,13 @@ impl<'s> Lowering<'s> {
         let written = self.fitting(block, field, value);
         let shown = format!("`{}`", field.name);
         match written {
-            Some(written) if written != self.sources.text(value.span) => {
-                let written = format!("{} {written}", field.name);
+            Some((written, applicability)) if written != self.sources.text(value.span) => {
+                let written = (format!("{} {written}", field.name), applicability);
                 let written = Some(written).filter(|_| value.span.source == SourceId::File);
                 Meant::new(&[field.name], shown, whole, written)
             }
             written => {
-                let written = written.map(|_| field.name.to_owned());
+                let written = written.map(|_| (field.name.to_owned(), Applicability::Safe));
                 Meant::new(&[field.name], shown, name.span, written)
             }
         }
@@ -171,13 +205,13 @@ impl<'s> Lowering<'s> {
         found
     }
 
-    /// How a value has to be written for a field, if it will do or can be made to.
+    /// How a value has to be written for a field, if it will do or can be made to, and whether that is sure.
     fn fitting(
         &mut self,
         block: &Block<'s>,
         row: &Field,
         value: &tree::Value<'s>,
-    ) -> Option<String> {
+    ) -> Option<(String, Applicability)> {
         let found = self.tried(value, Some(row.takes));
         if !block.has_place(row) {
             return None;
@@ -186,14 +220,16 @@ impl<'s> Lowering<'s> {
         let (written, means) = match (found, &value.kind) {
             (None, ValueKind::Missing) => {
                 let example = || example_beside(row, &|other| block.given(other)?.value);
-                return (value.span.source == SourceId::File).then(example);
+                let is_of_file = value.span.source == SourceId::File;
+                return is_of_file.then(|| (example(), Applicability::Placeholder));
             }
             (Some(value), _) if value.kind() == row.takes => {
-                (row.allows(value).then(|| text.to_owned())?, Some(value))
+                let written = row.allows(value).then(|| text.to_owned())?;
+                ((written, Applicability::Safe), Some(value))
             }
             (Some(found), _) => {
                 let written = self.converted(row, value, found)?;
-                let means = literal(&written, row.takes);
+                let means = literal(&written.0, row.takes);
                 (written, means)
             }
             (None, _) => return None,
@@ -233,27 +269,56 @@ impl<'s> Lowering<'s> {
         block: &Block<'s>,
         fields: &[&str],
         value: &tree::Value<'s>,
-    ) -> Option<String> {
+    ) -> Option<(String, Applicability)> {
         let parts = value.parts();
         if !matches!(value.kind, ValueKind::Tuple(_)) || parts.len() != fields.len() {
             self.tried(value, None);
             return None;
         }
         let written = fields.iter().zip(parts).map(|(name, part)| {
-            let written = self.fitting(block, block.row.field(name)?, part);
-            Some(format!("{name} {}", written?))
+            let (written, applicability) = self.fitting(block, block.row.field(name)?, part)?;
+            Some((format!("{name} {written}"), applicability))
         });
-        let written: Option<Vec<String>> = written.collect();
-        written.map(|written| written.join("  "))
+        let written: Option<Vec<(String, Applicability)>> = written.collect();
+        let (written, applicability): (Vec<String>, Vec<Applicability>) =
+            written?.into_iter().unzip();
+        // Comments between the parts would go.
+        let text = self.sources.text(value.span);
+        let has_comment = text.contains("//") || text.contains("/*");
+        let least = Applicability::safe_if(!has_comment);
+        let applicability = applicability.into_iter().fold(least, Applicability::max);
+        Some((written.join("  "), applicability))
     }
 }
 
 impl Meant {
-    fn new(fields: &[&'static str], shown: String, place: Span, written: Option<String>) -> Self {
+    fn new(
+        fields: &[&'static str],
+        shown: String,
+        place: Span,
+        written: Option<(String, Applicability)>,
+    ) -> Self {
+        let fix = |(written, applicability)| Fix::write(place, written).being(applicability);
         Self {
             fields: fields.to_vec(),
             shown,
-            fix: written.map(|written| Fix::write(place, written)),
+            fixes: written.into_iter().map(fix).collect(),
         }
+    }
+
+    /// The same, where something else may be meant.
+    fn unsure(mut self) -> Self {
+        for fix in &mut self.fixes {
+            fix.applicability = fix.applicability.max(Applicability::Unsafe);
+        }
+        self
+    }
+
+    /// One or the other. A value that is of one type only tells which.
+    fn or(mut self, other: Self) -> Self {
+        self.shown += &format!(" or {}", other.shown);
+        self.fields.extend(other.fields);
+        self.fixes.extend(other.fixes);
+        self
     }
 }

@@ -285,10 +285,21 @@ impl<'s> Recovery<'_, 's> {
             return self.stray_parenthesis();
         }
         let mut values = Vec::new();
-        while self.starts_value(0) && !self.is_name(0) && self.kind(0) != TokenKind::Word {
-            values.push(self.expression());
-            if self.is(0, ",") {
-                self.bump();
+        let (mut is_listed, mut end) = (false, start);
+        while self.starts_value(0) && self.kind(0) != TokenKind::Word {
+            // Behind a comma a name is a value, unless a value of its own follows.
+            let word = self.word(0);
+            let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
+                || matches!(self.word(1), "(" | "[" | "<" | "=" | ":");
+            if self.is_name(0) && (!is_listed || has_value || self.is_field_name(word)) {
+                break;
+            }
+            let value = self.expression();
+            end = value.span;
+            values.push(value);
+            is_listed = self.is(0, ",");
+            if is_listed {
+                end = self.bump();
             }
         }
         if values.is_empty() {
@@ -299,7 +310,8 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(start.to(self.behind()));
             return;
         }
-        let span = start.to(self.behind());
+        // A comment behind the values is none of them.
+        let span = start.to(end);
         block.bad.push(span);
         // What is wrong within the values goes with the whole.
         self.problems.truncate(told);
@@ -320,7 +332,10 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        self.report(&say::MISSING_FIELD_NAME, span, &[&self.short(span)], fix);
+        // The corners of a box may be its centre and its size.
+        let is_sure = names.len() == values.len() && self.within.kind == "sphere";
+        let said = say::MISSING_FIELD_NAME.safe_if(is_sure);
+        self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
         block.fields.extend(fields.map(|(text, value)| Field {
             name: Name { text, span },

@@ -261,12 +261,18 @@ impl<'s> Recovery<'_, 's> {
         let name = words.join("_");
         let fix = if is_name(&name) {
             let title = format!("write `{kind} {} {{`", shorten(&name));
-            Some(Fix::new(title, [Edit::new(rest, name)]))
+            let apart = if rest.start == first.span.end {
+                " "
+            } else {
+                ""
+            };
+            Some(Fix::new(title, [Edit::new(rest, apart.to_owned() + &name)]))
         } else {
             let title = format!("write `{kind} {{`");
             matches!(written, "=" | ":").then(|| self.remove(title, rest))
         };
-        self.report(&say::BAD_HEAD, rest, &[&kind], fix);
+        let said = say::BAD_HEAD.safe_if(words.len() == 1);
+        self.report(&said, rest, &[&kind], fix);
         block.kind = Some(first);
         block.bad = vec![first.span.to(rest)];
         self.open_block(block);
@@ -378,11 +384,15 @@ impl<'s> Recovery<'_, 's> {
                 let sign = self.bump();
                 edits.push(Edit::remove_in(sign, self.text));
             }
-            let is_sure = self.problems.len() == told && !is_end && self.is_on_new_line(0);
+            let is_next = self.is_on_new_line(0) || (self.is_name(0) && self.is(1, "="));
+            let is_sure = self.problems.len() == told && !is_end && is_next;
             self.problems.truncate(told);
             let right = shorten(written);
             let fix = is_sure.then(|| Fix::new(format!("write `let {text} = {right}`"), edits));
-            self.report(&say::MISSING_LET, start, &[&text, &right], fix);
+            // The word of another language may say more than `let`.
+            let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
+            let said = say::MISSING_LET.safe_if(!is_foreign);
+            self.report(&said, start, &[&text, &right], fix);
             definition.span = start.to(value.span);
             definition.value = bad(value.span);
             self.items.push(Item::Definition(definition));

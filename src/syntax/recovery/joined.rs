@@ -3,6 +3,7 @@
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
+    color::are_shares,
     diagnostic::{Edit, Fix},
     schema::Type,
     source::Span,
@@ -52,7 +53,9 @@ impl<'s> Recovery<'_, 's> {
             (None | Some(Type::Number | Type::Angle), _)
                 if numbers && commas > 0 && self.comma_in_number(span) => {}
             (Some(Type::Color), 3) if numbers => {
-                self.missing_parentheses(span, Some(replace(span, format!("rgb{right}"))));
+                let said = say::MISSING_PARENTHESES.safe_if(!are_shares(&[whole]));
+                let fix = replace(span, format!("rgb{right}"));
+                self.report(&said, span, &[example(takes)], fix);
             }
             (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) if are_parts => {
                 self.missing_parentheses(span, Some(replace(span, right)));

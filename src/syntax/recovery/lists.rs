@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::{Recovery, example, foreign::Place, is_plain_number};
 use crate::{
+    color::are_shares,
     diagnostic::{Edit, Fix},
     schema::{self, Type},
     source::Span,
@@ -308,7 +309,8 @@ impl<'s> Recovery<'_, 's> {
         let parts: Vec<&str> = parts.collect();
         let right = format!("{function}({})", parts.join(", "));
         let fix = fits.then(|| replace(span, right));
-        self.report(&say::BRACKETS, span, &[what, example(takes)], fix);
+        let said = say::BRACKETS.safe_if(function.is_empty() || !are_shares(&parts));
+        self.report(&said, span, &[what, example(takes)], fix);
         let kind = match fits && function.is_empty() {
             true => ValueKind::Tuple(list.elements),
             false => ValueKind::Bad,

@@ -19,6 +19,8 @@ mod values;
 
 use std::collections::BTreeMap;
 
+use numbers::unit_of;
+
 use super::{
     Parsed, messages as say,
     problem::{Message, shorten, times},
@@ -403,7 +405,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.slip(sign);
         let word = self.word(0);
         let is_value = match self.is_name(0) {
-            true => self.words.is_value(word),
+            true => self.words.is_value(word) || unit_of(word).is_some(),
             false => self.starts_value(0),
         };
         self.within.is_doubtful |= is_value && !self.is_boundary();

@@ -25,7 +25,7 @@ const UNITS: &[(&str, f64, &str)] = &[
     ("in inch inches", 0.0254, ""),
 ];
 
-fn unit_of(written: &str) -> Option<(f64, &'static str)> {
+pub(super) fn unit_of(written: &str) -> Option<(f64, &'static str)> {
     let is_it = |word: &str| word.eq_ignore_ascii_case(written);
     let row = UNITS.iter().find(|(words, ..)| words.split(' ').any(is_it));
     row.map(|&(_, factor, unit)| (factor, unit))
@@ -134,8 +134,11 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
+        // `4x4` becomes 16.
+        let is_longer = |right: &String| right.len() >= written.len();
+        let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));
-        self.report(&say::BAD_NUMBER, place, &[&shorten(written), label], fix);
+        self.report(&said, place, &[&shorten(written), label], fix);
         bad(span)
     }
 

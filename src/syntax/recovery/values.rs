@@ -180,11 +180,22 @@ impl<'s> Recovery<'_, 's> {
             _ => {
                 let meant = ["−-", "×*", "·*", "÷/"].into_iter();
                 let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
-                self.unknown_operator(written, sign, meant.map(|meant| replace(sign, meant)));
+                let fix = meant.map(|meant| replace(sign, meant));
+                let fix = fix.or_else(|| self.power(written, &left, &right));
+                self.unknown_operator(written, sign, fix);
                 return bad(left.span.to(right.span));
             }
         };
         chain(left, operator, sign, right)
+    }
+
+    /// `r^2` and `r**2` as a product.
+    fn power(&self, sign: &str, base: &Value<'s>, exponent: &Value<'s>) -> Option<Fix> {
+        let is_square = matches!(sign, "^" | "**") && exponent.kind == ValueKind::Number("2");
+        let is_one = matches!(base.kind, ValueKind::Number(_) | ValueKind::Name(_));
+        let factor = self.written(base.span);
+        let product = format!("{factor} * {factor}");
+        (is_square && is_one).then(|| replace(base.span.to(exponent.span), product))
     }
 
     fn unknown_operator(&mut self, written: &str, span: Span, fix: Option<Fix>) {
@@ -192,7 +203,8 @@ impl<'s> Recovery<'_, 's> {
             "%" => "write the number itself, such as `0.5`",
             _ => "write a product, such as `a * a`, or `sqrt(a)`",
         };
-        self.report(&say::UNKNOWN_OPERATOR, span, &[written, help], fix);
+        let said = say::UNKNOWN_OPERATOR.safe_if(!matches!(written, "^" | "**"));
+        self.report(&said, span, &[written, help], fix);
     }
 
     /// An operator behind which nothing stands.

@@ -13,6 +13,8 @@ interface CodeAction {
   kind: string;
   diagnostics?: ServerDiagnostic[];
   edit: { changes?: Record<string, TextEdit[]> };
+  /** Where the made-up values stand in the text of the first edit. */
+  data?: { values: [number, number][] };
 }
 
 /** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip
@@ -53,12 +55,21 @@ function isSame(one: ServerDiagnostic, other: ServerDiagnostic): boolean {
 function fix(editor: SceneEditor, action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit.changes?.[editor.uri] ?? [];
+  const [first] = edits;
+  const [value] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
       // The edits are for the text that was judged; a newer one is being judged now.
       if (view.state.doc !== doc) return;
-      view.dispatch({ changes: editor.changes(edits), userEvent: "input.fix" });
+      // A made-up value is selected, to type over. What is made up is ASCII.
+      const at = first === undefined ? 0 : editor.offset(first.range.start);
+      const selection = value && { anchor: at + value[0], head: at + value[1] };
+      view.dispatch({
+        changes: editor.changes(edits), userEvent: "input.fix",
+        ...(selection && { selection, scrollIntoView: true }),
+      });
+      if (selection) view.focus();
     },
   };
 }

@@ -1,6 +1,8 @@
 //! What diagnostics offer to do: each fix does away with its problem and makes no new error.
 
 mod answers;
+mod kept;
+mod law;
 mod mistyped;
 mod names;
 
@@ -61,6 +63,8 @@ impl Trial {
             for fix in &diagnostic.fixes {
                 self.fixes += 1;
                 let after = diagnostics(&fixed(before_sources, fix));
+                let errors = |found: &[Diagnostic]| found.iter().filter(|d| d.is_error()).count();
+                let are_fewer = errors(&after) < errors(&before);
                 let mut complain = |what: &str, said: &(&str, String)| {
                     let text = before_sources.file.text();
                     let complaint = format!("`{}`: {what} {said:?}\n{text}", fix.title);
@@ -69,6 +73,9 @@ impl Trial {
                 let this = said(diagnostic);
                 if counted(&after).get(&this) >= said_before.get(&this) {
                     complain("stays", &this);
+                }
+                if diagnostic.is_error() && !are_fewer {
+                    complain("leaves as many errors", &this);
                 }
                 for (new, times) in counted(after.iter().filter(|d| d.is_error())) {
                     if Some(&times) > said_before.get(&new) {

@@ -1,7 +1,7 @@
 //! Texts: what is read of them, what is offered to mend them, and how they are laid out.
 
 use pinhole::{
-    diagnostic::apply,
+    diagnostic::{Applicability, apply},
     scene,
     source::{Source, SourceId, Sources},
 };
@@ -45,9 +45,9 @@ fn is_mended(text: String) {
             assert_ne!(after, text, "{}", fix.title);
         }
     }
-    let once = scene::fix_all(&sources).text;
+    let once = scene::fix_all(&sources, Applicability::Safe).text;
     let again = Sources::new(Source::from_text("a.scn", once.as_str()));
-    let twice = scene::fix_all(&again).text;
+    let twice = scene::fix_all(&again, Applicability::Safe).text;
     assert_eq!(twice, once, "{text}");
 }
 

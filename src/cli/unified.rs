@@ -1,0 +1,102 @@
+//! A unified diff, as `patch` reads it.
+//!
+//! In: a text before and after. Out: the lines that differ, with three others around them.
+
+use std::ops::Range;
+
+/// Lines that are shown around a change.
+const AROUND: usize = 3;
+
+/// Farthest that two texts are searched for lines that are the same again.
+const FAR: usize = 500;
+
+/// Lines of the old text, and the lines of the new one in their place.
+struct Change {
+    old: Range<usize>,
+    new: Range<usize>,
+}
+
+/// The changes of a file; nothing if there are none.
+pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
+    let lines = |text| str::split_inclusive(text, '\n').collect::<Vec<&str>>();
+    let (old, new) = (lines(old), lines(new));
+    let changes = changes(&old, &new);
+    let mut text = String::new();
+    let mut rest = changes.as_slice();
+    while let Some(first) = rest.first() {
+        // Changes whose surroundings touch stand together.
+        let near = |pair: &[Change]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
+        let together = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
+        let (hunk, behind) = rest.split_at(together);
+        let last = hunk.last().unwrap_or(first);
+        if text.is_empty() {
+            text = format!("--- {name}\n+++ {name}\n");
+        }
+        push_hunk(&mut text, hunk, &old, &new, last);
+        rest = behind;
+    }
+    text
+}
+
+fn push_hunk(text: &mut String, hunk: &[Change], old: &[&str], new: &[&str], last: &Change) {
+    let Some(first) = hunk.first() else { return };
+    let before = first.old.start.min(AROUND);
+    let after = (old.len() - last.old.end).min(AROUND);
+    let place = |start: usize, end: usize| {
+        let (start, end) = (start - before, end + after);
+        // An empty range stands behind the line that it names.
+        let first = if start == end { start } else { start + 1 };
+        format!("{first},{}", end - start)
+    };
+    let places = [
+        place(first.old.start, last.old.end),
+        place(first.new.start, last.new.end),
+    ];
+    *text += &format!("@@ -{} +{} @@\n", places[0], places[1]);
+    let mut push = |sign, lines: &[&str]| {
+        for line in lines {
+            *text += &format!("{sign}{line}");
+            if !line.ends_with('\n') {
+                *text += "\n\\ No newline at end of file\n";
+            }
+        }
+    };
+    let mut at = first.old.start - before;
+    for change in hunk {
+        push(' ', &old[at..change.old.start]);
+        push('-', &old[change.old.clone()]);
+        push('+', &new[change.new.clone()]);
+        at = change.old.end;
+    }
+    push(' ', &old[at..last.old.end + after]);
+}
+
+/// Walks both texts. Where they differ, they go on at the nearest place at which two lines, or the ends, are the same: changes are
+/// small, and far from the shortest list nothing is wrong but its length.
+fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
+    let (mut a, mut b, mut changes) = (0, 0, Vec::new());
+    while a < old.len() || b < new.len() {
+        if a < old.len() && b < new.len() && old[a] == new[b] {
+            (a, b) = (a + 1, b + 1);
+            continue;
+        }
+        let (old_rest, new_rest) = (&old[a..], &new[b..]);
+        let is_same = |&(i, j): &(usize, usize)| {
+            i <= old_rest.len() && j <= new_rest.len() && {
+                let (old, new) = (old_rest[i..].iter(), new_rest[j..].iter());
+                old.take(2).eq(new.take(2))
+            }
+        };
+        let steps = (1..=2 * FAR).flat_map(|sum| (0..=sum).map(move |i| (i, sum - i)));
+        let (i, j) = steps
+            .into_iter()
+            .find(is_same)
+            .unwrap_or((old_rest.len(), new_rest.len()));
+        changes.push(Change {
+            old: a..a + i,
+            new: b..b + j,
+        });
+        (a, b) = (a + i, b + j);
+    }
+    changes
+}

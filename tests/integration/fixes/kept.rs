@@ -1,0 +1,387 @@
+//! What safe fixes keep: every number, and every name or the known one that is near it. All that is new are keywords, units and
+//! punctuation. The words of a text are read here by a walk of its own, comments among them, so that none of them gets lost.
+
+use pinhole::{
+    diagnostic::Applicability,
+    scene,
+    schema::{self, BLOCKS},
+    source::{Source, Sources},
+    suggest,
+};
+
+/// Units of length, and what they are in metres; of angles, and what they are in degrees.
+const UNITS: [(&str, f64); 9] = [
+    ("cm", 0.01),
+    ("mm", 0.001),
+    ("km", 1000.0),
+    ("ft feet foot", 0.3048),
+    ("in inch inches", 0.0254),
+    ("m metre metres meter meters px pixel pixels", 1.0),
+    ("deg degs degree degrees °", 1.0),
+    ("rad rads radian radians", 1.0),
+    ("grad grads gon", 0.9),
+];
+
+/// The numbers and the names of a text, in order. A number's unit is a part of it.
+#[derive(Debug, Default)]
+struct Words {
+    numbers: Vec<f64>,
+    names: Vec<String>,
+}
+
+impl Words {
+    fn of(text: &str) -> Self {
+        let mut words = Self::default();
+        let mut rest = text;
+        let mut is_number_before = false;
+        while let Some(first) = rest.chars().next() {
+            let is_number = first.is_ascii_digit()
+                || (first == '.' && rest[1..].starts_with(|c: char| c.is_ascii_digit()));
+            if is_number {
+                let length = number_length(rest);
+                let digits = rest[..length].replace('_', "");
+                words.numbers.push(digits.parse().unwrap());
+                rest = &rest[length..];
+                is_number_before = true;
+                continue;
+            }
+            if is_letter(first) || (first == '°' && is_number_before) {
+                let length = rest
+                    .find(|c: char| !(is_letter(c) || c.is_ascii_digit() || c == '°'))
+                    .unwrap_or(rest.len());
+                // `0.5x1.5x2`
+                let is_times = rest.starts_with(['x', 'X'])
+                    && rest[1..].starts_with(|c: char| c.is_ascii_digit())
+                    && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
+                if is_times {
+                    rest = &rest[1..];
+                    continue;
+                }
+                let length = glued(&rest[..length], text).unwrap_or(length);
+                let word = &rest[..length];
+                rest = &rest[length..];
+                let is_it = |row: &&(&str, f64)| {
+                    row.0.split(' ').any(|unit| unit.eq_ignore_ascii_case(word))
+                };
+                match UNITS.iter().find(is_it).filter(|_| is_number_before) {
+                    Some((_, factor)) => *words.numbers.last_mut().unwrap() *= factor,
+                    None => words.names.push(word.to_owned()),
+                }
+            } else {
+                rest = &rest[first.len_utf8()..];
+            }
+            is_number_before &= first == ' ';
+        }
+        words
+    }
+}
+
+/// How long the field's name is that a word starts with where the field's value follows, as in `radius2`.
+fn glued(word: &str, text: &str) -> Option<usize> {
+    if BLOCKS.iter().any(|block| block.field(word).is_some()) {
+        return None;
+    }
+    let is_value = |rest: &str| {
+        rest.starts_with(|c: char| c.is_ascii_digit())
+            || schema::css::color(rest).is_some()
+            || text.contains(&format!("let {rest} "))
+    };
+    let mut fields = BLOCKS.iter().flat_map(|block| block.field_names());
+    let found = fields.find(|field| word.strip_prefix(field).is_some_and(is_value));
+    found.map(str::len)
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_alphabetic() || c == '_'
+}
+
+/// How long the number is that a text starts with.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
+    let digits = |mut at: usize| {
+        while is_digit(at) || (bytes.get(at) == Some(&b'_') && is_digit(at + 1)) {
+            at += 1;
+        }
+        at
+    };
+    let mut end = digits(0);
+    if bytes.get(end) == Some(&b'.') {
+        end = digits(end + 1);
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) {
+        let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+        if is_digit(end + 1 + sign) {
+            end = digits(end + 1 + sign);
+        }
+    }
+    end
+}
+
+/// The words of the language.
+fn keywords() -> impl Iterator<Item = &'static str> {
+    let blocks = BLOCKS.iter().map(|block| block.name);
+    let fields = BLOCKS.iter().flat_map(|block| block.field_names());
+    blocks.chain(fields).chain(["let", "rgb"])
+}
+
+/// Whether two words are all but the same.
+fn is_near(new: &str, old: &str) -> bool {
+    suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
+}
+
+/// Whether a word is the language's own for another one.
+fn is_known_for(new: &str, old: &str) -> bool {
+    let is_tried = |block: &schema::Block| {
+        let field = block.field_tried(old);
+        let mut several = block.several.iter();
+        field.is_some_and(|field| field.name == new)
+            || (block.name == new && suggest::is_among(old, block.also_tried))
+            || several.any(|it| suggest::is_among(old, it.words) && it.fields.contains(&new))
+    };
+    BLOCKS.iter().any(is_tried)
+        || schema::nearest_method(old) == Some(new)
+        || old.strip_prefix("0x") == Some(new)
+}
+
+/// What safe fixes make of a text, and what they do that they should not.
+pub fn fixed(text: &str) -> (String, Vec<String>) {
+    let sources = Sources::new(Source::from_text("a.scn", text));
+    let fixed = scene::fix_all(&sources, Applicability::Safe);
+    let (before, after) = (Words::of(text), Words::of(&fixed.text));
+    let removed = fixed.done.iter().filter(|done| {
+        done.title.starts_with("remove this `let") || done.title.starts_with("keep the first")
+    });
+    let has_removed = removed.count() > 0;
+    let mut complaints = Vec::new();
+    let is_same = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * a.abs();
+    let mut left = after.numbers.iter();
+    let mut lost = Vec::new();
+    let mut next = left.next();
+    for &number in &before.numbers {
+        match next {
+            Some(&other) if is_same(number, other) => next = left.next(),
+            _ => lost.push(number),
+        }
+    }
+    let is_elsewhere = |lost: &f64| after.numbers.iter().any(|&other| is_same(*lost, other));
+    if next.is_some() {
+        complaints.push(format!("a number is new: {next:?}"));
+    }
+    if !lost.is_empty() && !(has_removed && lost.iter().all(is_elsewhere)) {
+        complaints.push(format!("numbers are lost: {lost:?}"));
+    }
+    // Whether two words were joined, or one replaced, may be read in two ways.
+    let ways = [true, false].map(|joins| of_names(&before.names, &after.names, joins));
+    let [_, (lost, new)] = match ways[0].0.is_empty() && ways[0].1.is_empty() {
+        true => [ways[1].clone(), ways[0].clone()],
+        false => ways,
+    };
+    if !lost.is_empty() && !(has_removed && lost.iter().all(|name| after.names.contains(name))) {
+        complaints.push(format!("names are lost: {lost:?}"));
+    }
+    if !new.is_empty() {
+        complaints.push(format!("names are new: {new:?}"));
+    }
+    let titles: Vec<&str> = fixed.done.iter().map(|done| done.title.as_str()).collect();
+    for complaint in &mut complaints {
+        *complaint += &format!("\n{titles:?}\n{text}\n--\n{}", fixed.text);
+    }
+    (fixed.text, complaints)
+}
+
+/// The names that are lost, and those that are new.
+fn of_names(before: &[String], after: &[String], joins: bool) -> (Vec<String>, Vec<String>) {
+    let (mut names, mut new) = (before.to_vec(), after.to_vec());
+    // `look at` is one word.
+    let is_known = |word: &String| {
+        BLOCKS.iter().any(|block| block.field(word).is_some())
+            || schema::css::color(word).is_some()
+            || schema::method(word).is_some()
+    };
+    let times = |all: &[String], word: &String| all.iter().filter(|other| *other == word).count();
+    for at in (1..names.len()).rev() {
+        let Some([one, two]) = names.get(at - 1..=at).filter(|_| joins) else {
+            continue;
+        };
+        let joined = [format!("{one}{two}"), format!("{one}_{two}")];
+        let is_joined = |word: &&String| is_known(word) && times(&new, word) > times(&names, word);
+        if let Some(word) = joined.iter().find(is_joined).cloned() {
+            names.drain(at - 1..=at);
+            new.remove(new.iter().position(|other| *other == word).unwrap());
+        }
+    }
+    let is_same = |new: &str, old: &str| new == old;
+    for is_for in [is_same, is_near, is_known_for] {
+        names.retain(|name| {
+            let at = new.iter().position(|other| is_for(other, name));
+            at.map(|at| new.remove(at)).is_none()
+        });
+    }
+    // `let Ball = sphere {` becomes a block.
+    names.retain(|name| name != "let");
+    new.retain(|name| !keywords().any(|word| word == name));
+    (names, new)
+}
+
+/// Texts with one to four slips, as many as are asked for, the same ones whenever they are asked for.
+pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
+    let mut random = Random(1);
+    for _ in 0..count {
+        let mut text = random.one_of(texts).clone();
+        for _ in 0..1 + random.below(4) {
+            text = slip(&text, &mut random);
+        }
+        is_tried(&text);
+    }
+}
+
+/// One slip: a piece of the text is taken away, written twice, put elsewhere or replaced, or something stands behind it.
+fn slip(text: &str, random: &mut Random) -> String {
+    const OTHERS: [&str; 72] = [
+        "radius",
+        "center",
+        "2",
+        "-1.5",
+        ",",
+        "=",
+        "(",
+        ")",
+        "{",
+        "}",
+        "[",
+        "]",
+        "<1, 2, 3>",
+        "let",
+        "red",
+        "-",
+        "*",
+        "^2",
+        "deg",
+        "#",
+        "\"",
+        ";",
+        ":",
+        "+",
+        "//",
+        "/* c */",
+        "#ff8800",
+        "0.785",
+        "R",
+        "vec3(1, 2, 3)",
+        "(1, 2)",
+        "[3, 4, 5]",
+        "rgb",
+        "cm",
+        "30 degrees",
+        "1,5",
+        "x",
+        "\u{200b}",
+        "\u{a0}",
+        "let a = 2",
+        "let a = 3",
+        "radius 2",
+        "radius 2",
+        "color <1, 0, 0>",
+        "color 255 0 0",
+        "camera { eye (1, 2, 3)  lookat (0, 0, 0) }",
+        "sphere { <1, 2, 3>, R }",
+        "look (0, 0, -1)",
+        "fov 45",
+        "fov 0.785",
+        "d 3",
+        "aspect 16/9",
+        "width 640",
+        "zoom 2",
+        "size 2",
+        "2 pi",
+        "4x4",
+        "0.5x1.5x2",
+        "var b = 7",
+        "b = 7",
+        "Ball = sphere {",
+        "look at",
+        "diameter 3",
+        "1e3",
+        ".5",
+        "position",
+        "colour",
+        "samples 16",
+        "# note 5",
+        "-- note 6",
+        "sin 30",
+        "1 000",
+    ];
+    let pieces = pieces(text);
+    if pieces.is_empty() {
+        return text.to_owned();
+    }
+    let piece = random.one_of(&pieces).clone();
+    let (before, word, after) = (
+        &text[..piece.start],
+        &text[piece.clone()],
+        &text[piece.end..],
+    );
+    let other = *random.one_of(&OTHERS);
+    let some = text[random.one_of(&pieces).clone()].to_owned();
+    let letters: Vec<char> = word.chars().collect();
+    let at = random.below(letters.len());
+    let word_of = |letters: Vec<char>| letters.into_iter().collect::<String>();
+    let changed = match random.below(12) {
+        0 => String::new(),
+        1 => format!("{word} {word}"),
+        2 => other.to_owned(),
+        3 => format!("{word} {other}"),
+        4 => format!("{other} {word}"),
+        5 => some,
+        6 => format!("{word} {some}"),
+        7 => format!("{word}{other}"),
+        8 => word_of([&letters[..at], &letters[at + 1..]].concat()),
+        9 => word_of([&letters[..=at], &letters[at..]].concat()),
+        10 => {
+            let mut letters = letters;
+            let next = (at + 1) % letters.len();
+            letters.swap(at, next);
+            word_of(letters)
+        }
+        _ => format!("{word}\n{other}\n"),
+    };
+    format!("{before}{changed}{after}")
+}
+
+/// The words, numbers and signs of a text.
+fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
+    let mut pieces = Vec::new();
+    let mut at = 0;
+    while let Some(first) = text[at..].chars().next() {
+        let is_word = |c: char| is_letter(c) || c.is_ascii_digit() || c == '.';
+        let end = match is_word(first) {
+            true => text[at..]
+                .find(|c| !is_word(c))
+                .map_or(text.len(), |to| at + to),
+            false => at + first.len_utf8(),
+        };
+        if !first.is_whitespace() {
+            pieces.push(at..end);
+        }
+        at = end;
+    }
+    pieces
+}
+
+/// A generator by Vigna (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((bits ^ (bits >> 31)) % bound as u64) as usize
+    }
+
+    fn one_of<'t, T>(&mut self, among: &'t [T]) -> &'t T {
+        &among[self.below(among.len())]
+    }
+}

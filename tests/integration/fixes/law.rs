@@ -1,0 +1,68 @@
+//! Safe fixes keep what the author wrote, whatever the text: slips made by a program in every example and fixture, and files of
+//! other programs and languages.
+
+use std::{fs, path::Path};
+
+use super::{Trial, kept};
+use crate::{
+    diagnostics::fixtures,
+    program::names,
+    scenes::{examples, sources},
+};
+
+/// Files of other programs and languages.
+fn foreign() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign");
+    let names = names(&folder);
+    assert!(names.len() >= 30, "{names:?}");
+    let read = |name| fs::read_to_string(folder.join(name)).unwrap();
+    names.into_iter().map(read).collect()
+}
+
+/// Each file, each of its lines, and what is left of it behind each line: a file as a whole may be known at once.
+fn pieces(text: &str) -> Vec<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));
+    let each = lines.iter().map(|line| (*line).to_owned());
+    each.chain(rest).collect()
+}
+
+#[track_caller]
+fn assert_none(complaints: &[String]) {
+    assert!(complaints.is_empty(), "{}", complaints.join("\n====\n"));
+}
+
+#[test]
+fn files_of_other_languages_keep_their_numbers_and_names() {
+    let mut complaints = Vec::new();
+    for text in foreign().iter().flat_map(|text| pieces(text)) {
+        complaints.extend(kept::fixed(&text).1);
+    }
+    assert_none(&complaints);
+}
+
+/// `PINHOLE_SLIPS=100000 cargo test` tries as many.
+#[test]
+fn texts_with_slips_keep_their_numbers_and_names() {
+    let asked = std::env::var("PINHOLE_SLIPS").ok();
+    let count = asked.map_or(1000, |count| count.parse().unwrap());
+    let fixtures = fixtures().map(|(_, sources)| sources.file.text().to_owned());
+    let mut texts: Vec<String> = examples().into_iter().chain(fixtures).collect();
+    texts.extend(foreign());
+    texts.retain(|text| text.len() <= 3000);
+    let mut complaints = Vec::new();
+    kept::slips(&texts, count, |text| complaints.extend(kept::fixed(text).1));
+    assert_none(&complaints);
+}
+
+/// Whatever its applicability, a fix that is applied alone leads to fewer errors.
+#[test]
+fn every_fix_in_a_file_of_another_language_helps() {
+    let mut trial = Trial::default();
+    for text in foreign() {
+        for text in pieces(&text) {
+            trial.type_in(&sources(&text), |d, _| d.is_error());
+        }
+    }
+    trial.ends_with_more_than(100);
+}
