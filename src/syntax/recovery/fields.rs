@@ -48,7 +48,7 @@ impl<'s> Recovery<'_, 's> {
                 sign @ (")" | "]") if self.is_end_of_block() => {
                     let close = self.bump();
                     let fix = Fix::write(close, "}");
-                    self.report(&say::STRAY_CLOSING, close, &[sign], fix);
+                    self.report(&say::STRAY_CLOSING.safe_if(true), close, &[sign], fix);
                     block.close = Some(close);
                     block.span = block.span.to(close);
                     break;

@@ -208,7 +208,7 @@ impl<'s> Recovery<'_, 's> {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
             let fix = Fix::new("write commas", commas);
             self.report(
-                &say::UNEXPECTED,
+                &say::UNEXPECTED.safe_if(true),
                 first,
                 &["`,`", ";"],
                 is_plain.then_some(fix),
