@@ -60,7 +60,10 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    if digits(&written) != digits(near)
+    // What stands behind it may be its value, without a space between.
+    let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
+    if is_longer
+        || digits(&written) != digits(near)
         || (written.contains(char::is_whitespace) && letters(&written) != near_letters)
     {
         return false;

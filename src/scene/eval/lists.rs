@@ -93,7 +93,7 @@ impl<'s> Evaluator<'_, 's> {
         let texts = elements.iter().map(|it| self.sources.text(it.value.span));
         let texts: Vec<&str> = texts.collect();
         let (meant, applicability) = match texts[..] {
-            [x, y] if list == Type::Vector && wanted.is_none_or(|wanted| wanted == list) => {
+            [x, y] if list == Type::Vector && wanted == Some(list) => {
                 let meant = third(x, y).map(|z| format!("({x}, {y}, {z})"));
                 (meant, Applicability::Placeholder)
             }

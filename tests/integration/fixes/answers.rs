@@ -22,7 +22,7 @@ fn mended(text: &str) -> Option<String> {
     }
 }
 
-const QUESTIONS: [&str; 4] = ["offered", "of_all", "at_the_end", "mended"];
+const QUESTIONS: [&str; 5] = ["offered", "of_all", "at_the_end", "mended", "kind"];
 
 fn answer(question: &str, text: &str, _: &str) -> String {
     let camera = match text.contains("camera {") {
@@ -54,7 +54,11 @@ fn answer(question: &str, text: &str, _: &str) -> String {
         if question == "of_all" {
             assert_eq!(codes(&fixed, &[]), [""; 0]);
         }
-        format!("{}: {}", fix.title, of_text(&fixed))
+        let title = match question {
+            "kind" => format!("{}, {}", fix.applicability.word(), fix.title),
+            _ => fix.title.clone(),
+        };
+        format!("{title}: {}", of_text(&fixed))
     });
     let offered: Vec<String> = offered.collect();
     match offered.is_empty() {

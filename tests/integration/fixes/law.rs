@@ -3,12 +3,8 @@
 
 use std::{fs, path::Path};
 
-use super::{Trial, kept};
-use crate::{
-    diagnostics::fixtures,
-    program::names,
-    scenes::{examples, sources},
-};
+use super::kept;
+use crate::{diagnostics::fixtures, program::names, scenes::examples};
 
 /// Files of other programs and languages.
 fn foreign() -> Vec<String> {
@@ -53,16 +49,4 @@ fn texts_with_slips_keep_their_numbers_and_names() {
     let mut complaints = Vec::new();
     kept::slips(&texts, count, |text| complaints.extend(kept::fixed(text).1));
     assert_none(&complaints);
-}
-
-/// Whatever its applicability, a fix that is applied alone leads to fewer errors.
-#[test]
-fn every_fix_in_a_file_of_another_language_helps() {
-    let mut trial = Trial::default();
-    for text in foreign() {
-        for text in pieces(&text) {
-            trial.type_in(&sources(&text), |d, _| d.is_error());
-        }
-    }
-    trial.ends_with_more_than(100);
 }
