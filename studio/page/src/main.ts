@@ -12,7 +12,7 @@ import { SceneEditor } from "./editor";
 import { Files } from "./files";
 import { Frames } from "./frames";
 import { Hover } from "./hover";
-import { hintField, Hints } from "./hints";
+import { hintField, Hints, openSwatch } from "./hints";
 import { Keys } from "./keys";
 import { layOut, offerLayers } from "./layout";
 import { numberControls } from "./numbers";
@@ -26,6 +26,7 @@ import { offerSharing, sceneInAddress } from "./share";
 import { Status } from "./status";
 import { followTheme, themeExtension } from "./theme";
 import { Tools } from "./tools";
+import { setText } from "./visible";
 
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(
   `meta[name="pinhole-${name}"]`)?.content;
@@ -42,7 +43,7 @@ const editor: SceneEditor = new SceneEditor(
   byId("editor"),
   connection,
   meta("nonce"),
-  [keymap.of([fixKey]), numberControls(limitsAt), hintField, themeExtension()],
+  [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField, themeExtension()],
   update => {
     if (update.docChanged) selection.mapped(update.changes);
     if (update.selectionSet) selection.cursorMoved();
@@ -156,6 +157,11 @@ document.addEventListener("keydown", event => {
   event.preventDefault();
 });
 followTheme(editor.view);
+// The editor has no more lines in the page than are seen.
+addEventListener("beforeprint", () => {
+  picture.fit();
+  setText(byId("print-text"), `${files.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
+});
 layOut(picture);
 offerLayers(overlays);
 offerSharing(editor, connection, status, files);
