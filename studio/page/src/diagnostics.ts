@@ -15,8 +15,7 @@ interface CodeAction {
   edit: { changes?: Record<string, TextEdit[]> };
 }
 
-/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip
- *  closes when there are new diagnostics. */
+/** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
 export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;

@@ -14,7 +14,6 @@ const BEHIND = 500;
 
 /** So many drafts are in the browser. */
 const MOST = 10;
-
 interface Kept extends Draft { id: string }
 
 export class Drafts {

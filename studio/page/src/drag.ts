@@ -16,7 +16,6 @@ export interface Held { object: number | null; handle: string; at: Point }
 
 /** Why a drag could not be done stays readable for so many milliseconds after it. */
 const REFUSAL_STAYS = 5000;
-
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 

@@ -9,9 +9,7 @@ import { Gesture } from "./gesture";
 import type { Position, Range, TextEdit } from "./protocol";
 
 interface InlayHint { position: Position; label: string }
-
 interface Color { red: number; green: number; blue: number; alpha: number }
-
 interface ColorInformation { range: Range; color: Color }
 
 /** How long the text has to rest before hints are asked for, in milliseconds. */
@@ -19,7 +17,6 @@ const REST = 150;
 
 /** A colour as it is written. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
-
 const setHints = StateEffect.define<DecorationSet>();
 
 export const hintField = StateField.define<DecorationSet>({
@@ -34,9 +31,7 @@ export const hintField = StateField.define<DecorationSet>({
 
 class HintWidget extends WidgetType {
   constructor(private readonly text: string) { super(); }
-
   override eq(other: HintWidget): boolean { return other.text === this.text; }
-
   toDOM(): HTMLElement { return create("span", "hint", this.text); }
 }
 

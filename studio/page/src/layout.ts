@@ -44,7 +44,6 @@ export function layOut(picture: Picture): void {
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());
   byId("zoom-actual").addEventListener("click", () => picture.actualSize());
-
   byId("keys").addEventListener("click", () => byId<HTMLDialogElement>("keys-dialog").showModal());
 
   // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.

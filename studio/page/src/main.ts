@@ -31,7 +31,6 @@ import { setText } from "./visible";
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(
   `meta[name="pinhole-${name}"]`)?.content;
 const isServed = meta("host") !== "static";
-
 const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
 const status = new Status();
 const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
@@ -40,9 +39,7 @@ const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElem
 const limitsAt = (at: number) =>
   editor.ask<Limits>("pinhole/limits", { position: editor.position(at) });
 const editor: SceneEditor = new SceneEditor(
-  byId("editor"),
-  connection,
-  meta("nonce"),
+  byId("editor"), connection, meta("nonce"),
   [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField, themeExtension()],
   update => {
     if (update.docChanged) selection.mapped(update.changes);
@@ -55,9 +52,7 @@ const editor: SceneEditor = new SceneEditor(
 editor.diagnosed = published => void publishDiagnostics(editor, published);
 const problems = new Problems(() => editor.view);
 const hints = new Hints(editor);
-const frames = new Frames(
-  editor,
-  connection,
+const frames = new Frames(editor, connection,
   shown => {
     status.picture(shown.size, shown.fineness);
     picture.show(shown);
