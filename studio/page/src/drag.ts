@@ -25,7 +25,6 @@ export interface Workbench {
   frames: Frames;
   picture: Picture;
   along(): Along | undefined;
-  /** Called when a drag has come to its end. */
   rested(): void;
 }
 
@@ -42,9 +41,9 @@ class Note {
     const { clientWidth, clientHeight } = this.element.parentElement as HTMLElement;
     const { offsetWidth, offsetHeight } = this.element;
     const left = Math.max(4, Math.min(x + 18, clientWidth - offsetWidth - 4));
-    const top = y - offsetHeight - 14 > 4 ? y - offsetHeight - 14 : y + 22;
-    const bounded = Math.max(4, Math.min(top, clientHeight - offsetHeight - 4));
-    this.element.style.transform = `translate(${left}px, ${bounded}px)`;
+    const above = y - offsetHeight - 14;
+    const top = Math.max(4, Math.min(above > 4 ? above : y + 22, clientHeight - offsetHeight - 4));
+    this.element.style.transform = `translate(${left}px, ${top}px)`;
   }
 
   end(): void {
@@ -109,7 +108,6 @@ export class Drag {
     return hold();
   }
 
-  /** The hand is at a point of the picture. */
   to(target: Point): void {
     this.target = target;
     void this.run();
@@ -123,7 +121,6 @@ export class Drag {
     void this.holding.then(() => this.busy || this.finish());
   }
 
-  /** Ends as if it had not been. */
   cancel(): void {
     this.back();
     this.finish();

@@ -35,7 +35,6 @@ const MOST_LINES = 3000;
 /** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
-  /** Called when the file has got the page's text. */
   onSaved: () => void = () => {};
   /** What the file held when it was last seen; null where there was none. */
   seen: string | null = null;

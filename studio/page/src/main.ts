@@ -75,7 +75,8 @@ const bench = {
   },
 };
 new Pointers(bench, selection, tools, new Keys(bench, selection, tools, status));
-new Hover(editor, picture, overlays, status);
+const hover = new Hover(editor, picture, overlays, status);
+outlines.onRest = () => hover.again();
 const files = new Files(editor, connection, status, isServed);
 const drafts = new Drafts(editor, connection, files, isServed);
 files.onSaved = () => drafts.changed();

@@ -34,6 +34,7 @@ function describe({ size, objects }: Overlays, count: number): void {
 }
 
 export class Outlines {
+  onRest: () => void = () => {};
   private asking = false;
   private outdated = false;
   private timer = 0;
@@ -54,6 +55,7 @@ export class Outlines {
     const { editor, frames, selection } = this;
     const { doc } = editor.view.state;
     if (frames.dragging !== null || this.connection.state !== "open") return;
+    this.onRest();
     const about = { object: selection.index };
     const objects = await editor.ask<SceneObject[]>("pinhole/objects", about);
     if (objects === null || editor.view.state.doc !== doc) return;
