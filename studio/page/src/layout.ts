@@ -12,7 +12,7 @@ const MOST = 80;
 export function layOut(picture: Picture): void {
   const divider = byId("divider");
   const panes = byId("panes");
-  const isNarrow = matchMedia("(max-width: 760px)");
+  const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
   const share = (percent: number) => {
     const bounded = Math.round(Math.min(MOST, Math.max(LEAST, percent)));
     panes.style.setProperty("--text-share", `${bounded}%`);

@@ -37,8 +37,7 @@ for (const colorScheme of ["dark", "light"]) {
       await page.click("#share");
       await audit(page, "with the share dialog");
       await page.click("#share-dialog >> text=Close");
-      // A telephone has no keys.
-      if (width > 760) {
+      {
         await page.click("#keys");
         await audit(page, "with the list of keys");
         await page.click("#keys-dialog >> text=Close");
@@ -93,3 +92,25 @@ test("paper has the picture and the whole text", async t => {
   const pdf = await page.pdf();
   assert.ok((pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, "several pages");
 });
+
+for (const [width, height, least] of [[640, 400, 0.4], [390, 844, 0.9], [844, 390, 0.3], [820, 1180, 0.9]]) {
+  test(`everything can be reached at ${width} × ${height}, and the picture is large`, async t => {
+    const page = await open(await launch(t), await host(t), { viewport: { width, height } });
+    for (const id of ["#undo", "#save", "#share", "#keys", "#objects", "#along", "#zoom-in", "#zoom-actual", "#problems", "#theme"]) {
+      const { x, y, width: wide, height: high } = await page.locator(id).evaluate(it => {
+        it.scrollIntoView({ block: "nearest", inline: "nearest" });
+        const box = it.getBoundingClientRect();
+        const found = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+        return { ...box.toJSON(), width: it.contains(found) ? box.width : 0 };
+      });
+      assert.ok(wide > 0 && x >= 0 && y >= 0 && x + wide <= width + 1 && y + high <= height + 1, id);
+    }
+    await page.click("#zoom-fit");
+    const shown = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+    assert.ok(shown >= least * width, `${shown}`);
+    await type(page, FIGURE.replace("radius 1", "radios 1"));
+    await page.waitForSelector("#stale:not([hidden])");
+    const [note, stage] = await page.evaluate(() => ["#stale", "#stage"].map(it => document.querySelector(it).getBoundingClientRect().height));
+    assert.ok(note <= 0.26 * stage + 2, `${note} of ${stage}`);
+  });
+}
