@@ -3,7 +3,8 @@
 //! In: a path, and what somebody wants with it. Out: a file, or why there is none. `kind` looks at
 //! what a path leads to before it is opened, so that nothing waits for a pipe; `original` knows a
 //! file again that was read; `write` writes every file whole or not at all; and `output_folder`
-//! replaces in a folder only what was made there; `kept` has the small files that are kept of a user. What is in the files is left to others.
+//! replaces in a folder only what was made there; `kept` has the small files that are kept of a
+//! user. What is in the files is left to others.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"
