@@ -19,7 +19,8 @@ pub struct Limits {
     pub is_whole: bool,
 }
 
-/// Returns the bounds of the number at a place; `None` if it is no number that a field has by itself.
+/// Returns the bounds of the number at a place; `None` if it is no number that a field has by
+/// itself.
 pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     let path = analysis.path(at);
     let field = path.field_row()?;
@@ -51,7 +52,8 @@ pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     Some(limits)
 }
 
-/// The unit that a field's number or numbers are written in, if there is one; `None` if it is an expression, whose numbers mean something else.
+/// The unit that a field's number or numbers are written in, if there is one; `None` if it is an
+/// expression, whose numbers mean something else.
 fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
     match &value.kind {
         ValueKind::Number(_) => Some(None),

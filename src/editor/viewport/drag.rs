@@ -112,7 +112,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let alone = read(analysis, [&edits, &without_others]);
         match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found) => {
-                // What stands in the block itself concerns no other one, which saves reading a long text.
+                // What stands in the block itself concerns no other one, which saves reading a long
+                // text.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
@@ -136,7 +137,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
                 });
             }
             Ok(_) => refusal = tied(),
-            // More digits might slip by what the language forbids, and nobody would see the difference.
+            // More digits might slip by what the language forbids, and nobody would see the
+            // difference.
             Err(why) => match rounded(current, &changes, decimals) {
                 Some(rounded) if view.agree(ideal, rounded) => return Err(why),
                 _ => refusal = why,
@@ -146,7 +148,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     Err(refusal)
 }
 
-/// Why fields cannot take the values that they should have, where the text could be changed so that they can, and how.
+/// Why fields cannot take the values that they should have, where the text could be changed so that
+/// they can, and how.
 fn tied(analysis: &Analysis<'_>, block: &Block<'_>, name: &str, changes: &[Change]) -> String {
     let Some(change) = changes.first() else {
         return TOO_FAR.to_owned();
@@ -157,7 +160,7 @@ fn tied(analysis: &Analysis<'_>, block: &Block<'_>, name: &str, changes: &[Chang
     let line = analysis.line(written.map_or(block.span, |field| field.span));
     let value = change.from;
     format!(
-        "`{name}.{field}` in line {line} has numbers that others depend on in another way: write them out there, as in `{field} {value}`"
+        "`{name}.{field}` in line {line} cannot take that value, because it shares numbers with other fields: write its own numbers there, as in `{field} {value}`"
     )
 }
 
@@ -186,7 +189,8 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// The fields of the camera and of other objects in which two scenes differ that have the same blocks.
+/// The fields of the camera and of other objects in which two scenes differ that have the same
+/// blocks.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,

@@ -59,7 +59,8 @@ pub struct Outline {
     pub handles: Vec<(&'static str, Option<DVec2>)>,
 }
 
-/// Which objects are shown: by their indices, or the first [`MOST_OBJECTS`] and one that may come behind them.
+/// Which objects are shown: by their indices, or the first [`MOST_OBJECTS`] and one that may come
+/// behind them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Shown {
     /// These alone.

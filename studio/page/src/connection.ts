@@ -29,12 +29,10 @@ interface Waiting { resolve(result: unknown): void; reject(error: Error): void }
 /** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 
-/** After so many milliseconds of silence the server is asked whether it lives, which it answers in
- *  so many more, unless it hangs. */
+/** After so much silence the server is asked whether it lives, and has so long to answer, in ms. */
 const QUIET = 700;
 const HANGING = 1200;
 const ALIVE = "studio/alive";
-
 const NO_CONNECTION = "This cannot be done without a connection.";
 
 /** The codes with which the host closes a web socket. */
@@ -111,7 +109,6 @@ export class Connection implements Transport {
   }
 
   subscribe(handler: (text: string) => void): void { this.handlers.add(handler); }
-
   unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
 
   /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost. */
@@ -176,8 +173,7 @@ export class Connection implements Transport {
   }
 }
 
-/** A web socket on the page's own host. Its first message is the token; the host's first one is
- *  the token for the next time. */
+/** A web socket. Its first message is the token; the host's first one is that for the next time. */
 export function webSocket(path: string): Connector {
   return (opened, receive, closed) => {
     const { token } = session;

@@ -17,8 +17,7 @@ interface CodeAction {
   data?: { values: [number, number][] };
 }
 
-/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip
- *  closes when there are new diagnostics. */
+/** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
 export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;

@@ -14,7 +14,6 @@ const BEHIND = 500;
 
 /** So many drafts are in the browser. */
 const MOST = 10;
-
 interface Kept extends Draft { id: string }
 
 export class Drafts {
@@ -22,7 +21,7 @@ export class Drafts {
   /** Whether something is kept that this page has written. */
   private isKept = false;
   private isOffered = false;
-  private readonly id = crypto.randomUUID();
+  private id = `${Date.now()} ${Math.random()}`;
   private readonly bar = byId("draft-bar");
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
@@ -81,6 +80,7 @@ export class Drafts {
     byId("draft-choices").replaceChildren(
       createButton("Restore", "primary", choose(() => {
         this.isKept = true;
+        if (!this.isServed) this.id = (draft as Kept).id;
         this.next([]);
         this.files.restore(draft);
       })),
@@ -103,7 +103,6 @@ async function inStore<T>(act: (store: IDBObjectStore) => IDBRequest<T>): Promis
   } finally { database.close(); }
 }
 
-/** The drafts in this browser, the newest first. */
 async function all(): Promise<Kept[]> {
   const drafts = await inStore<Kept[]>(store => store.getAll());
   return drafts.sort((a, b) => b.time - a.time);

@@ -16,7 +16,6 @@ export interface Held { object: number | null; handle: string; at: Point }
 
 /** Why a drag could not be done stays readable for so many milliseconds after it. */
 const REFUSAL_STAYS = 5000;
-
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
@@ -26,7 +25,6 @@ export interface Workbench {
   frames: Frames;
   picture: Picture;
   along(): Along | undefined;
-  /** Called when a drag has come to its end. */
   rested(): void;
 }
 
@@ -43,9 +41,9 @@ class Note {
     const { clientWidth, clientHeight } = this.element.parentElement as HTMLElement;
     const { offsetWidth, offsetHeight } = this.element;
     const left = Math.max(4, Math.min(x + 18, clientWidth - offsetWidth - 4));
-    const top = y - offsetHeight - 14 > 4 ? y - offsetHeight - 14 : y + 22;
-    const bounded = Math.max(4, Math.min(top, clientHeight - offsetHeight - 4));
-    this.element.style.transform = `translate(${left}px, ${bounded}px)`;
+    const above = y - offsetHeight - 14;
+    const top = Math.max(4, Math.min(above > 4 ? above : y + 22, clientHeight - offsetHeight - 4));
+    this.element.style.transform = `translate(${left}px, ${top}px)`;
   }
 
   end(): void {
@@ -110,7 +108,6 @@ export class Drag {
     return hold();
   }
 
-  /** The hand is at a point of the picture. */
   to(target: Point): void {
     this.target = target;
     void this.run();
@@ -124,7 +121,6 @@ export class Drag {
     void this.holding.then(() => this.busy || this.finish());
   }
 
-  /** Ends as if it had not been. */
   cancel(): void {
     this.back();
     this.finish();

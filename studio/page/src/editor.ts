@@ -120,34 +120,19 @@ export class SceneEditor {
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
         extensions,
         wholeCharacters,
-        lineNumbers(),
-        lintGutter(),
-        highlightActiveLine(),
-        highlightActiveLineGutter(),
-        highlightSpecialChars(),
-        highlightSelectionMatches(),
-        drawSelection(),
-        dropCursor(),
-        bracketMatching(),
-        closeBrackets(),
-        closingBrace,
+        lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
+        highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
+        bracketMatching(), closeBrackets(), closingBrace,
         gestureHistory(),
-        sceneLanguage,
-        sceneHighlighting,
-        EditorView.lineWrapping,
+        sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
           spellcheck: "false", autocapitalize: "off" }),
         keymap.of([
-          ...formatKeymap,
-          ...renameKeymap,
-          ...jumpToDefinitionKeymap,
+          ...formatKeymap, ...renameKeymap, ...jumpToDefinitionKeymap,
           { key: "Mod-/", run: toggleComment },
-          ...closeBracketsKeymap,
-          ...completionKeymap,
+          ...closeBracketsKeymap, ...completionKeymap,
           { key: "F8", run: nextDiagnostic, shift: previousDiagnostic },
-          ...searchKeymap,
-          ...historyKeymap,
-          ...defaultKeymap,
+          ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
           if (it.docChanged) this.sync();
@@ -227,7 +212,6 @@ export class SceneEditor {
   }
 
   connected(): void { this.client.connect(this.connection); }
-
   disconnected(): void { this.client.disconnect(); }
 
   /** Moves the cursor to a place of the text, and shows it. */

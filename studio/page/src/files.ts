@@ -26,7 +26,6 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
-
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
@@ -36,7 +35,6 @@ const MOST_LINES = 3000;
 /** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
-  /** Called when the file has got the page's text. */
   onSaved: () => void = () => {};
   /** What the file held when it was last seen; null where there was none. */
   seen: string | null = null;
@@ -279,8 +277,7 @@ export class Files {
   }
 }
 
-/** A text whose lines end by LF, with the ends that a file has: each line that is still there keeps
- *  its own, and a new one has that of the line before it. */
+/** A text with the ends of lines that a file has; a new line ends as the one before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g) ?? [];
@@ -309,7 +306,6 @@ function common(a: string[], b: string[]): [number, number] {
 }
 
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
-
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
 /** The lines of two texts: those of the first alone by -, those of the second alone by +, with

@@ -11,7 +11,6 @@ const step = Annotation.define<"first" | "next">();
 
 /** A pause in typing, in milliseconds, after which an undo step begins. */
 const TYPING_PAUSE = 500;
-
 const touched = Decoration.mark({ class: "touched" });
 
 /** What the last change of a gesture wrote, until something else changes the text. */

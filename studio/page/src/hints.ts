@@ -2,21 +2,21 @@
 // each colour, which opens a picker.
 
 import { StateEffect, StateField } from "@codemirror/state";
-import { Decoration, EditorView, WidgetType, type DecorationSet } from "@codemirror/view";
+import { Decoration, EditorView, WidgetType, type Command, type DecorationSet } from "@codemirror/view";
 import { create } from "./dom";
 import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
 import type { Position, Range, TextEdit } from "./protocol";
 
 interface InlayHint { position: Position; label: string }
-
 interface Color { red: number; green: number; blue: number; alpha: number }
-
 interface ColorInformation { range: Range; color: Color }
 
 /** How long the text has to rest before hints are asked for, in milliseconds. */
 const REST = 150;
 
+/** A colour as it is written. */
+const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
 const setHints = StateEffect.define<DecorationSet>();
 
 export const hintField = StateField.define<DecorationSet>({
@@ -31,9 +31,7 @@ export const hintField = StateField.define<DecorationSet>({
 
 class HintWidget extends WidgetType {
   constructor(private readonly text: string) { super(); }
-
   override eq(other: HintWidget): boolean { return other.text === this.text; }
-
   toDOM(): HTMLElement { return create("span", "hint", this.text); }
 }
 
@@ -48,6 +46,8 @@ class SwatchWidget extends WidgetType {
   toDOM(view: EditorView): HTMLElement {
     const input = create("input", "swatch");
     input.type = "color";
+    // The text is one stop of the Tab key. From a colour, Alt-Enter leads here.
+    input.tabIndex = -1;
     let gesture: Gesture | null = null;
     let wanted: string | null = null;
     let work = Promise.resolve();
@@ -80,6 +80,19 @@ class SwatchWidget extends WidgetType {
 
   override ignoreEvent(): boolean { return true; }
 }
+
+/** Opens the picker of the colour at the cursor. */
+export const openSwatch: Command = view => {
+  const { state: { doc, selection: { main } }, dom } = view;
+  const swatch = [...dom.querySelectorAll<HTMLInputElement>(".swatch")].find(it => {
+    const at = view.posAtDOM(it);
+    const { length } = COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
+    return at <= main.head && main.head <= at + length;
+  });
+  swatch?.focus();
+  swatch?.showPicker();
+  return swatch !== undefined;
+};
 
 export class Hints {
   private timer = 0;
@@ -120,8 +133,7 @@ export class Hints {
   async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
     const { editor } = this;
     const { doc } = editor.view.state;
-    const written = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/.exec(
-      doc.sliceString(offset, offset + 200))?.[0] ?? "";
+    const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
     const start = editor.position(offset);
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };

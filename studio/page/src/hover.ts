@@ -10,14 +10,21 @@ import type { Status } from "./status";
 export class Hover {
   private busy = false;
   private next: Point | null = null;
+  private place: Point | null = null;
 
   constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
     private readonly overlays: OverlayLayer, private readonly status: Status) {
     picture.stage.addEventListener("pointerleave", () => this.leave());
     picture.stage.addEventListener("pointermove", event => {
-      if (event.buttons !== 0 || event.pointerType === "touch") return;
-      void this.at(picture.toPicture(picture.local(event)));
+      this.place = event.pointerType === "touch" ? null : picture.local(event);
+      if (event.buttons !== 0) status.point("");
+      else this.again();
     });
+  }
+
+  /** Something else may be seen where the pointer is. */
+  again(): void {
+    if (this.place !== null) void this.at(this.picture.toPicture(this.place));
   }
 
   /** While one answer is awaited, only the newest place is remembered. */
@@ -41,7 +48,7 @@ export class Hover {
   }
 
   private leave(): void {
-    this.next = null;
+    this.next = this.place = null;
     this.overlays.hover(null);
     this.overlays.showSamples([0, 0], null);
     this.status.point("");

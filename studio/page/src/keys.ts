@@ -17,7 +17,6 @@ const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Keys {
-  /** Whether the space bar is down. */
   space = false;
   private drag: Drag | null = null;
   private pause = 0;
@@ -35,7 +34,6 @@ export class Keys {
     });
   }
 
-  /** Ends what the arrow keys drag. */
   end(): void {
     clearTimeout(this.pause);
     this.drag?.end();

@@ -5,7 +5,6 @@ import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/
 import { tags } from "@lezer/highlight";
 
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
-
 const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
 
 // The words of the language; a test of Pinhole compares them with its own.
@@ -21,7 +20,6 @@ const FUNCTIONS = words(
 );
 /** Fields that take whole numbers. */
 const WHOLE_FIELDS = words("width height per_pixel total seed");
-
 interface State { comment: boolean; block: boolean; parentheses: number; defines: boolean }
 
 /** Whether the word that a text ends in is a field that takes whole numbers. */

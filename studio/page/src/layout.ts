@@ -12,7 +12,7 @@ const MOST = 80;
 export function layOut(picture: Picture): void {
   const divider = byId("divider");
   const panes = byId("panes");
-  const isNarrow = matchMedia("(max-width: 760px)");
+  const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
   const share = (percent: number) => {
     const bounded = Math.round(Math.min(MOST, Math.max(LEAST, percent)));
     panes.style.setProperty("--text-share", `${bounded}%`);
@@ -44,7 +44,6 @@ export function layOut(picture: Picture): void {
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());
   byId("zoom-actual").addEventListener("click", () => picture.actualSize());
-
   byId("keys").addEventListener("click", () => byId<HTMLDialogElement>("keys-dialog").showModal());
 
   // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.

@@ -12,7 +12,7 @@ import { SceneEditor } from "./editor";
 import { Files } from "./files";
 import { Frames } from "./frames";
 import { Hover } from "./hover";
-import { hintField, Hints } from "./hints";
+import { hintField, Hints, openSwatch } from "./hints";
 import { Keys } from "./keys";
 import { layOut, offerLayers } from "./layout";
 import { numberControls } from "./numbers";
@@ -26,11 +26,11 @@ import { offerSharing, sceneInAddress } from "./share";
 import { Status } from "./status";
 import { followTheme, themeExtension } from "./theme";
 import { Tools } from "./tools";
+import { setText } from "./visible";
 
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(
   `meta[name="pinhole-${name}"]`)?.content;
 const isServed = meta("host") !== "static";
-
 const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
 const status = new Status();
 const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
@@ -39,10 +39,8 @@ const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElem
 const limitsAt = (at: number) =>
   editor.ask<Limits>("pinhole/limits", { position: editor.position(at) });
 const editor: SceneEditor = new SceneEditor(
-  byId("editor"),
-  connection,
-  meta("nonce"),
-  [keymap.of([fixKey]), numberControls(limitsAt), hintField, themeExtension()],
+  byId("editor"), connection, meta("nonce"),
+  [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField, themeExtension()],
   update => {
     if (update.docChanged) selection.mapped(update.changes);
     if (update.selectionSet) selection.cursorMoved();
@@ -54,9 +52,7 @@ const editor: SceneEditor = new SceneEditor(
 editor.diagnosed = published => void publishDiagnostics(editor, published);
 const problems = new Problems(() => editor.view);
 const hints = new Hints(editor);
-const frames = new Frames(
-  editor,
-  connection,
+const frames = new Frames(editor, connection,
   shown => {
     status.picture(shown.size, shown.fineness);
     picture.show(shown);
@@ -79,7 +75,8 @@ const bench = {
   },
 };
 new Pointers(bench, selection, tools, new Keys(bench, selection, tools, status));
-new Hover(editor, picture, overlays, status);
+const hover = new Hover(editor, picture, overlays, status);
+outlines.onRest = () => hover.again();
 const files = new Files(editor, connection, status, isServed);
 const drafts = new Drafts(editor, connection, files, isServed);
 files.onSaved = () => drafts.changed();
@@ -156,6 +153,11 @@ document.addEventListener("keydown", event => {
   event.preventDefault();
 });
 followTheme(editor.view);
+// The editor has no more lines in the page than are seen.
+addEventListener("beforeprint", () => {
+  picture.fit();
+  setText(byId("print-text"), `${files.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
+});
 layOut(picture);
 offerLayers(overlays);
 offerSharing(editor, connection, status, files);

@@ -1,16 +1,40 @@
 // Asks for what is drawn over the picture: of the newest text, and no more than is shown.
 
 import type { Connection } from "./connection";
+import { byId } from "./dom";
 import type { SceneEditor } from "./editor";
 import type { Frames } from "./frames";
 import type { OverlayLayer } from "./overlays";
 import type { Overlays, SceneObject } from "./protocol";
-import type { Selection } from "./selection";
+import { nameOf, type Selection } from "./selection";
+import { setText } from "./visible";
 
 /** How long the text has to rest before its objects are listed, in milliseconds. */
 const REST = 150;
 
+/** So many objects are described to those who do not see the picture. */
+const DESCRIBED = 6;
+
+/** Says what is seen, and where; changes of it are announced. */
+function describe({ size, objects }: Overlays, count: number): void {
+  const third = (part: number, words: string[]) => words[Math.floor(3 * part)];
+  const places = objects.map(object => {
+    const [x, y] = object.handles[0]?.at ?? [NaN, NaN];
+    const down = third(y / size[1], ["top", "middle", "bottom"]);
+    const across = third(x / size[0], ["left", "centre", "right"]);
+    return `${nameOf(object)}: ${down && across ? `${down} ${across}` : "not in the picture"}`;
+  });
+  if (count > objects.length) places.push(`${count - objects.length} more`);
+  const text = places.length === 0 ? "A scene without objects" : places.join("; ");
+  const canvas = document.querySelector("canvas");
+  // At first nothing has changed.
+  if (canvas?.dataset["seen"] !== undefined && canvas.ariaLabel !== text) setText(byId("seen"), text);
+  canvas?.setAttribute("aria-label", text);
+  canvas?.setAttribute("data-seen", "");
+}
+
 export class Outlines {
+  onRest: () => void = () => {};
   private asking = false;
   private outdated = false;
   private timer = 0;
@@ -31,9 +55,14 @@ export class Outlines {
     const { editor, frames, selection } = this;
     const { doc } = editor.view.state;
     if (frames.dragging !== null || this.connection.state !== "open") return;
+    this.onRest();
     const about = { object: selection.index };
     const objects = await editor.ask<SceneObject[]>("pinhole/objects", about);
-    if (objects !== null && editor.view.state.doc === doc) selection.list(objects);
+    if (objects === null || editor.view.state.doc !== doc) return;
+    selection.list(objects);
+    const only = objects.slice(0, DESCRIBED).map(it => it.index);
+    const seen = await editor.ask<Overlays>("pinhole/overlays", { only });
+    if (seen !== null && editor.view.state.doc === doc) describe(seen, objects.length);
   }
 
   async refresh(): Promise<void> {

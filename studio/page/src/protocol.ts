@@ -2,9 +2,7 @@
 // `studio/…`, as docs/protocol.md describes them.
 
 export interface Position { line: number; character: number }
-
 export interface Range { start: Position; end: Position }
-
 export interface TextEdit { range: Range; newText: string }
 
 /** A point of the picture, in pixels of the scene, from the top left corner. */
@@ -30,7 +28,6 @@ export interface SceneObject {
 }
 
 export interface Handle { handle: string; at: Point | null; label: string }
-
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
 
 export interface Overlays {
@@ -64,7 +61,6 @@ export interface Dragged {
 
 /** Between which numbers a number may be; `open` excludes the bounds themselves. */
 export interface Limits { least: number | null; most: number | null; open: boolean; whole: boolean }
-
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
 /** The file that a served page edits: its text is null while there is none. */
@@ -95,5 +91,4 @@ export function isSuperseded(error: unknown): boolean {
 }
 
 export interface ServerDiagnostic { range: Range; severity?: number; message: string }
-
 export interface Published { uri: string; version?: number; diagnostics: ServerDiagnostic[] }

@@ -26,7 +26,6 @@ export function nameOf(object: SceneObject): string { return object.name ?? obje
 export class Selection {
   /** The index of the object that is selected. */
   index: number | null = null;
-  /** Called when another object is selected, or none. */
   onChange: () => void = () => {};
   private placed: Placed[] = [];
   /** Whether the object at the cursor is not to be selected, until the cursor moves. */
@@ -42,7 +41,6 @@ export class Selection {
     });
   }
 
-  /** The objects of the newest text. */
   list(objects: readonly SceneObject[]): void {
     this.placed = objects.map(object => this.place(object));
     const names = objects.map(it =>

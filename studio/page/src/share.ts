@@ -11,7 +11,6 @@ import type { Status } from "./status";
 /** A scene in a link may have so many characters unpacked. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
-
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
 
 export async function packed(text: string): Promise<string> {

@@ -13,7 +13,6 @@ export type Tool = (typeof TOOLS)[keyof typeof TOOLS];
 
 export class Tools {
   tool: Tool = "move";
-  /** Whether the Shift key is down. */
   shift = false;
   private readonly menu = byId<HTMLSelectElement>("along");
   private readonly inputs = document.querySelectorAll<HTMLInputElement>("input[name=tool]");
@@ -30,7 +29,6 @@ export class Tools {
     for (const input of this.inputs) input.checked = input.value === tool;
   }
 
-  /** What drags of objects are held to. */
   get along(): Along | undefined {
     if (this.shift) return "floor";
     return (this.menu.value || undefined) as Along | undefined;

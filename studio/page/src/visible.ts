@@ -6,7 +6,6 @@
  *  table 4); line feeds and tabs stay. */
 const INVISIBLE = /(?![\n\t])[\p{Cc}\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/gu;
 const BREAKS = /[\n\t\u2028\u2029]/g;
-
 const code = (character: string): string => `\\u{${character.codePointAt(0)?.toString(16)}}`;
 
 /** The text with such characters as `\u{202e}`. */

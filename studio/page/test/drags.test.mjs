@@ -102,13 +102,17 @@ test("Escape in a drag leaves nothing to redo, and what was to redo stays", asyn
 test("what a drag says stands at the hand, and is gone afterwards; the footer says nothing that is not true any more", async t => {
   const page = await open(await launch(t), await host(t));
   const from = await onPage(page, BALL);
-  await hand(page, from, [60, 0], { hold: true });
+  await hand(page, from, [110, 0], { hold: true });
   await page.waitForSelector("#drag-note:not([hidden])");
   const { x, y } = await page.locator("#drag-note").boundingBox();
-  assert.ok(Math.hypot(x - from[0] - 60, y - from[1]) < 80, `${x} ${y}`);
+  assert.ok(Math.hypot(x - from[0] - 110, y - from[1]) < 80, `${x} ${y}`);
+  assert.equal(await page.textContent("#pointed"), "");
   await page.mouse.up();
   await page.waitForSelector("#drag-note", { state: "hidden" });
-  await page.click("#undo");
+  // The pointer has not moved since: the footer tells what is there now.
+  await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
   assert.equal(await page.textContent("#said"), "");
   await page.keyboard.press("Control+s");
   await page.waitForFunction(() => /is saved/.test(document.querySelector("#said").textContent));

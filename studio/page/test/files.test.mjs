@@ -187,7 +187,7 @@ test("a file that cannot be written is named, with what to do", async t => {
   const folder = path.dirname(started.file);
   renameSync(folder, `${folder}-away`);
   t.after(() => rmSync(`${folder}-away`, { recursive: true, force: true }));
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => /is gone; Save/.test(document.querySelector("#said").textContent));
   await page.keyboard.press("Control+s");
   await page.waitForFunction(() => /scene\.scn is not saved: its folder is gone.*download/.test(document.querySelector("#said").textContent));
   assert.equal(await page.textContent("#file-state"), "not saved");

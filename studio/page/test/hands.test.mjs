@@ -85,8 +85,9 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "objects");
   await page.keyboard.press("ArrowDown");
   await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  // The picture comes before its tools.
   for (let i = 0; i < 20; i++) {
-    await page.keyboard.press("Tab");
+    await page.keyboard.press("Shift+Tab");
     if (await page.evaluate(() => document.activeElement.ariaLabel === "Ball: center")) break;
   }
   await page.keyboard.press("x");
