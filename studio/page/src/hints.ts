@@ -2,7 +2,8 @@
 // each colour, which opens a picker.
 
 import { StateEffect, StateField } from "@codemirror/state";
-import { Decoration, EditorView, WidgetType, type Command, type DecorationSet } from "@codemirror/view";
+import { Decoration, EditorView, WidgetType, type Command,
+  type DecorationSet } from "@codemirror/view";
 import { create } from "./dom";
 import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";

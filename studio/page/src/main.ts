@@ -40,7 +40,8 @@ const limitsAt = (at: number) =>
   editor.ask<Limits>("pinhole/limits", { position: editor.position(at) });
 const editor: SceneEditor = new SceneEditor(
   byId("editor"), connection, meta("nonce"),
-  [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField, themeExtension()],
+  [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField,
+    themeExtension()],
   update => {
     if (update.docChanged) selection.mapped(update.changes);
     if (update.selectionSet) selection.cursorMoved();

@@ -28,7 +28,8 @@ function describe({ size, objects }: Overlays, count: number): void {
   const text = places.length === 0 ? "A scene without objects" : places.join("; ");
   const canvas = document.querySelector("canvas");
   // At first nothing has changed.
-  if (canvas?.dataset["seen"] !== undefined && canvas.ariaLabel !== text) setText(byId("seen"), text);
+  const isNew = canvas?.dataset["seen"] !== undefined && canvas.ariaLabel !== text;
+  if (isNew) setText(byId("seen"), text);
   canvas?.setAttribute("aria-label", text);
   canvas?.setAttribute("data-seen", "");
 }

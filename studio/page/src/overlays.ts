@@ -27,7 +27,6 @@ export class OverlayLayer {
   data: Overlays | null = null;
   /** Whether they are those of the text that is there. */
   isTrue = true;
-  /** The index of the object under the pointer. */
   hovered: number | null = null;
   /** Called when something is to be drawn that may not be known yet. */
   onNeed: () => void = () => {};

@@ -9,7 +9,7 @@ import type { OverlayLayer } from "./overlays";
 import type { Picture } from "./picture";
 import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
 
-/** The middles of two targets are so many screen pixels apart, to the side or in height, at least. */
+/** The least distance of two targets, in screen pixels, to the side or in height. */
 const APART = 25;
 
 /** Where a handle goes, from where it is, if that place is taken: the nearest first. */
@@ -20,7 +20,6 @@ ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 /** An object, and its block's place in the text, which follows changes. */
 interface Placed { object: SceneObject; from: number; to: number }
 
-/** An object as it is called in sentences. */
 export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
 
 export class Selection {

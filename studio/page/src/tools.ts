@@ -34,7 +34,6 @@ export class Tools {
     return (this.menu.value || undefined) as Along | undefined;
   }
 
-  /** Holds drags to an axis or the floor, or frees them of it. */
   hold(along: Along): void {
     this.menu.value = this.menu.value === along ? "" : along;
     const chosen = this.menu.selectedOptions[0]?.text.toLowerCase() ?? "";
