@@ -7,6 +7,9 @@
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
+/// What to do with a scene of a program whose z points away from the viewer, or up.
+pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
+
 /// Pages on one subject.
 #[derive(Debug)]
 pub struct Group {

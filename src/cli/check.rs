@@ -12,13 +12,10 @@ use super::{
     unified::unified_diff,
 };
 use crate::{
-    diagnostic::{self, Applicability, Diagnostic, visible_line},
-    scene::{self, Fixed, Reading},
+    diagnostic::{self, Applicability, visible_line},
+    scene::{self, Fixed},
     source::Source,
 };
-
-/// The diagnostics of a file that a program is told.
-const MOST: usize = 1000;
 
 /// Reports the problems of each scene in turn. The status is the gravest one.
 pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
@@ -120,34 +117,14 @@ fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
             reading
         }
         Format::Json => {
-            let Reading { scene, diagnostics } = scene::read(&input.sources);
-            let diagnostics = the_first(diagnostics);
-            let lines = diagnostic::json_lines(&diagnostics, &input.sources);
+            let reading = scene::read(&input.sources);
+            let lines = diagnostic::json_lines(&reading.diagnostics, &input.sources);
             output::to_programs(lines.as_bytes())?;
-            Reading { scene, diagnostics }
+            reading
         }
     };
     Ok(match reading.scene {
         Some(_) => Status::Done,
         None => Status::SceneErrors,
     })
-}
-
-/// The first of many diagnostics, and one that says how many more there are.
-fn the_first(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let rest = diagnostics.split_off(diagnostics.len().min(MOST));
-    if let Some(first) = rest.first() {
-        let gravest = rest.iter().find(|diagnostic| diagnostic.is_error());
-        let mut last = gravest.unwrap_or(first).clone();
-        last.code = "pinhole::more".to_owned();
-        last.message = format!(
-            "there are {} more problems, which are not listed",
-            rest.len()
-        );
-        last.help = Some("solve the first ones, and check again".to_owned());
-        last.labels = first.labels.iter().take(1).cloned().collect();
-        last.fixes = Vec::new();
-        diagnostics.push(last);
-    }
-    diagnostics
 }

@@ -68,6 +68,9 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     if trimmed == "language" {
         return Ok(explain::LANGUAGE.into());
     }
+    if trimmed == "left_handed" {
+        return Ok(explain::LEFT_HANDED.into());
+    }
     if let Some(page) = explain::page(trimmed) {
         return Ok(page.text.into());
     }
@@ -75,7 +78,9 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
         return Ok(page.into());
     }
     let codes = explain::pages().map(|page| page.code);
-    let near = suggest::nearest(explain::short(trimmed), codes.chain(describe::words()));
+    let others = ["language", "left_handed"].into_iter();
+    let words = codes.chain(describe::words()).chain(others);
+    let near = suggest::nearest(explain::short(trimmed), words);
     Err(Trouble(match near {
         Some(near) => format!("there is no code `{word}`: did you mean `{near}`?"),
         None => format!("there is no code `{word}`: `pinhole explain` lists them all"),
@@ -96,6 +101,7 @@ fn list(headings: Headings) -> String {
             let _ = writeln!(text, "  {:width$}  {}", page.code, page.title());
         }
     }
+    text.push_str("\nThere are also `language`, the reference, and `left_handed`, for scenes of programs whose z points away.\n");
     text
 }
 

@@ -81,6 +81,7 @@ impl Input {
                 }
                 _ => unreadable(path, &error),
             })?;
+            name_copies(path);
             let bytes = original.bytes().unwrap_or_default().to_owned();
             (Self::of_bytes(path, bytes, overrides)?, Some(original))
         };
@@ -166,6 +167,16 @@ impl Input {
 /// What SCENE or FILE is called in a message: on one line, whatever its name holds.
 pub fn shown(path: &Path) -> String {
     visible_line(&path.display().to_string()).into_owned()
+}
+
+/// Names the copies of a file that were left by processes that were killed while they wrote it.
+pub fn name_copies(path: &Path) {
+    for copy in files::copies_left(path) {
+        let (copy, path) = (shown(&copy), shown(path));
+        output::warning(&format!(
+            "{copy} was left by a program that was ended while it wrote {path}, and may hold what should be there; remove it if not"
+        ));
+    }
 }
 
 /// Says that a path cannot be read.

@@ -57,6 +57,7 @@ fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
         return Err(Trouble(message.to_owned()));
     }
     watch::check_scene(scene)?;
+    input::name_copies(scene);
     SceneFile::open(scene, input::bytes)
         .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(scene))))
 }

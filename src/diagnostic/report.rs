@@ -3,7 +3,7 @@
 //! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette, or narrated. Only the
 //! labelled lines are handed to miette, cut to what can be shown.
 
-use std::{fmt::Write, ops::Range};
+use std::{cmp::Reverse, collections::BTreeMap, fmt::Write, ops::Range};
 
 use miette::{
     GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents,
@@ -58,9 +58,25 @@ pub struct Report<'s> {
     style: Style,
 }
 
+/// How many diagnostics there are of each kind, the most frequent kind first.
+fn counts(diagnostics: &[Diagnostic]) -> String {
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    for diagnostic in diagnostics {
+        *kinds.entry(short(&diagnostic.code)).or_default() += 1;
+    }
+    let mut kinds: Vec<_> = kinds.into_iter().collect();
+    kinds.sort_by_key(|&(_, count)| Reverse(count));
+    let lines = kinds
+        .iter()
+        .map(|(kind, count)| format!("{count:>7} {kind}\n"));
+    lines.collect()
+}
+
 impl<'s> Report<'s> {
-    /// The reports that a terminal shows before it says only how many more there are; JSON has them all.
+    /// Of more reports than this, a terminal shows the first few, and how many there are of each kind; JSON has them all.
     pub const MOST_SHOWN: usize = 100;
+    /// As many are shown then.
+    pub const FIRST_SHOWN: usize = 20;
 
     /// Reports on these sources in this style.
     pub fn new(sources: &'s Sources, style: Style) -> Self {
@@ -73,20 +89,27 @@ impl<'s> Report<'s> {
             return String::new();
         }
         let mut text = String::new();
-        for diagnostic in diagnostics.iter().take(Self::MOST_SHOWN) {
+        let are_all = diagnostics.len() <= Self::MOST_SHOWN;
+        let shown = if are_all {
+            diagnostics.len()
+        } else {
+            Self::FIRST_SHOWN
+        };
+        for diagnostic in &diagnostics[..shown] {
             text.push_str(&self.one(diagnostic));
             text.push('\n');
         }
-        let hidden = diagnostics.len().saturating_sub(Self::MOST_SHOWN);
         text.push_str(&summary(diagnostics));
-        if hidden > 0 {
+        if !are_all {
             let _ = write!(
                 text,
-                "; the first {} are shown, `check --format json` lists them all",
-                Self::MOST_SHOWN
+                "; the first {shown} are shown, `check --format json` lists them all:"
             );
         }
         text.push('\n');
+        if !are_all {
+            text.push_str(&counts(diagnostics));
+        }
         if let Some(first) = diagnostics.first() {
             let which = match diagnostics.len() {
                 1 => "it",

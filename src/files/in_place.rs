@@ -2,7 +2,6 @@
 //! written to, or that something is mounted on.
 
 use std::{
-    env,
     fs::{self, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
@@ -11,8 +10,10 @@ use std::{
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
-    kind::{Kind, without_waiting},
+    kind::{self, Kind, folder, without_waiting},
     original::Original,
+    state::state_folder,
+    words::in_words,
 };
 
 /// Whether a file that cannot be replaced for this reason may be written in place.
@@ -40,6 +41,8 @@ pub fn write_in_place(
     let Some(mut copy) = copy_beside(path) else {
         return Err(reason);
     };
+    // As long as it is locked, nobody takes it for a leftover.
+    let _ = copy.as_file().lock();
     copy.write_all(content)?;
     copy.as_file().sync_all()?;
     let mut file = without_waiting(OpenOptions::new().write(true)).open(path)?;
@@ -57,37 +60,51 @@ pub fn write_in_place(
         Err(error) => {
             let (_, copy) = copy.keep().map_err(|error| error.error)?;
             let copy = copy.display();
+            let error = in_words(error);
             let message = format!("{error}; what should be in it is whole in {copy}");
             Err(io::Error::new(error.kind(), message))
         }
     }
 }
 
-/// An empty file for the copy, if there is a place for one.
-fn copy_beside(path: &Path) -> Option<NamedTempFile> {
+/// The copies of a file that were left by processes that were killed while they wrote it, whole or
+/// in part: beside it, and of files of its name in the user's folder for such things.
+pub fn copies_left(path: &Path) -> Vec<PathBuf> {
+    let path = match fs::read_link(path) {
+        Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
+        Err(_) => path.to_owned(),
+    };
+    let prefix = copy_prefix(&path);
+    let copies_in = |listed: &Path, named: &Path| -> Vec<PathBuf> {
+        let entries = fs::read_dir(listed).into_iter().flatten().flatten();
+        let names = entries.map(|entry| entry.file_name());
+        let copies = names.filter(|name| name.to_string_lossy().starts_with(&prefix));
+        copies.map(|name| named.join(name)).collect()
+    };
+    let mut left = copies_in(folder(&path), path.parent().unwrap_or(Path::new("")));
+    if let Some(state) = state_folder() {
+        left.extend(copies_in(&state, &state));
+    }
+    // One that is locked is in use.
+    left.retain(|copy| kind::open(copy).is_ok_and(|file| file.try_lock().is_ok()));
+    left.sort();
+    left
+}
+
+/// What the name of a copy begins with.
+fn copy_prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(50).collect();
-    let prefix = format!("{name}.copy-");
+    format!("{name}.copy-")
+}
+
+/// An empty file for the copy, if there is a place for one.
+fn copy_beside(path: &Path) -> Option<NamedTempFile> {
+    let prefix = copy_prefix(path);
     let copy_in = |folder: &Path| Builder::new().prefix(&prefix).tempfile_in(folder).ok();
-    copy_in(path.parent()?).or_else(|| {
+    copy_in(folder(path)).or_else(|| {
         let folder = state_folder()?;
         fs::create_dir_all(&folder).ok()?;
         copy_in(&folder)
     })
-}
-
-/// The folder for what programs keep of a user, where the system has one.
-fn state_folder() -> Option<PathBuf> {
-    let absolute = |name| {
-        env::var_os(name)
-            .map(PathBuf::from)
-            .filter(|p| p.is_absolute())
-    };
-    let base = match cfg!(windows) {
-        true => absolute("LOCALAPPDATA")?,
-        false => {
-            absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
-        }
-    };
-    Some(base.join("pinhole"))
 }

@@ -8,6 +8,8 @@ use std::{
     path::Path,
 };
 
+use super::words::in_words;
+
 /// What there can be at a path, links followed.
 #[cfg_attr(
     not(unix),
@@ -75,6 +77,14 @@ impl fmt::Display for Kind {
     }
 }
 
+/// The folder that a file lies in.
+pub(super) fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
+
 /// Opens a file to be read. Whatever else there is at the path, or at the end of a link there, is
 /// refused, and never waited for.
 pub fn open(path: &Path) -> io::Result<File> {
@@ -102,6 +112,10 @@ pub fn open_argument(path: &Path) -> io::Result<File> {
 }
 
 fn open_if(path: &Path, is_wanted: impl Fn(Kind) -> bool) -> io::Result<File> {
+    open_at_once(path, is_wanted).map_err(in_words)
+}
+
+fn open_at_once(path: &Path, is_wanted: impl Fn(Kind) -> bool) -> io::Result<File> {
     let check = |found: &Metadata| match Kind::of(found) {
         kind if is_wanted(kind) => Ok(()),
         kind => Err(kind.refused()),
@@ -156,7 +170,8 @@ pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
 /// Reads to the end of a stream of at most so many bytes.
 pub fn read_from(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    let mut from = from.take(most.saturating_add(1));
+    from.read_to_end(&mut bytes).map_err(in_words)?;
     match bytes.len() as u64 > most {
         true => Err(io::ErrorKind::FileTooLarge.into()),
         false => Ok(bytes),

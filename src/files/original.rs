@@ -8,7 +8,7 @@ use std::{
     path::Path,
 };
 
-use super::read;
+use super::{kind::read, words::in_words};
 
 /// What tells a file from another one that takes its place: its device, and its number there.
 pub type FileId = (u64, u64);
@@ -34,7 +34,7 @@ impl Original {
     /// Has `read` read the file at a path.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
         // One that takes its place in between has another number, and so counts as changed.
-        let found = fs::metadata(path)?;
+        let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
 

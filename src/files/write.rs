@@ -11,8 +11,9 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::{
     in_place,
-    kind::{self, Kind, without_waiting},
+    kind::{self, Kind, folder, without_waiting},
     original::{Original, changed},
+    words::in_words,
 };
 
 /// What a file's content is written to.
@@ -45,6 +46,15 @@ pub enum Purpose<'a> {
 /// meanwhile. When `cancel` is set, or an error occurs, the temporary file is removed; where this
 /// process is killed, the next one that writes the file does it.
 pub fn write(
+    path: &Path,
+    purpose: Purpose<'_>,
+    cancel: &AtomicBool,
+    write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
+) -> io::Result<()> {
+    write_at_once(path, purpose, cancel, write).map_err(|error| told(path, error))
+}
+
+fn write_at_once(
     path: &Path,
     purpose: Purpose<'_>,
     cancel: &AtomicBool,
@@ -87,9 +97,21 @@ pub fn write_stream(
 /// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to
 /// learn it after a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
-    match place(path, purpose)? {
-        Place::File(place) => temporary(&place)?.close(),
-        Place::Stream => Ok(()),
+    let is_writable = match place(path, purpose) {
+        Ok(Place::File(place)) => temporary(&place).and_then(NamedTempFile::close),
+        Ok(Place::Stream) => Ok(()),
+        Err(error) => Err(error),
+    };
+    is_writable.map_err(|error| told(path, error))
+}
+
+/// Why nothing can be written at a path, in words.
+fn told(path: &Path, error: io::Error) -> io::Error {
+    match error.kind() {
+        kind @ io::ErrorKind::NotFound if !folder(path).exists() => {
+            io::Error::new(kind, "there is no such folder")
+        }
+        _ => in_words(error),
     }
 }
 
@@ -241,13 +263,6 @@ fn write_device(
     device.flush()
 }
 
-fn folder(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    }
-}
-
 /// What the name of a temporary file ends in.
 const SUFFIX: &str = ".tmp";
 
@@ -266,7 +281,7 @@ fn temporary(FilePlace { path, found }: &FilePlace) -> io::Result<NamedTempFile>
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = loop {
-        let temporary = builder.tempfile_in(folder(path)).map_err(without_path)?;
+        let temporary = builder.tempfile_in(folder(path))?;
         // Where the file system has no locks, nobody finds one that is free.
         let _ = temporary.as_file().lock();
         // Before that, another process may have taken it for a leftover.
@@ -314,15 +329,6 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
 #[cfg(not(unix))]
 fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     file.set_permissions(found.permissions())
-}
-
-/// The system's own words: nobody wants to know what the temporary file would have been called.
-fn without_path(error: io::Error) -> io::Error {
-    let words = error.to_string();
-    match words.split_once(" at path ") {
-        Some((words, _)) => io::Error::new(error.kind(), words),
-        None => error,
-    }
 }
 
 /// A sink that fails once the flag is set.

@@ -90,7 +90,10 @@ pub enum Unreadable {
     )]
     Format(Option<ImageFormat>),
     /// It does not follow its format.
-    #[error("it begins as {format} files do, but is damaged or cut off: {cause}")]
+    #[error(
+        "it begins as {format} files do, but is damaged or cut off: {}",
+        shortened(cause)
+    )]
     Damaged {
         /// The format's name.
         format: String,
@@ -98,7 +101,7 @@ pub enum Unreadable {
         cause: String,
     },
     /// It uses a part of its format that is not read here.
-    #[error("it is {format} of a kind that is not read here: {cause}")]
+    #[error("it is {format} of a kind that is not read here: {}", shortened(cause))]
     Unsupported {
         /// The format's name.
         format: String,
@@ -161,4 +164,15 @@ pub(super) fn check_size(
         Some(bytes) if bytes <= limit => Ok(()),
         _ => Err(large),
     }
+}
+
+/// What a decoder says, which may hold a part of the file of any length.
+fn shortened(cause: &str) -> String {
+    const LONGEST: usize = 200;
+    let mut characters = cause.chars();
+    let mut short: String = characters.by_ref().take(LONGEST).collect();
+    if characters.next().is_some() {
+        short.push('…');
+    }
+    short
 }

@@ -32,19 +32,36 @@ pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     if !is_right(source, &parsed) {
         return Err(mistakes(source));
     }
-    let Parsed { tree, comments, .. } = parsed;
-    Ok(laid_out(
-        source,
-        entries::of_file(source, &comments, tree.items),
-    ))
+    let Parsed {
+        tree,
+        comments,
+        is_doubtful,
+        ..
+    } = parsed;
+    let formatted = laid_out(source, entries::of_file(source, &comments, tree.items));
+    if is_doubtful && !is_right_text(&formatted) {
+        let mistakes = mistakes(source);
+        if !mistakes.is_empty() {
+            return Err(mistakes);
+        }
+    }
+    Ok(formatted)
 }
 
 /// The canonical layout of a text that is parsed already; none if it has mistakes of syntax.
 pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
-    is_right(source, parsed).then(|| {
-        let entries = entries::of_file(source, &parsed.comments, &parsed.tree.items);
-        laid_out(source, entries)
-    })
+    if !is_right(source, parsed) {
+        return None;
+    }
+    let entries = entries::of_file(source, &parsed.comments, &parsed.tree.items);
+    let formatted = laid_out(source, entries);
+    (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
+}
+
+/// Whether a text that was laid out can be laid out again: line ends tell what was hardly meant.
+fn is_right_text(text: &str) -> bool {
+    let source = Source::from_text("", text);
+    is_right(&source, &syntax::parse(&source, SourceId::File))
 }
 
 /// Whether a text has no mistakes of syntax.

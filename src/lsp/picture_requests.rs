@@ -11,8 +11,8 @@ use super::{
     scene_version::SceneVersion,
 };
 use crate::editor::{
-    Analysis,
-    viewport::{self, Along, Drag, Vanishing},
+    self, Analysis,
+    viewport::{self, Along, Drag, Shown, Vanishing},
 };
 
 /// What the names of our own requests begin with.
@@ -26,16 +26,34 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     analysis: &LazyCell<Analysis<'s>, F>,
     version: &mut Option<SceneVersion>,
 ) -> Answer {
+    if about == "limits" {
+        return limits(params, converter, analysis);
+    }
     let Some(version) = version else {
         return Ok(Value::Null);
     };
     match about {
         "pick" => pick(params, converter, version),
+        "objects" => objects(params, converter, version),
         "overlays" => overlays(params, converter, version),
         "drag" => drag(params, converter, analysis, version),
         "samples" => samples(params, version),
         _ => Err(Refusal::unknown(&format!("{NAMESPACE}{about}"))),
     }
+}
+
+/// Between which numbers the one at a position may be; of texts with errors, too.
+fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
+    let offset = converter.offset(at(params, "/position")?);
+    let limits = editor::limits(analysis, offset);
+    Ok(limits.map_or(Value::Null, |limits| {
+        json!({
+            "least": limits.least,
+            "most": limits.most,
+            "open": limits.is_open,
+            "whole": limits.is_whole,
+        })
+    }))
 }
 
 fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
@@ -64,9 +82,23 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     })
 }
 
-fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
+/// The objects without what is drawn of them.
+fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
+    let shown = shown(params)?;
+    let listed = (0..version.scene.objects.len()).filter(|index| shown.has(*index));
+    Ok(listed
+        .map(|index| object(index, converter, version))
+        .collect())
+}
+
+fn shown(params: &Value) -> Result<Shown, Refusal> {
     let further: Option<usize> = optional(params, "object")?;
-    let overlays = viewport::overlays(&version.scene, further);
+    let only: Option<Vec<usize>> = optional(params, "only")?;
+    Ok(only.map_or(Shown::First(further), Shown::Only))
+}
+
+fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
+    let overlays = viewport::overlays(&version.scene, &shown(params)?);
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
     let vanishing = vanishing.map(|(axis, Vanishing { point, lines })| {
         json!({ "axis": axis, "point": point.map(written_point), "lines": written_lines(lines) })
@@ -119,7 +151,8 @@ fn drag(
     };
     let dragged = viewport::drag(analysis, &version.scene, &drag).map_err(Refusal::failed)?;
     let edits = converter.text_edits(dragged.edits);
-    Ok(json!({ "edits": edits, "values": dragged.values }))
+    let viewport::Dragged { values, also, .. } = dragged;
+    Ok(json!({ "edits": edits, "values": values, "also": also }))
 }
 
 fn samples(params: &Value, version: &mut SceneVersion) -> Answer {

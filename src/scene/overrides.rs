@@ -265,6 +265,12 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
+/// What can be named instead.
+const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
+
+/// So many names are listed where none of them was meant.
+const FEW: usize = 8;
+
 /// What is wrong with a target whose block is neither in the file nor one that can be added.
 fn no_such_block<'s>(
     it: &Override<'s>,
@@ -283,7 +289,7 @@ fn no_such_block<'s>(
     let near = near.then(|| suggest::nearest(block.text, names)).flatten();
     let known = match objects.len() {
         0 => "The scene's objects have no names.".to_owned(),
-        1..=8 => format!("The scene has {}.", suggest::list(objects.iter().copied())),
+        1..=FEW => format!("The scene has {}.", suggest::list(objects.iter().copied())),
         count => format!("The scene has {count} named objects."),
     };
     let message = format!("there is no object named `{}`", block.text);
@@ -316,6 +322,11 @@ fn no_such_let<'s>(
         Item::Definition(definition) => Some(definition.name?.text),
         Item::Block(_) | Item::Bad(_) => None,
     });
+    let few: Vec<&str> = lets.clone().take(FEW + 1).collect();
+    let known = match few.len() {
+        1..=FEW => format!(" It defines {}.", suggest::list(few.iter().copied())),
+        _ => String::new(),
+    };
     let is_block = setting(name.text).is_some() || objects(items).contains(&name.text);
     let mut blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
     let of_block = blocks.find(|block| block.field(name.text).is_some());
@@ -330,8 +341,10 @@ fn no_such_let<'s>(
         .at(name.span, "no `let` of this name")
         .help(match &meant {
             _ if is_block => format!("name a field of it as well: `{}.FIELD=…`", name.text),
-            Some(meant) => format!("did you mean `{meant}`?"),
-            None => "name a `let` of the scene, or a field by `BLOCK.FIELD=…`".to_owned(),
+            Some(meant) if few == [meant.as_str()] => format!("did you mean `{meant}`?"),
+            Some(meant) => format!("did you mean `{meant}`?{known}"),
+            None if known.is_empty() => OTHERS.to_owned(),
+            None => format!("{OTHERS}.{known}"),
         })
         .writing(
             name.span,

@@ -192,14 +192,20 @@ impl Conversation<'_> {
         if version == self.known {
             return Ok(());
         }
+        // A page that is new has nothing yet that a draft would take the place of.
+        let is_first = self.known == 0;
+        let draft = is_first.then(|| file.draft()).flatten();
         self.known = version;
         let held = file.held().as_ref();
-        let params = json!({
+        let mut params = json!({
             "name": file.name(),
             "text": held.ok(),
             "reason": held.err(),
             "saved": file.path().is_some(),
         });
+        if let Some(draft) = draft {
+            params["draft"] = draft;
+        }
         drop(file);
         self.say(vec![
             Notification::new("studio/file".to_owned(), params).into(),
@@ -250,6 +256,12 @@ impl Conversation<'_> {
                     Err(NotSaved::Refused(message)) => Err(Refusal::failed(message)),
                 }
             }
+            ("studio/draft", text) => {
+                let kept = lock(self.file).keep_draft(text, field("base"));
+                let kept = kept.map_err(Refusal::failed);
+                kept.map(|()| json!({ "ok": true }))
+            }
+            ("studio/alive", _) => Ok(json!({ "ok": true })),
             ("studio/save", None) => Err(Refusal::invalid("there is no `text`")),
             _ => Err(Refusal::unknown(&method)),
         };

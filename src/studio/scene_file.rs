@@ -1,10 +1,13 @@
-//! The scene's own file: the only one that Studio reads or writes.
+//! The scene's own file, which is the only one that Studio reads or writes, except for its draft.
 
 use std::{
     io,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
+
+use super::draft::Draft;
+use serde_json::Value;
 
 use crate::{
     files::{self, Original, Purpose},
@@ -31,6 +34,7 @@ pub struct SceneFile {
     version: u64,
     /// Tells when the file has changed. Without it, that is found when it is saved.
     watch: Option<Arc<Latest<Content>>>,
+    draft: Draft,
 }
 
 /// The file that pages share. A page that broke while it had it has left no half of a change.
@@ -47,10 +51,26 @@ pub enum NotSaved {
     Refused(String),
 }
 
-impl From<io::Error> for NotSaved {
-    fn from(error: io::Error) -> Self {
-        Self::Refused(error.to_string())
-    }
+/// Why a file could not be written, and what could be done.
+fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
+    let folder = path.parent().filter(|it| *it != Path::new(""));
+    let is_gone = folder.is_some_and(|folder| !folder.exists());
+    let advice = match error.kind() {
+        io::ErrorKind::NotFound if is_gone => {
+            return NotSaved::Refused(format!(
+                "{name} is not saved: its folder is gone; make it again, or download the scene"
+            ));
+        }
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "allow it to be changed, or download the scene"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "make room, or download the scene"
+        }
+        io::ErrorKind::AlreadyExists => "choose another name",
+        _ => "try again, or download the scene",
+    };
+    NotSaved::Refused(format!("{name} is not saved: {error}; {advice}"))
 }
 
 impl SceneFile {
@@ -68,6 +88,7 @@ impl SceneFile {
             held: Ok(Some(text)),
             version: 1,
             watch: preview::watch(path, read).ok(),
+            draft: Draft::of(path),
         })
     }
 
@@ -75,6 +96,7 @@ impl SceneFile {
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
+            draft: Draft::of(&folder),
             folder,
             path: None,
             held: Ok(Some(SMALLEST.to_owned())),
@@ -98,6 +120,28 @@ impl SceneFile {
     /// What was there when it was looked at last.
     pub fn held(&self) -> &Held {
         &self.held
+    }
+
+    /// What was written and not saved, if it is kept and differs from what is there.
+    pub fn draft(&self) -> Option<Value> {
+        let draft = self.draft.kept(self.read)?;
+        let held = self.held.as_ref().ok().and_then(Option::as_deref);
+        (draft["text"].as_str() != held).then_some(draft)
+    }
+
+    /// Keeps what is written and not saved; nothing any more if there is no text.
+    ///
+    /// # Errors
+    ///
+    /// Why it is not kept, in words.
+    pub fn keep_draft(&self, text: Option<&str>, base: Option<&str>) -> Result<(), String> {
+        match text {
+            Some(text) => self.draft.keep(text, base),
+            None => {
+                self.draft.forget();
+                Ok(())
+            }
+        }
     }
 
     /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
@@ -160,7 +204,7 @@ impl SceneFile {
                             let found = self.found(path).map_err(unread)?;
                             return Err(NotSaved::Changed(found));
                         }
-                        written => written?,
+                        written => written.map_err(|error| refused(&own, path, &error))?,
                     }
                 }
             }
@@ -168,12 +212,15 @@ impl SceneFile {
                 let name = name.unwrap_or_default();
                 check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
-                write(&path, new, Purpose::New)?;
+                write(&path, new, Purpose::New).map_err(|error| refused(name, &path, &error))?;
                 self.watch = preview::watch(&path, self.read).ok();
+                self.draft.forget();
+                self.draft = Draft::of(&path);
                 self.path = Some(path);
                 self.version += 1;
             }
         }
+        self.draft.forget();
         self.hold(Ok(Some(new.to_owned())));
         Ok(self.version)
     }

@@ -4,10 +4,11 @@ use super::problem::{Message, times};
 use crate::{diagnostic::Diagnostic, source::Span};
 
 pub const INVALID_UTF8: Message = Message::new("invalid_utf8", "this file is not valid UTF-8{0}", "this byte is part of no character", "save the file as UTF-8");
-pub const UTF16: Message = Message::new("invalid_utf8", "this file is UTF-16, not UTF-8", "the byte order mark of UTF-16", "save the file as UTF-8");
-pub const FOREIGN_FILE: Message = Message::new("foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`");
+pub const UTF16: Message = Message::new("invalid_utf8", "this file is UTF-16, not UTF-8", "each character takes two bytes", "save the file as UTF-8");
+pub const FOREIGN_FILE: Message = Message::new("foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`{1}");
 pub const NOT_IN_LANGUAGE: Message = Message::new("not_in_language", "the language has no {0}", "not a part of the language", "{1}");
 // Text.
+pub const CARRIAGE_RETURN: Message = Message::new("odd_space", "a carriage return alone ends no line{0}", "no line feed follows", "write a line feed in its place").safe();
 pub const ODD_SPACE: Message = Message::new("odd_space", "{0} is no white space here{1}", "it cannot be seen", "write a plain space in its place, or take it away").safe();
 pub const UNCLOSED_COMMENT: Message = Message::new("unclosed_comment", "a comment is never closed", "the comment starts here and takes the rest of the text", "write `*/` where it ends, or begin it with `//` if it is one line");
 pub const NESTED_COMMENT: Message = Message::new("nested_comment", "comments do not nest: the first `*/` ends this one", "this opens no other comment", "").safe();
@@ -58,7 +59,7 @@ pub fn invalid_utf8(span: Span, more: usize) -> Diagnostic {
     INVALID_UTF8.at(span, &[&times(more)], None)
 }
 
-/// The text starts with the byte order mark of UTF-16.
+/// The file is UTF-16; the first character.
 pub fn utf16(span: Span) -> Diagnostic {
     UTF16.at(span, &[], None)
 }
@@ -78,6 +79,9 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
+
+/// What is said besides of programs whose z points away from the viewer.
+pub const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[

@@ -49,4 +49,7 @@ pub struct Parsed<'s> {
     pub problems: Vec<Diagnostic>,
     /// Where a mistake took the rest of the text, so that nothing is reported to be missing.
     pub cut: Option<usize>,
+    /// Whether something follows the grammar and was hardly meant so, such as fields that their
+    /// block does not know: with other line ends it may be a mistake of syntax.
+    pub is_doubtful: bool,
 }

@@ -33,7 +33,8 @@ pub struct Scan {
     /// Where a right text can be taken apart: behind a `}` or before a `let`, at most one place in
     /// [`SPACING`] bytes.
     pub ends: Vec<usize>,
-    /// Characters that cannot be seen and are no white space of the language.
+    /// Characters that cannot be seen and are no white space of the language, and carriage returns
+    /// that end no line.
     odd_spaces: Vec<Range<usize>>,
 }
 
@@ -95,7 +96,19 @@ impl Scan {
             }
             is_told = is_deep;
         }
+        scan.find_carriage_returns(text, start);
         scan
+    }
+
+    /// Notes carriage returns that end no line, also those in comments: there they would take the lines along that other programs show below them.
+    fn find_carriage_returns(&mut self, text: &str, start: usize) {
+        let rest = text.get(start..).unwrap_or_default();
+        let alone = rest.match_indices('\r').filter_map(|(at, _)| {
+            let at = start + at;
+            (text.as_bytes().get(at + 1) != Some(&b'\n')).then_some(at..at + 1)
+        });
+        let room = MOST_PROBLEMS - self.odd_spaces.len();
+        self.odd_spaces.extend(alone.take(room));
     }
 
     /// Notes where the text can be taken apart, unless it is close behind the last such place.
@@ -114,6 +127,10 @@ impl Scan {
     pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
         let text = source.text();
         self.report_odd_spaces(text, id, &mut parsed.problems);
+        // What a comment took is missing only because of that.
+        let mut places = self.odd_spaces.iter().map(|place| place.start);
+        let hides = |at: &usize| text[*at..].starts_with('\r');
+        parsed.cut = parsed.cut.or_else(|| places.find(hides));
         if let Some(start) = self.open_comment {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
@@ -151,10 +168,14 @@ impl Scan {
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);
-            let words = [name_of_space(sort), times(places.len() - 1)];
-            let spaces = all("write plain spaces", " ");
-            let said = say::ODD_SPACE.safe_if(is_safe);
-            let mut found = said.at(span, &words.each_ref().map(String::as_str), spaces);
+            let times = times(places.len() - 1);
+            let mut found = if sort == "\r" {
+                say::CARRIAGE_RETURN.at(span, &[&times], all("write line feeds", "\n"))
+            } else {
+                let words = [&name_of_space(sort), times.as_str()];
+                let said = say::ODD_SPACE.safe_if(is_safe);
+                said.at(span, &words, all("write plain spaces", " "))
+            };
             // What has no width, as a rule, is not meant to keep words apart.
             if !has_width {
                 let applicability = Applicability::safe_if(is_safe);

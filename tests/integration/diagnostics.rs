@@ -231,10 +231,15 @@ fn a_long_line_is_cut() {
 
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
-    let text = "\u{feff}sphere { center (0, 1, 0) }\n";
-    let little = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-    let big = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
-    for bytes in [little, big] {
+    let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
+    // As some programs write it, without a mark; a comment need not be ASCII.
+    let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
+    let texts = [marked, bare, &marked[3..]].into_iter();
+    let encoded = texts.flat_map(|text| {
+        [u16::to_le_bytes, u16::to_be_bytes]
+            .map(|bytes| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>())
+    });
+    for bytes in encoded {
         let sources = Sources::new(Source::from_bytes("a.scn", bytes));
         let [found] = &scene::read(&sources).diagnostics[..] else {
             panic!("one mistake");

@@ -76,6 +76,7 @@ fn the_commands_print_what_the_documents_say() {
 fn the_scenes_of_the_documents_and_the_examples_are_right_and_canonical() {
     let mut texts: Vec<String> = DOCUMENTS.map(read).into();
     texts.push(read("grammar/language.md"));
+    texts.push(read("grammar/left_handed.md"));
     let mut scenes: Vec<&str> = texts.iter().flat_map(|text| fenced(text, "scn")).collect();
     assert!(scenes.len() > 5, "{} scenes", scenes.len());
     for scene in &scenes {

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::{Change, changes, edits},
+    edits::{Change, changes, edits, rounded},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles},
 };
 use crate::{
@@ -15,6 +15,7 @@ use crate::{
     editor::Analysis,
     projection::Projection,
     scene::{self, Image, Part, Scene, Shape},
+    schema,
     source::{Source, SourceId, Sources},
     syntax::tree::Block,
 };
@@ -44,6 +45,8 @@ pub struct Dragged {
     pub edits: Vec<Edit>,
     /// The fields with their new values, as `Ball.radius = 2`.
     pub values: Vec<String>,
+    /// Fields of other blocks that change with them, as `camera.lookat`.
+    pub also: Vec<String>,
 }
 
 /// What has to change in a text that means a scene where a handle is moved.
@@ -97,7 +100,7 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     let objects = scene.objects.iter().enumerate();
     let others = objects.filter(|(index, _)| Some(*index) != drag.object);
     let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
-    let tied = || "the text ties these numbers to others, or they have too few digits".to_owned();
+    let tied = || tied(analysis, block, &name, &changes);
     let mut refusal = tied();
     let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
@@ -109,21 +112,56 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let alone = read(analysis, [&edits, &without_others]);
         match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found) => {
-                // The others may depend on the same numbers.
-                read(analysis, [&edits, &[]])?;
+                // What stands in the block itself concerns no other one, which saves reading a long
+                // text.
+                let is_own = |edit: &Edit| {
+                    block.span.start <= edit.span.start && edit.span.end <= block.span.end
+                };
+                let also = match edits.iter().all(is_own) {
+                    true => Vec::new(),
+                    false => {
+                        let whole = read(analysis, [&edits, &[]])?;
+                        others_changed(analysis, drag.object, [scene, &whole])
+                    }
+                };
                 let value = |change: &Change| {
                     let after = found.value(change.name)?;
                     let is_new = after != change.from;
                     is_new.then(|| format!("{name}.{} = {after}", change.name))
                 };
                 let values = changes.iter().filter_map(value).collect();
-                return Ok(Dragged { edits, values });
+                return Ok(Dragged {
+                    edits,
+                    values,
+                    also,
+                });
             }
             Ok(_) => refusal = tied(),
-            Err(why) => refusal = why,
+            // More digits might slip by what the language forbids, and nobody would see the
+            // difference.
+            Err(why) => match rounded(current, &changes, decimals) {
+                Some(rounded) if view.agree(ideal, rounded) => return Err(why),
+                _ => refusal = why,
+            },
         }
     }
     Err(refusal)
+}
+
+/// Why fields cannot take the values that they should have, where the text could be changed so that
+/// they can, and how.
+fn tied(analysis: &Analysis<'_>, block: &Block<'_>, name: &str, changes: &[Change]) -> String {
+    let Some(change) = changes.first() else {
+        return TOO_FAR.to_owned();
+    };
+    let field = change.name;
+    let mut written = block.fields.iter();
+    let written = written.find(|it| it.name.text == field);
+    let line = analysis.line(written.map_or(block.span, |field| field.span));
+    let value = change.from;
+    format!(
+        "`{name}.{field}` in line {line} cannot take that value, because it shares numbers with other fields: write its own numbers there, as in `{field} {value}`"
+    )
 }
 
 /// An object or the camera; none if there is no such object.
@@ -149,6 +187,39 @@ fn block<'a, 's>(
     let name = object.name.as_deref().unwrap_or(object.shape.kind());
     let block = blocks.find(|block| block.span == object.span)?;
     Some((block, name.to_owned()))
+}
+
+/// The fields of the camera and of other objects in which two scenes differ that have the same
+/// blocks.
+fn others_changed(
+    analysis: &Analysis<'_>,
+    dragged: Option<usize>,
+    scenes: [&Scene; 2],
+) -> Vec<String> {
+    let mut objects = 0;
+    let mut changed = Vec::new();
+    for block in analysis.blocks() {
+        let Some(kind) = block.kind else { continue };
+        let index = match schema::block(kind.text) {
+            Some(row) if row.is_object => {
+                objects += 1;
+                Some(objects - 1)
+            }
+            _ if kind.text == "camera" => None,
+            _ => continue,
+        };
+        let [Some(before), Some(after)] = scenes.map(|scene| part(scene, index)) else {
+            continue;
+        };
+        if index == dragged {
+            continue;
+        }
+        let name = block.name.map_or(kind.text, |name| name.text);
+        let fields = block.fields.iter().map(|field| field.name.text);
+        let differ = fields.filter(|field| before.value(field) != after.value(field));
+        changed.extend(differ.map(|field| format!("{name}.{field}")));
+    }
+    changed
 }
 
 /// The scene that a text means after some edits.

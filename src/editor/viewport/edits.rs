@@ -6,6 +6,7 @@
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
+    math::Angle,
     scene::{Part, operate},
     schema::{self, Value},
     source::{SourceId, Span},
@@ -49,6 +50,25 @@ pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
     changes
         .filter(|change| change.size() != 0.0 && !other_form.contains(&change.name))
         .collect()
+}
+
+/// A part whose fields have changed, with their values rounded to so many decimals.
+pub fn rounded(part: Part, changes: &[Change], decimals: i32) -> Option<Part> {
+    let number = |from: f64, by: f64| round(from + by, decimals);
+    changes.iter().try_fold(part, |part, change| {
+        let value = match (change.from, change.by) {
+            (Value::Vector(from), Value::Vector(by)) => {
+                let number = |axis| number(from[axis], by[axis]);
+                Value::Vector([0, 1, 2].map(number).into())
+            }
+            (Value::Angle(_), _) => {
+                let degrees = number(amount(change.from, None), amount(change.by, None));
+                Value::Angle(Angle::from_degrees(degrees))
+            }
+            _ => Value::Number(number(amount(change.from, None), amount(change.by, None))),
+        };
+        part.with(change.name, value)
+    })
 }
 
 /// The edits that change fields of a block, in order, with numbers written to so many decimals. None if two of them want different things of one number.

@@ -184,7 +184,17 @@ fn moved_point(
         }
     };
     let seen = moved.and_then(|moved| Some((moved, projection.point(moved)?)));
-    let (moved, seen) = seen.ok_or("what it moves along is not seen there")?;
+    let (moved, seen) = seen.ok_or_else(|| match along {
+        Some(Along::Floor) => {
+            let y = point.y;
+            format!("the plane y = {y}, in which it moves, is not seen there: come nearer, or drag it freely")
+        }
+        Some(Along::Axis(axis)) => {
+            let axis = AXES[axis];
+            format!("its way along {axis} is not seen there: drag it along another axis, or freely")
+        }
+        None => TOO_FAR.to_owned(),
+    })?;
     let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
     let left = (seen - to) - across * (seen - to).dot(across);
     match left.length() <= TOLERANCE {

@@ -22,7 +22,7 @@ use crate::{
 
 pub use drag::{Drag, Dragged, drag};
 pub use handles::Along;
-pub use overlays::{MOST_OBJECTS, Outline, Overlays, Vanishing, overlays};
+pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
 /// For each object the place that stands for it: its name, or the keyword of its block.

@@ -59,13 +59,32 @@ pub struct Outline {
     pub handles: Vec<(&'static str, Option<DVec2>)>,
 }
 
-/// What can be drawn over the picture of a scene, with the first [`MOST_OBJECTS`] objects and one that may come behind them.
-pub fn overlays(scene: &Scene, further: Option<usize>) -> Overlays {
+/// Which objects are shown: by their indices, or the first [`MOST_OBJECTS`] and one that may come
+/// behind them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// These alone.
+    Only(Vec<usize>),
+    /// The first ones, and this.
+    First(Option<usize>),
+}
+
+impl Shown {
+    /// Whether the object of this index is shown.
+    pub fn has(&self, index: usize) -> bool {
+        match self {
+            Self::Only(indices) => indices.contains(&index),
+            Self::First(further) => index < MOST_OBJECTS || Some(index) == *further,
+        }
+    }
+}
+
+/// What can be drawn over the picture of a scene.
+pub fn overlays(scene: &Scene, which: &Shown) -> Overlays {
     let Scene { image, camera, .. } = scene;
     let projection = Projection::new(camera, image);
     let objects = || scene.objects.iter().enumerate();
-    let is_shown = |index: usize| index < MOST_OBJECTS || Some(index) == further;
-    let shown = || objects().filter(|(index, _)| is_shown(*index));
+    let shown = || objects().filter(|(index, _)| which.has(*index));
     let (_, points) = inspect::inspect_camera(camera, image);
     let vanishing = [0, 1, 2].map(|axis| {
         let point = points[axis].map(DVec2::from);

@@ -12,7 +12,7 @@ use crate::{
         overrides,
         semantic_model::{Parts, SemanticModel},
     },
-    source::{SourceId, Sources, Span},
+    source::{Source, SourceId, Sources, Span},
     syntax::{self, tree::Item},
 };
 
@@ -167,6 +167,11 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
 /// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
+    if is_utf16(&sources.file) {
+        diagnostics.clear();
+        diagnostics.push(syntax::utf16(Span::new(SourceId::File, 0, 2)));
+        return;
+    }
     let Some(&first) = invalid.first() else {
         return;
     };
@@ -174,14 +179,29 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         let next = invalid.partition_point(|&byte| byte < span.start);
         span.source == SourceId::File && invalid.get(next).is_some_and(|&byte| byte < span.end)
     };
-    let start = sources.file.text().as_bytes().get(2..4);
-    if invalid.starts_with(&[0, 1]) && start.is_some_and(|start| start.contains(&0)) {
-        let span = Span::new(SourceId::File, 0, 2);
-        diagnostics.clear();
-        diagnostics.push(syntax::utf16(span));
-        return;
-    }
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let span = Span::new(SourceId::File, first, first + 1);
     diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
+}
+
+/// Whether a file is UTF-16, with its mark or without: what people write is mostly ASCII, of which every second byte is zero, and no
+/// other one.
+fn is_utf16(file: &Source) -> bool {
+    const LOOKED_AT: usize = 256;
+    let bytes = file.text().as_bytes();
+    let has_mark = file.invalid_utf8().starts_with(&[0, 1]);
+    let start = bytes
+        .get(if has_mark { 2 } else { 0 }..)
+        .unwrap_or_default();
+    let start = &start[..start.len().min(LOOKED_AT)];
+    let zeros = |first| {
+        start
+            .iter()
+            .skip(first)
+            .step_by(2)
+            .filter(|&&byte| byte == 0)
+            .count()
+    };
+    let (even, odd) = (zeros(0), zeros(1));
+    start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
 }

@@ -45,6 +45,14 @@ impl<'s> Recovery<'_, 's> {
                     block.span = block.span.to(close);
                     break;
                 }
+                sign @ (")" | "]") if self.is_end_of_block() => {
+                    let close = self.bump();
+                    let fix = Fix::write(close, "}");
+                    self.report(&say::STRAY_CLOSING.safe_if(true), close, &[sign], fix);
+                    block.close = Some(close);
+                    block.span = block.span.to(close);
+                    break;
+                }
                 "let" => self.misplaced_let(),
                 "," | ";" => self.separator(),
                 "{" => {
@@ -74,6 +82,12 @@ impl<'s> Recovery<'_, 's> {
             && self.is_on_new_line(0)
             && self.words.is_kind(self.within.kind)
             && self.indent(start) <= self.indent(block.span.start)
+    }
+
+    /// Whether a sign stands where the block should be closed: at the end of a line, and the next one begins an item.
+    pub(super) fn is_end_of_block(&mut self) -> bool {
+        let is_item = self.is(1, "let") || self.is_head(1) && self.words.is_kind(self.word(1));
+        self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
     }
 
     fn indent(&self, at: usize) -> usize {

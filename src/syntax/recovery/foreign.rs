@@ -7,6 +7,7 @@ use crate::{
     syntax::{
         messages::{self as say, FOREIGN_FILES, statement},
         tokens::{Lexer, is_color_code, line_end},
+        tree::Item,
     },
 };
 
@@ -29,6 +30,8 @@ impl Recovery<'_, '_> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
+        // What it may have defined is no second mistake.
+        self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
             self.skip_block();
@@ -142,7 +145,9 @@ impl Recovery<'_, '_> {
         let first = Lexer::past_comments(self.text, 0);
         let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
-        self.report(&say::FOREIGN_FILE, place, &[what], None);
+        let is_left_handed = matches!(*what, "a scene of POV-Ray" | "a scene of pbrt");
+        let z = if is_left_handed { say::LEFT_HANDED } else { "" };
+        self.report(&say::FOREIGN_FILE, place, &[what, z], None);
         self.cut = Some(0);
         true
     }

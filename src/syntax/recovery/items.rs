@@ -64,6 +64,13 @@ impl<'s> Recovery<'_, 's> {
         }
         let has_sign = !self.is_end_of_definition() && matches!(self.word(0), "=" | ":");
         definition.equals = has_sign.then(|| self.bump());
+        // `:=`
+        if self.written(definition.equals.unwrap_or(keyword)) == ":"
+            && self.is(0, "=")
+            && self.is_adjacent(0)
+        {
+            definition.equals = definition.equals.map(|colon| colon.to(self.bump()));
+        }
         self.value_of_definition(&mut definition);
         self.settle(told);
         definition.span = keyword.to(definition.value.span);
@@ -230,6 +237,19 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, "=") && self.is_name(1) && count == 3 {
             self.bump();
             return self.named_block(first.span, first);
+        }
+        if self.words.is_kind(self.word(0)) && !self.words.is_kind(first.text) && count <= 3 {
+            let kind = self.name();
+            let before = Span::new(self.id, first.span.start, kind.span.start);
+            let fix = Fix::new(
+                format!("take `{}` away", shorten(first.text)),
+                [Edit::new(before, "")],
+            );
+            self.report(&say::BAD_HEAD, first.span, &[kind.text], fix);
+            block = Block::empty(kind.span);
+            block.kind = Some(kind);
+            block.name = (!self.is(0, "{")).then(|| self.name());
+            return self.open_block(block);
         }
         let mut rest = self.here();
         while !self.is(0, "{") {

@@ -143,6 +143,8 @@ impl<'s> Recovery<'_, 's> {
             gaps: Vec::new(),
             needless: None,
         };
+        // Reported once, however many there are.
+        let (mut semicolons, mut labels, told) = (Vec::new(), Vec::new(), self.problems.len());
         loop {
             let is_value_next = list.elements.last().is_none_or(|last| last.comma.is_some());
             self.comments(match is_value_next {
@@ -156,13 +158,16 @@ impl<'s> Recovery<'_, 's> {
             if word == close || (matches!(word, ")" | "]") && close != "}") {
                 list.span = open.to(self.bump());
                 list.is_round &= word == ")";
+                let is_plain = self.problems.len() == told;
+                self.semicolons(&semicolons, is_plain);
+                self.names_of_parts(&labels, is_plain);
                 let last = list.elements.last().and_then(|last| last.comma);
                 list.needless = list.needless.or(last);
                 return Some(list);
             }
             if word == "," || (word == ";" && !is_value_next) {
                 if word == ";" {
-                    self.unexpected("`,`", "write a comma between the parts of a list");
+                    semicolons.push(self.here());
                 }
                 let comma = self.bump();
                 match list.elements.last_mut() {
@@ -182,6 +187,11 @@ impl<'s> Recovery<'_, 's> {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
                 }
+                // `x = 3`
+                if self.is_name(0) && matches!(self.word(1), "=" | ":") {
+                    let name = self.bump();
+                    labels.push(name.to(self.bump()));
+                }
                 let at = self.last_end;
                 let value = self.expression();
                 if self.last_end == at {
@@ -190,6 +200,40 @@ impl<'s> Recovery<'_, 's> {
                 list.elements.push(Element { value, comma: None });
             }
         }
+    }
+
+    /// Semicolons in place of the commas of a list, which may be wrong in other ways, too.
+    fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
+        if let Some(&first) = signs.first() {
+            let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
+            let fix = Fix::new("write commas", commas);
+            self.report(
+                &say::UNEXPECTED.safe_if(true),
+                first,
+                &["`,`", ";"],
+                is_plain.then_some(fix),
+            );
+        }
+    }
+
+    /// The names of parts, each with its `=`. In any other order than the usual one, nobody knows what is meant.
+    fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
+        let Some(&first) = labels.first() else {
+            return;
+        };
+        let names: String = labels
+            .iter()
+            .map(|label| &self.written(*label)[..1])
+            .collect();
+        let is_usual = matches!(names.as_str(), "xyz" | "rgb");
+        let fix = (is_usual && is_plain).then(|| {
+            let edits = labels
+                .iter()
+                .map(|label| Edit::remove_in(*label, self.text));
+            Fix::new("take the names away", edits)
+        });
+        let help = "write the values alone, in the order x, y, z";
+        self.report(&say::NOT_IN_LANGUAGE, first, &["names of parts", help], fix);
     }
 
     /// Whether a definition's line ended before this name.

@@ -54,6 +54,8 @@ pub struct Recovery<'w, 's> {
     pub(super) problems: Problems,
     /// Where a mistake took the rest of the text.
     cut: Option<usize>,
+    /// Whether an item was left as it was read for want of a better explanation.
+    is_doubtful: bool,
     /// Where the item ended that was read here last.
     pub(super) read_to: usize,
     /// Whether the text was looked at and is no other program's.
@@ -103,6 +105,7 @@ impl<'w, 's> Recovery<'w, 's> {
             items: Vec::new(),
             problems: Problems::default(),
             cut: None,
+            is_doubtful: false,
             read_to: 0,
             is_ours: false,
             within: Within::default(),
@@ -157,6 +160,7 @@ impl<'w, 's> Recovery<'w, 's> {
         if is_better {
             return Some(end);
         }
+        self.is_doubtful = true;
         self.items.truncate(items);
         self.problems.truncate(problems);
         for places in self.within.slips.values_mut() {
@@ -189,6 +193,7 @@ impl<'w, 's> Recovery<'w, 's> {
         let mut parsed = Parsed {
             tree: Tree { items: self.items },
             cut: self.cut.or(cut),
+            is_doubtful: self.is_doubtful,
             problems: self.problems.into(),
             ..Parsed::default()
         };

@@ -70,7 +70,9 @@ impl<'s> Recovery<'_, 's> {
 
     fn closes_nothing(&mut self) -> bool {
         let word = self.word(0);
-        matches!(word, ")" | "]") && word != self.within.close
+        // In place of a block's `}`, it is for the block to tell.
+        let is_end = |this: &mut Self| this.within.is_block && this.is_end_of_block();
+        matches!(word, ")" | "]") && word != self.within.close && !is_end(self)
     }
 
     /// Whether what stands behind some values belongs to them.

@@ -1,5 +1,5 @@
-// The part of the page's address behind #: `key=value`, joined by `&`. Browsers send it to nobody. This module comes before all others, so that nothing else
-// ever sees the token there.
+// The part of the page's address behind #: `key=value`, joined by `&`. Browsers send it to nobody.
+// This module comes before all others, so that nothing else ever sees the token there.
 
 /** What has the token in the address, and in what the tab remembers. */
 const TOKEN = "token";
@@ -23,19 +23,21 @@ export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Takes the token out of the address, so that it is not shown, copied or kept in the history, and leaves all else; null if there is none. */
+/** Takes the token, and nothing else, out of the address; null if there is none. */
 export function takeToken(): string | null {
   const token = inAddress(TOKEN);
   if (token === null) return null;
-  const rest = pairs().filter(([key]) => key !== TOKEN).map(([key, value]) => `${key}=${value}`).join("&");
-  history.replaceState(history.state, "", location.pathname + location.search + (rest === "" ? "" : `#${rest}`));
+  const rest = pairs().filter(([key]) => key !== TOKEN).map(([key, value]) => `${key}=${value}`)
+    .join("&");
+  history.replaceState(history.state, "",
+    location.pathname + location.search + (rest === "" ? "" : `#${rest}`));
   return token;
 }
 
-/** What the host knows this tab by, as long as the tab lives: reloading keeps it, and another tab has its own. */
+/** What the host knows this tab by. Reloading keeps it, and another tab has its own. */
 class Session {
   token: string | null = null;
-  /** Whether the token comes from an address that was just opened, and not from the host or an earlier load of the page. */
+  /** Whether the token comes from an address that was just opened. */
   isFresh = false;
 
   constructor() {
@@ -65,9 +67,7 @@ class Session {
 function remembered(): string | null {
   try {
     return sessionStorage.getItem(REMEMBERED);
-  } catch {
-    return null;
-  }
+  } catch { return null; }
 }
 
 export const session = new Session();

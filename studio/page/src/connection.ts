@@ -1,36 +1,38 @@
-// The connection to the engine: a web socket to the served host, or a web worker, carrying one JSON-RPC message a text. It is the transport of the editor's
-// language client, and carries the page's own requests beside it. A lost connection is opened anew after growing pauses, unless the host has said that it will not
-// have this page any more.
+// The connection to the engine: a web socket to the served host, or a web worker, carrying one
+// JSON-RPC message a text. It is the transport of the editor's language client, and carries the
+// page's own requests beside it. A lost connection is opened anew after growing pauses, unless the
+// host has said that it will not have this page any more.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
 import { Refusal } from "./protocol";
 
 /** Something that carries texts. */
-interface Wire {
-  send(text: string): void;
-}
+interface Wire { send(text: string): void }
 
-/** Why there is no connection, and will be none before an address is opened that the host has printed. */
+/** Why there will be no connection before an address is opened that the host has printed. */
 export type Refused = "keyless" | "unknown" | "restarted" | "late" | "twice";
 
-/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own word; `failed` is a worker. These are tried again. */
+/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own
+ *  word; `failed` is a worker. These are tried again. */
 export type Closed = "lost" | "ended" | "failed" | Refused;
 
 /** `silent` is a connection that is lost for long. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
 /** Opens a wire; the three functions are called as it opens, brings a text, and closes. */
-type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void, closed: (why: Closed) => void) => void;
+type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
+  closed: (why: Closed) => void) => void;
 
-interface Waiting {
-  resolve(result: unknown): void;
-  reject(error: Error): void;
-}
+interface Waiting { resolve(result: unknown): void; reject(error: Error): void }
 
-/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. After all of them the host is most likely gone. */
+/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 
+/** After so much silence the server is asked whether it lives, and has so long to answer, in ms. */
+const QUIET = 700;
+const HANGING = 1200;
+const ALIVE = "studio/alive";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
 /** The codes with which the host closes a web socket. */
@@ -42,8 +44,10 @@ const TWICE = 4003;
 export class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
+  /** Told when nothing has come back for long, and when something has again. */
+  onHang: (isHanging: boolean) => void = () => {};
   onNotification: (method: string, params: unknown) => void = () => {};
-  /** Resolves as soon as the server has been told who we are, so that what is sent then comes after all that the editor has sent before. */
+  /** Resolves once the server has been told who we are and all that was sent before. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
@@ -54,8 +58,27 @@ export class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Counts attempts to connect: of an older one nothing is heard any more. */
   private current = 0;
+  /** When something was heard last, when the server was asked, and whether it was given up. */
+  private heard = 0;
+  private asked = 0;
+  private hangs = false;
 
-  constructor(private readonly connector: Connector) {}
+  constructor(private readonly connector: Connector) {
+    setInterval(() => this.listen(), 250);
+    // A browser stops the clocks of pages that nobody sees.
+    document.addEventListener("visibilitychange", () => (this.asked = 0));
+  }
+
+  /** Asks a silent server whether it lives. */
+  private listen(): void {
+    const now = performance.now();
+    if (this.wire === null || document.hidden) return;
+    if (this.asked === 0) {
+      if (now - this.heard < QUIET) return;
+      this.asked = now;
+      this.wire.send(JSON.stringify({ jsonrpc: "2.0", id: ALIVE, method: ALIVE }));
+    } else if (now - this.asked > HANGING && !this.hangs) this.onHang((this.hangs = true));
+  }
 
   open(): void {
     const attempt = ++this.current;
@@ -85,15 +108,10 @@ export class Connection implements Transport {
     this.wire.send(text);
   }
 
-  subscribe(handler: (text: string) => void): void {
-    this.handlers.add(handler);
-  }
+  subscribe(handler: (text: string) => void): void { this.handlers.add(handler); }
+  unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
 
-  unsubscribe(handler: (text: string) => void): void {
-    this.handlers.delete(handler);
-  }
-
-  /** Asks the server. Rejects with a `Refusal` if it refuses, and with another error if the connection is lost. */
+  /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost. */
   async request<Result>(method: string, params: unknown): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);
@@ -113,7 +131,11 @@ export class Connection implements Transport {
   private receive(text: string): void {
     // What opens and closes at once has not come back.
     this.attempts = 0;
+    this.heard = performance.now();
+    this.asked = 0;
+    if (this.hangs) this.onHang((this.hangs = false));
     const message = JSON.parse(text);
+    if (message.id === ALIVE) return;
     const waiting = "method" in message ? undefined : this.waiting.get(message.id);
     if (waiting !== undefined) {
       this.waiting.delete(message.id);
@@ -131,11 +153,15 @@ export class Connection implements Transport {
 
   private lose(why: Closed): void {
     this.wire = null;
-    for (const waiting of this.waiting.values()) waiting.reject(new Error("The connection was lost."));
+    this.asked = 0;
+    this.hangs = false;
+    const lost = new Error("The connection was lost.");
+    for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (why !== "lost" && why !== "ended" && why !== "failed") return this.enter(why);
     // What the host has said holds until it answers again.
-    if (this.state !== "ended") this.enter(why === "lost" && this.attempts >= PAUSES.length ? "silent" : why);
+    const isSilent = why === "lost" && this.attempts >= PAUSES.length;
+    if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
     this.timer = setTimeout(() => this.open(), pause);
   }
@@ -147,7 +173,7 @@ export class Connection implements Transport {
   }
 }
 
-/** A web socket on the page's own host. Its first message is the token; the host's first one is the token for the next time. */
+/** A web socket. Its first message is the token; the host's first one is that for the next time. */
 export function webSocket(path: string): Connector {
   return (opened, receive, closed) => {
     const { token } = session;
@@ -166,12 +192,13 @@ export function webSocket(path: string): Connector {
     });
     socket.addEventListener("close", ({ code }) => {
       if (code === UNKNOWN) closed(session.isFresh ? "unknown" : "restarted");
-      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended" : "lost");
+      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended"
+        : "lost");
     });
   };
 }
 
-/** A web worker that runs the engine. It is open when it says its first word, after it has loaded the engine; one that fails is replaced. */
+/** A web worker that runs the engine, whose first word opens it. One that fails is replaced. */
 export function worker(path: string): Connector {
   return (opened, receive, closed) => {
     const engine = new Worker(new URL(path, location.href), { type: "module" });

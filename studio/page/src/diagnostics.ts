@@ -1,6 +1,7 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type Diagnostic } from "@codemirror/lint";
+import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
+  Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
@@ -16,15 +17,17 @@ interface CodeAction {
   data?: { values: [number, number][] };
 }
 
-/** Shows diagnostics of the newest text with their fixes. Both at once, because an open tooltip closes when there are new diagnostics. */
+/** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
 export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
-  if (file === null || file.doc !== doc || (published.version !== undefined && published.version !== file.version)) return;
+  if (file === null || file.doc !== doc || (published.version !== undefined
+    && published.version !== file.version)) return;
   // A drag is told of every text that nothing is wrong with it.
   if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   const isRight = published.diagnostics.length === 0;
-  const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction", { range: editor.whole, context: { diagnostics: [] } });
+  const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
+    { range: editor.whole, context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
   if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
 }
@@ -61,7 +64,10 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
       // A made-up value is selected, to type over. What is made up is ASCII.
       const at = first === undefined ? 0 : editor.offset(first.range.start);
       const selection = value && { anchor: at + value[0], head: at + value[1] };
-      view.dispatch({ changes: editor.changes(edits), ...(selection && { selection, scrollIntoView: true }), userEvent: "input.fix" });
+      view.dispatch({
+        changes: editor.changes(edits), userEvent: "input.fix",
+        ...(selection && { selection, scrollIntoView: true }),
+      });
       if (selection) view.focus();
     },
   };
@@ -69,10 +75,11 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
 
 /** Whether an update of the editor brings other diagnostics, or moves them. */
 export function changesDiagnostics(update: ViewUpdate): boolean {
-  return update.docChanged || update.transactions.some(it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
+  return update.docChanged || update.transactions.some(
+    it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** The list of all that is wrong, which the button in the status line opens: each message leads to its place, and has its fixes. */
+/** The list of all that is wrong: each message leads to its place, and has its fixes. */
 export class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");
@@ -94,12 +101,16 @@ export class Problems {
         view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
         view.focus();
       };
-      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`, "place", jump));
-      for (const { name, apply } of diagnostic.actions ?? []) item.append(createButton(name, "fix", () => apply(view, from, to)));
+      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
+        "place", jump));
+      for (const { name, apply } of diagnostic.actions ?? []) {
+        item.append(createButton(name, "fix", () => apply(view, from, to)));
+      }
       items.push(item);
     });
     const count = items.length;
-    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem" : `${count} problems`);
+    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem"
+      : `${count} problems`);
     this.button.toggleAttribute("data-some", count > 0);
     // While it is closed nobody sees it: a drag changes the text many times a second.
     this.list.replaceChildren(...(this.list.hidden ? [] : items));

@@ -10,31 +10,37 @@ export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
 }
 
 /** A new element with a class, and a text that is never read as HTML. */
-export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "", text = ""): HTMLElementTagNameMap[K] {
+export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "",
+  text = ""): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
   if (className !== "") element.className = className;
   if (text !== "") setText(element, text);
   return element;
 }
 
-export function createButton(text: string, className: string, press: () => void): HTMLButtonElement {
+export function createButton(text: string, className: string,
+  press: () => void): HTMLButtonElement {
   const button = create("button", className, text);
   button.type = "button";
   button.addEventListener("click", press);
   return button;
 }
 
-export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
+export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
+  attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
   return element;
 }
 
 /** Hears of a pointer that was pressed until it is let go. */
-export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void, end: () => void): void {
+export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
+  end: () => void): void {
   const following = new AbortController();
-  const hear = (type: "pointermove" | "pointerup" | "pointercancel", act: (event: PointerEvent) => void) =>
-    document.addEventListener(type, event => event.pointerId === pressed.pointerId && act(event), { signal: following.signal });
+  const hear = (type: "pointermove" | "pointerup" | "pointercancel",
+    act: (event: PointerEvent) => void) =>
+    document.addEventListener(type, event => event.pointerId === pressed.pointerId && act(event),
+      { signal: following.signal });
   hear("pointermove", move);
   for (const type of ["pointerup", "pointercancel"] as const) {
     hear(type, () => {
@@ -65,9 +71,7 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
 export function remembered(key: string): string | null {
   try {
     return localStorage.getItem(`pinhole-${key}`);
-  } catch {
-    return null;
-  }
+  } catch { return null; }
 }
 
 export function remember(key: string, value: string): void {

@@ -1,25 +1,28 @@
-// The editor: CodeMirror with what the server gives through the language client. Fixes and hints have files of their own.
+// The editor: CodeMirror with what the server gives through the language client. Fixes and hints
+// have files of their own.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
-import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap, serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
+import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
+  serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, Compartment, EditorState, StateEffect, type ChangeSpec, type Extension, type Text } from "@codemirror/state";
-import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
+import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension,
+  type Text } from "@codemirror/state";
+import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
+  highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Connection } from "./connection";
-import { gestureHistory } from "./gesture";
+import { gestureHistory, rewrite } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded, type Position, type Published, type Range, type TextEdit } from "./protocol";
 import { sanitized } from "./sanitize";
 
 class SceneFile implements WorkspaceFile {
-  constructor(readonly uri: string, readonly languageId: string, public version: number, public doc: Text, readonly view: EditorView) {}
+  constructor(readonly uri: string, readonly languageId: string, public version: number,
+    public doc: Text, readonly view: EditorView) {}
 
-  getView(): EditorView {
-    return this.view;
-  }
+  getView(): EditorView { return this.view; }
 }
 
 /** The one file that the page has open. */
@@ -57,22 +60,35 @@ class SceneWorkspace extends Workspace {
   }
 }
 
-/** Halves of surrogate pairs stand for no character; no file can hold them, and no message to the server. */
+/** Halves of surrogate pairs, which no file and no message can hold. */
 const HALVES = /\p{Surrogate}/gu;
 
-/** Has the character for what cannot be shown in the place of halves that are typed or pasted, as a file would. */
+/** Has the replacement character for such halves that are typed or pasted, as a file would. */
 const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   const changes: ChangeSpec[] = [];
   transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
-    for (const { index } of inserted.toString().matchAll(HALVES)) changes.push({ from: from + index, to: from + index + 1, insert: "\ufffd" });
+    for (const { index } of inserted.toString().matchAll(HALVES)) changes.push(
+      { from: from + index, to: from + index + 1, insert: "\ufffd" });
   });
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
+/** A brace that is typed takes over the one that its block has already, behind space alone. */
+const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
+  const { doc } = view.state;
+  const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
+  const before = doc.sliceString(0, from).replace(/\/\/.*|\/\*[^]*?\*\//g, "");
+  if (space === undefined || before.lastIndexOf("{") <= before.lastIndexOf("}")) return false;
+  const line = doc.lineAt(from);
+  const start = /^\s*$/.test(doc.sliceString(line.from, from)) ? line.from : from;
+  const end = to + space.length;
+  view.dispatch({ changes: { from: start, to: end }, selection: { anchor: start + 1 },
+    scrollIntoView: true, userEvent: "input.type" });
+  return true;
+}));
+
 /** A text with lines that end by LF, as the editor has them. */
-export function withLf(text: string): string {
-  return text.replace(/\r\n?/g, "\n");
-}
+export function withLf(text: string): string { return text.replace(/\r\n?/g, "\n"); }
 
 export class SceneEditor {
   readonly view: EditorView;
@@ -81,9 +97,9 @@ export class SceneEditor {
   uri = "";
   /** What to do with the diagnostics that the server publishes. */
   diagnosed: (published: Published) => void = () => undefined;
-  private readonly history = new Compartment();
 
-  constructor(parent: HTMLElement, private readonly connection: Connection, nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
+  constructor(parent: HTMLElement, private readonly connection: Connection,
+    nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
     this.client = new LSPClient({
       workspace: client => new SceneWorkspace(client),
       // A busy machine may take its time; a lost connection is told by the connection.
@@ -104,32 +120,19 @@ export class SceneEditor {
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
         extensions,
         wholeCharacters,
-        lineNumbers(),
-        lintGutter(),
-        highlightActiveLine(),
-        highlightActiveLineGutter(),
-        highlightSpecialChars(),
-        highlightSelectionMatches(),
-        drawSelection(),
-        dropCursor(),
-        bracketMatching(),
-        closeBrackets(),
-        this.history.of(gestureHistory()),
-        sceneLanguage,
-        sceneHighlighting,
-        EditorView.lineWrapping,
-        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0", spellcheck: "false", autocapitalize: "off" }),
+        lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
+        highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
+        bracketMatching(), closeBrackets(), closingBrace,
+        gestureHistory(),
+        sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
+        EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
+          spellcheck: "false", autocapitalize: "off" }),
         keymap.of([
-          ...formatKeymap,
-          ...renameKeymap,
-          ...jumpToDefinitionKeymap,
+          ...formatKeymap, ...renameKeymap, ...jumpToDefinitionKeymap,
           { key: "Mod-/", run: toggleComment },
-          ...closeBracketsKeymap,
-          ...completionKeymap,
+          ...closeBracketsKeymap, ...completionKeymap,
           { key: "F8", run: nextDiagnostic, shift: previousDiagnostic },
-          ...searchKeymap,
-          ...historyKeymap,
-          ...defaultKeymap,
+          ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
           if (it.docChanged) this.sync();
@@ -140,16 +143,14 @@ export class SceneEditor {
   }
 
   /** The text, with lines that end by LF. */
-  get text(): string {
-    return this.view.state.doc.toString();
-  }
+  get text(): string { return this.view.state.doc.toString(); }
 
   /** Asks the server about the scene, as `Connection.request` does. */
   request<Result>(method: string, params: object): Promise<Result> {
     return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** The same where an answer that does not come is not worth a message: it is null then, as it is where the text has errors. */
+  /** The same; null where no answer comes, as it is where the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -161,72 +162,81 @@ export class SceneEditor {
 
   /** The place of all the text. */
   get whole(): Range {
-    return { start: { line: 0, character: 0 }, end: { line: this.view.state.doc.lines, character: 0 } };
+    return { start: { line: 0, character: 0 },
+      end: { line: this.view.state.doc.lines, character: 0 } };
   }
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */
   open(text: string): void {
-    this.view.dispatch({ effects: this.history.reconfigure([]) });
-    this.view.dispatch({ changes: { from: 0, to: this.view.state.doc.length, insert: text }, selection: { anchor: 0 } });
-    this.view.dispatch({ effects: this.history.reconfigure(gestureHistory()) });
+    const changes = { from: 0, to: this.view.state.doc.length, insert: text };
+    rewrite(this.view, { changes, selection: { anchor: 0 } });
+  }
+
+  /** Tells the server about a text beside the scene's, under an address of its own; forgets it. */
+  openAside(uri: string, text: string): void {
+    const textDocument = { uri, languageId: "pinhole", version: 0, text };
+    this.tell("textDocument/didOpen", { textDocument });
+  }
+
+  closeAside(uri: string): void { this.tell("textDocument/didClose", { textDocument: { uri } }); }
+
+  private tell(method: string, params: object): void {
+    if (this.connection.state !== "open") return;
+    this.connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
   /** Tells the server about the text, unless it was told already. */
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
-    this.view.dispatch({ effects: StateEffect.appendConfig.of(this.client.plugin(this.uri, "pinhole")) });
+    this.view.dispatch({ effects: StateEffect.appendConfig.of(
+      this.client.plugin(this.uri, "pinhole")) });
   }
 
-  /** Puts another text in place, changing no more than differs, so that the cursor stays where it is. */
+  /** Puts another text in place. No more changes than differs, so that the cursor stays. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     const shorter = Math.min(old.length, text.length);
     let start = 0;
     while (start < shorter && old[start] === text[start]) start++;
     let end = 0;
-    while (end < shorter - start && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
+    while (end < shorter - start
+      && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
     // Characters beyond the first 65536 have two units, and change as one.
     if (/[\ud800-\udbff]/.test(text.charAt(start - 1))) start--;
     if (/[\udc00-\udfff]/.test(text.charAt(text.length - end))) end--;
     if (start < old.length - end || start < text.length - end) {
-      this.view.dispatch({ changes: { from: start, to: old.length - end, insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
+      this.view.dispatch({ changes: { from: start, to: old.length - end,
+        insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
     }
   }
 
-  connected(): void {
-    this.client.connect(this.connection);
-  }
-
-  disconnected(): void {
-    this.client.disconnect();
-  }
+  connected(): void { this.client.connect(this.connection); }
+  disconnected(): void { this.client.disconnect(); }
 
   /** Moves the cursor to a place of the text, and shows it. */
   jump(position: Position): void {
     this.view.dispatch({ selection: { anchor: this.offset(position) }, scrollIntoView: true });
   }
 
-  offset({ line, character }: Position): number {
-    const { doc } = this.view.state;
+  offset({ line, character }: Position, doc = this.view.state.doc): number {
     if (line >= doc.lines) return doc.length;
     const { from, to } = doc.line(line + 1);
     return Math.min(from + character, to);
   }
 
-  /** The object that a place of the text is in. At the border of two it is the second one. */
-  objectAt<T extends { range: Range }>(objects: readonly T[], offset: number): T | undefined {
-    const spans = (it: T) => [this.offset(it.range.start), this.offset(it.range.end)] as const;
-    const touching = objects.filter(it => spans(it)[0] <= offset && offset <= spans(it)[1]);
-    return touching.find(it => offset < spans(it)[1]) ?? touching[0];
+  position(offset: number): Position {
+    const line = this.view.state.doc.lineAt(offset);
+    return { line: line.number - 1, character: offset - line.from };
   }
 
-  changes(edits: readonly TextEdit[]): ChangeSpec {
-    return edits.map(({ range, newText }) => ({ from: this.offset(range.start), to: this.offset(range.end), insert: newText }));
+  /** Edits of a text, which is the scene's unless another one is given, as changes. */
+  changes(edits: readonly TextEdit[], doc = this.view.state.doc): ChangeSet {
+    const change = ({ range: { start, end }, newText }: TextEdit) =>
+      ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });
+    return ChangeSet.of(edits.map(change), doc.length, "\n");
   }
 
-  /** Tells the server what has changed. What changes without a connection is told with the whole text, when there is one. */
-  private sync(): void {
-    if (this.connection.state === "open") this.client.sync();
-  }
+  /** Tells the server what has changed; without a connection, it hears of it later. */
+  private sync(): void { if (this.connection.state === "open") this.client.sync(); }
 }

@@ -1,10 +1,11 @@
-// Where the scene is kept: the host's file, which other editors may change at the same time, or a file of this computer that the browser opens and saves.
+// Where the scene is kept: the host's file, which other editors may change at the same time, or a
+// file of this computer that the browser opens and saves.
 
 import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
-import type { HostedFile, Saved } from "./protocol";
+import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
 import type { Status } from "./status";
 import { setText, visibleLine } from "./visible";
 
@@ -23,50 +24,59 @@ interface FilePickers {
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
 
-/** More lines than these are not compared one by one: the table has a place of two bytes for each pair of lines, 18 MB here. */
+/** How long a save may take before it is said that it is not done, in milliseconds. */
+const SLOW = 800;
+const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
+const NOT_YET = "Nothing is saved yet: Studio does not answer.";
+
+/** More lines than these are not compared: the table has two bytes for each pair, 18 MB here. */
 const MOST_LINES = 3000;
 
-/** The host keeps a file of its own with the text as the page last saw it there; a static page has local files alone. */
+/** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
+  onSaved: () => void = () => {};
   /** What the file held when it was last seen; null where there was none. */
-  private seen: string | null = null;
+  seen: string | null = null;
   /** Whether the file has gone since. */
   private isGone = false;
   private handle: FileHandle | null = null;
   /** Whether the host's file is still to be made, under a name that Save asks for. */
   private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with: as long as it stands there, nothing is lost with it. Null for a file. */
+  /** The text that a new scene starts with, which is not worth saving; null for a file. */
   private untouched: string | null = null;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection, private readonly status: Status, private readonly isServed: boolean) {
+  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
+    private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
     byId("open").hidden = isServed;
-    addEventListener("beforeunload", event => {
-      if (this.isUnsaved) event.preventDefault();
-    });
+    addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
   /** The name as people may see it. */
-  private get shownName(): string {
-    return visibleLine(this.name);
-  }
+  private get shownName(): string { return visibleLine(this.name); }
 
   get isUnsaved(): boolean {
     const { text } = this.editor;
-    return this.opened && text !== this.untouched && (this.isGone || this.seen === null || text !== withLf(this.seen));
+    return this.opened && text !== this.untouched
+      && (this.isGone || this.seen === null || text !== withLf(this.seen));
   }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string {
-    const { text } = this.editor;
-    return this.seen?.includes("\r\n") ? text.replaceAll("\n", "\r\n") : text;
+  get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
+
+  /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
+  restore(draft: Draft): void {
+    if (this.isServed && this.seen !== null) this.seen = draft.base;
+    this.editor.replace(draft.text);
+    this.show();
   }
 
-  /** The host says what file it has: at first, after the connection was lost, when a new scene has got its name, and when the file has changed. */
+  /** The host says what file it has: at first, after the connection was lost, when a new scene
+   *  has got its name, and when the file has changed. */
   hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
     this.name = name;
     this.isNew = this.isServed && !saved;
@@ -97,20 +107,20 @@ export class Files {
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
-    } else if (this.editor.text === withLf(text) || (seen !== null && this.editor.text === withLf(seen))) {
+    } else if (this.editor.text === withLf(text)
+      || (seen !== null && this.editor.text === withLf(seen))) {
       this.conflict.close();
       this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
-    } else {
-      this.ask(text);
-    }
+    } else this.ask(text);
     this.show();
   }
 
   private tellGone(reason?: string | null): void {
     this.isGone = true;
-    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}` : `${this.shownName} is gone; Save writes it anew.`, "warning");
+    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}`
+      : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
   /** Shows whether everything is saved. */
@@ -127,22 +137,32 @@ export class Files {
       if (this.isServed) await this.saveHosted();
       else await this.saveLocal();
     } catch (error) {
-      if ((error as Error).name !== "AbortError") this.status.say((error as Error).message, "warning");
+      const { name, message } = error as Error;
+      if (name !== "AbortError") this.status.say(message, "warning");
     }
     this.show();
   }
 
   private async saveHosted(): Promise<void> {
+    if (this.isNew) this.askName();
+    else await this.saveAs(this.name);
+  }
+
+  private async saveAs(name: string): Promise<void> {
+    if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const name = this.isNew ? await this.askName() : this.name;
-    if (name === null) return;
     const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
-    const answer = await this.connection.request<Saved>("studio/save", about);
-    if (answer.ok) {
-      this.saved(name, text);
-      this.isNew = false;
-    } else if (answer.text === null) this.changed(null);
-    else this.ask(answer.text);
+    const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
+    try {
+      const answer = await this.connection.request<Saved>("studio/save", about);
+      if (answer.ok) {
+        this.saved(name, text);
+        this.isNew = false;
+      } else if (answer.text === null) this.changed(null);
+      else this.ask(answer.text);
+    } catch (error) {
+      throw error instanceof Refusal ? error : new Error(NOT_SAVED);
+    } finally { clearTimeout(slow); }
   }
 
   private saved(name: string, text: string): void {
@@ -151,24 +171,37 @@ export class Files {
     this.isGone = false;
     this.untouched = null;
     this.status.say(`${this.shownName} is saved.`);
+    this.onSaved();
   }
 
-  /** The name that a new file shall have; null if it shall not be saved. */
-  private askName(): Promise<string | null> {
+  /** Asks for the name of a new file, and saves it. While that fails, the dialog stays. */
+  private askName(): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
+    const problem = byId("name-problem");
+    setText(problem, "");
     field.value = this.name;
-    dialog.returnValue = "";
+    byId("name-form").onsubmit = async event => {
+      if ((event.submitter as HTMLButtonElement | null)?.value === "") return;
+      event.preventDefault();
+      const name = field.value.trim();
+      try {
+        await this.saveAs(name.endsWith(".scn") ? name : `${name}.scn`);
+        dialog.close();
+      } catch (error) {
+        setText(problem, (error as Error).message);
+        field.select();
+      }
+      this.show();
+    };
     dialog.showModal();
     field.select();
-    return new Promise(resolve => {
-      dialog.addEventListener("close", () => resolve(dialog.returnValue === "save" && field.value.trim() !== "" ? field.value.trim() : null), { once: true });
-    });
   }
 
   private async saveLocal(): Promise<void> {
     const text = this.textToSave;
-    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name })) ?? null;
+    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name }))
+      ?? null;
     if (this.handle === null) {
       download(this.name, text, "text/plain");
     } else {
@@ -181,7 +214,8 @@ export class Files {
   }
 
   private async open(): Promise<void> {
-    if (this.isUnsaved && !confirm("The scene on the page is not saved. Open another one in its place?")) return;
+    const question = "The scene on the page is not saved. Open another one in its place?";
+    if (this.isUnsaved && !confirm(question)) return;
     try {
       if (pickers.showOpenFilePicker !== undefined) {
         const [handle] = await pickers.showOpenFilePicker(SCENES);
@@ -197,28 +231,29 @@ export class Files {
       });
       input.click();
     } catch (error) {
-      if ((error as Error).name !== "AbortError") this.status.say((error as Error).message, "warning");
+      const { name, message } = error as Error;
+      if (name !== "AbortError") this.status.say(message, "warning");
     }
   }
 
   private async take(file: File, handle: FileHandle | null): Promise<void> {
     try {
       // Other encodings would come back from Save as another text.
-      const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(await file.arrayBuffer());
+      const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
+        .decode(await file.arrayBuffer());
       this.editor.open(text);
       this.handle = handle;
       this.name = file.name;
       this.seen = text;
       this.untouched = null;
-    } catch {
-      this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning");
-    }
+    } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
   }
 
-  /** Both the page and the file have changed: shows the difference, and asks. Whatever is chosen, undo brings the other text back. */
+  /** Shows how page and file differ, and asks. Undo brings back what is not chosen. */
   private ask(theirs: string): void {
-    const lines = difference(withLf(theirs), this.editor.text).map(({ sign, text }) => create("div", sign === "-" ? "removed" : sign === "+" ? "added" : "", `${sign} ${text}`));
+    const lines = difference(withLf(theirs), this.editor.text)
+      .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
     setText(byId("conflict-name"), this.shownName);
     const choose = (act: () => void) => () => {
@@ -242,39 +277,67 @@ export class Files {
   }
 }
 
-interface DifferenceLine {
-  sign: " " | "-" | "+";
-  text: string;
+/** A text with the ends of lines that a file has; a new line ends as the one before it. */
+export function withEndsOf(file: string, text: string): string {
+  if (!file.includes("\r")) return text;
+  const ends = file.match(/\r\n?|\n/g) ?? [];
+  const [a, b] = [withLf(file).split("\n"), text.split("\n")];
+  let [i, end, made] = [0, ends[0] ?? "\n", ""];
+  const [start, rest] = common(a, b);
+  const middle = changedLines(a.slice(start, a.length - rest), b.slice(start, b.length - rest));
+  const kept = (lines: string[]) => lines.map(text => ({ sign: " " as const, text }));
+  const lines = [...kept(b.slice(0, start)), ...middle, ...kept(b.slice(b.length - rest))];
+  const last = lines.findLastIndex(line => line.sign !== "-");
+  lines.forEach(({ sign, text }, at) => {
+    if (sign !== "+") end = ends[i++] ?? end;
+    if (sign !== "-") made += at === last ? text : text + end;
+  });
+  return made;
 }
 
-/** The lines of two texts: those of the first alone by -, those of the second alone by +, with up to two common ones around (longest common subsequence). */
-export function difference(one: string, other: string): DifferenceLine[] {
-  const [a, b] = [one.split("\n"), other.split("\n")];
+/** How many lines two texts have in common at the start and at the end. */
+function common(a: string[], b: string[]): [number, number] {
   let start = 0;
   while (start < a.length && start < b.length && a[start] === b[start]) start++;
   let end = 0;
-  while (end < a.length - start && end < b.length - start && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
-  const common = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
+  while (end < a.length - start && end < b.length - start
+    && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
+  return [start, end];
+}
+
+const CLASSES = { " ": "", "-": "removed", "+": "added" };
+interface DifferenceLine { sign: " " | "-" | "+"; text: string }
+
+/** The lines of two texts: those of the first alone by -, those of the second alone by +, with
+ *  up to two common ones around (longest common subsequence). */
+export function difference(one: string, other: string): DifferenceLine[] {
+  const [a, b] = [one.split("\n"), other.split("\n")];
+  const [start, end] = common(a, b);
+  const same = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
   const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...common(a.slice(Math.max(0, start - 2), start)), ...middle, ...common(a.slice(a.length - end, a.length - end + 2))];
+  return [...same(a.slice(Math.max(0, start - 2), start)), ...middle,
+    ...same(a.slice(a.length - end, a.length - end + 2))];
 }
 
 function changedLines(a: string[], b: string[]): DifferenceLine[] {
   const lines: DifferenceLine[] = [];
   const [n, m] = [a.length, b.length];
-  // lengths[i * (m + 1) + j] is that of the longest common subsequence of a from i on and b from j on.
+  // lengths[i * (m + 1) + j] is that of the longest common subsequence of a from i on and b from j
+  // on.
   const isLong = n > MOST_LINES || m > MOST_LINES;
   const lengths = isLong ? new Uint16Array(0) : new Uint16Array((n + 1) * (m + 1));
   const at = (i: number, j: number) => lengths[i * (m + 1) + j] ?? 0;
   if (!isLong) {
-    for (let i = n - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] = a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
+    for (let i = n - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
+      a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
   }
   let [i, j] = [0, 0];
   while (i < n || j < m) {
     if (!isLong && i < n && j < m && a[i] === b[j]) {
       lines.push({ sign: " ", text: a[i++] ?? "" });
       j++;
-    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push({ sign: "-", text: a[i++] ?? "" });
+    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push(
+      { sign: "-", text: a[i++] ?? "" });
     else lines.push({ sign: "+", text: b[j++] ?? "" });
   }
   return lines;

@@ -1,5 +1,5 @@
-// Pictures of the newest text: a coarse one at once, then finer ones, to what the scene asks for. The newest text wins; the last good picture stays while it has
-// errors.
+// Pictures of the newest text: a coarse one at once, then finer ones, to what the scene asks for.
+// The newest text wins; the last good picture stays while it has errors.
 
 import type { Connection } from "./connection";
 import { fromBase64 } from "./dom";
@@ -24,10 +24,10 @@ const COARSE_PIXELS = 320 * 180;
 const MOST_PIXELS = 16_000_000;
 const LONGEST_SIDE = 8192;
 
-/** While something is dragged, finer pictures wait for so many milliseconds: a hand that moves is heard of with every frame of the screen, 60 times a second. */
+/** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
 const HAND_RESTS = 20;
 
-/** Where the last finished picture took less than so many milliseconds, none is shown between it and the coarse one. */
+/** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
 const SOON = 200;
 
 export class Frames {
@@ -39,6 +39,7 @@ export class Frames {
   private generation = 0;
   private shown = 0;
   private size: [number, number] = [1280, 720];
+  private askedFor = this.size;
   private lastTook = Infinity;
   /** The generation whose picture the server has refused. */
   private refused = 0;
@@ -51,18 +52,24 @@ export class Frames {
     private readonly told: (state: "good" | "broken" | Error) => void,
   ) {}
 
-  /** The size of the scene's picture, as soon as something else knows it. A picture that was refused is asked for anew: it may have been too large. */
+  /** The size of the scene's picture, as soon as something else knows it. A picture that was
+   *  refused is asked for anew: it may have been too large. */
   resized(size: [number, number]): void {
-    const isOther = size[0] !== this.size[0] || size[1] !== this.size[1];
     this.size = size;
+    this.retry();
+  }
+
+  private retry(): void {
+    const isOther = String(this.size) !== String(this.askedFor);
     if (isOther && this.refused === this.generation) this.changed();
   }
 
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
     if (this.editor.uri === "" || this.connection.state !== "open") return;
-    const [width, height] = this.size;
-    const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE, Math.sqrt((width * height) / MOST_PIXELS), 1));
+    const [width, height] = (this.askedFor = this.size);
+    const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE,
+      Math.sqrt((width * height) / MOST_PIXELS), 1));
     const coarse = Math.max(least, Math.round(Math.sqrt((width * height) / COARSE_PIXELS)));
     const generation = ++this.generation;
     const answer = this.ask({ scale: coarse, samples: 1 });
@@ -70,21 +77,25 @@ export class Frames {
     void this.refine(generation, answer, least, coarse > least);
   }
 
-  private async refine(generation: number, coarse: Promise<Frame | null>, least: number, isSharper: boolean): Promise<void> {
+  private async refine(generation: number, coarse: Promise<Frame | null>, least: number,
+    isSharper: boolean): Promise<void> {
     if (!(await this.present(generation, "coarse", coarse))) return;
     if (this.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
     if (generation !== this.generation) return;
-    if (isSharper && this.lastTook > SOON && !(await this.present(generation, "sharp", this.ask({ scale: least, samples: 1 })))) return;
+    if (isSharper && this.lastTook > SOON
+      && !(await this.present(generation, "sharp", this.ask({ scale: least, samples: 1 })))) return;
     const begin = performance.now();
-    if (await this.present(generation, "final", this.ask({ scale: least }))) this.lastTook = performance.now() - begin;
+    const isNewest = await this.present(generation, "final", this.ask({ scale: least }));
+    if (isNewest) this.lastTook = performance.now() - begin;
   }
 
   private ask(how: { scale: number; samples?: number }): Promise<Frame | null> {
     return this.editor.request("pinhole/frame", how);
   }
 
-  /** Shows a picture that was asked for. Says whether its text is still the newest, so that finer ones are worth asking for. */
-  private async present(generation: number, fineness: Fineness, answer: Promise<Frame | null>): Promise<boolean> {
+  /** Shows a picture that was asked for. Says whether its text is still the newest. */
+  private async present(generation: number, fineness: Fineness,
+    answer: Promise<Frame | null>): Promise<boolean> {
     try {
       const frame = await answer;
       if (frame === null) {
@@ -102,15 +113,18 @@ export class Frames {
       this.told("good");
       return generation === this.generation;
     } catch (error) {
-      if (isSuperseded(error) || generation !== this.generation || this.connection.state !== "open") return false;
+      if (isSuperseded(error) || generation !== this.generation
+        || this.connection.state !== "open") return false;
       this.refused = generation;
       this.told(error as Error);
+      this.retry();
       return false;
     }
   }
 }
 
-/** The picture in the bytes of a PNG. Browsers with a decoder have it some milliseconds sooner than through a Blob, which other processes hand on. */
+/** The picture in the bytes of a PNG. Browsers with a decoder have it some milliseconds sooner
+ *  than through a Blob, which other processes hand on. */
 async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);

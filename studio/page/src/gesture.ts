@@ -1,8 +1,9 @@
-// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo takes back. What it changes is marked, so that one sees which
-// numbers move.
+// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo
+// takes back. What it changes is marked, so that one sees which numbers move.
 
-import { history, isolateHistory, undo } from "@codemirror/commands";
-import { Annotation, EditorState, StateField, type ChangeSpec, type Extension, type Range } from "@codemirror/state";
+import { history, historyField, isolateHistory } from "@codemirror/commands";
+import { Annotation, Compartment, EditorState, StateField, type ChangeSpec, type Extension, type
+  Range, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */
@@ -10,7 +11,6 @@ const step = Annotation.define<"first" | "next">();
 
 /** A pause in typing, in milliseconds, after which an undo step begins. */
 const TYPING_PAUSE = 500;
-
 const touched = Decoration.mark({ class: "touched" });
 
 /** What the last change of a gesture wrote, until something else changes the text. */
@@ -28,28 +28,46 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** The history of changes: typing is grouped by pauses, gestures as a whole. */
-export function gestureHistory(): Extension {
+/** Where the history is kept, so that it can be put back as it was. */
+const kept = new Compartment();
+
+function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // The history itself joins all but what it was told to isolate, which it knows by a time of 0: so this is less than the time since 1970.
+      // The history itself joins all but what it was told to isolate, which it knows by a time of
+      // 0: so this is less than the time since 1970.
       newGroupDelay: 1e11,
-      joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next" || (isAdjacent && Date.now() - last < TYPING_PAUSE),
+      joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
+        || (isAdjacent && Date.now() - last < TYPING_PAUSE),
     }),
     EditorState.transactionExtender.of(transaction => {
       if (transaction.docChanged) queueMicrotask(() => (last = Date.now()));
       return null;
     }),
-    touchedField,
+    past,
   ];
+}
+
+/** The history of changes: typing is grouped by pauses, gestures as a whole. */
+export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
+
+/** Changes the text, and gives it the history that it had in the past, or a new one. */
+export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
+  view.dispatch({ effects: kept.reconfigure([]) });
+  view.dispatch(change);
+  view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
 export class Gesture {
   private steps = 0;
   private over = false;
+  private readonly past: Extension;
 
-  constructor(private readonly view: EditorView) {}
+  constructor(private readonly view: EditorView) {
+    const past = view.state.field(historyField, false);
+    this.past = historyField.init(() => past);
+  }
 
   /** Changes the text, and shows the first place of it. */
   apply(spec: ChangeSpec): void {
@@ -57,8 +75,10 @@ export class Gesture {
     const changes = this.view.state.changes(spec);
     let place = 0;
     changes.iterChangedRanges((_fromOld, _toOld, from) => (place ||= from));
-    const annotations = this.steps++ === 0 ? [step.of("first"), isolateHistory.of("before")] : [step.of("next")];
-    this.view.dispatch({ changes, annotations, effects: EditorView.scrollIntoView(place, { y: "nearest" }) });
+    const annotations = this.steps++ === 0 ? [step.of("first"), isolateHistory.of("before")]
+      : [step.of("next")];
+    this.view.dispatch({ changes, annotations,
+      effects: EditorView.scrollIntoView(place, { y: "nearest" }) });
   }
 
   end(): void {
@@ -67,9 +87,10 @@ export class Gesture {
     if (this.steps > 0) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  cancel(): void {
+  /** Ends as if nothing had happened, by a change that leads back: neither Undo nor Redo knows. */
+  cancel(back: ChangeSpec): void {
     if (this.over) return;
-    this.end();
-    if (this.steps > 0) undo(this.view);
+    this.over = true;
+    if (this.steps > 0) rewrite(this.view, { changes: back }, this.past);
   }
 }

@@ -1,32 +1,22 @@
-// What the editor shows between the letters: values that the server works out, and a swatch before each colour, which opens a picker.
+// What the editor shows between the letters: values that the server works out, and a swatch before
+// each colour, which opens a picker.
 
 import { StateEffect, StateField } from "@codemirror/state";
-import { Decoration, EditorView, WidgetType, type DecorationSet } from "@codemirror/view";
+import { Decoration, EditorView, WidgetType, type Command, type DecorationSet } from "@codemirror/view";
 import { create } from "./dom";
 import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
 import type { Position, Range, TextEdit } from "./protocol";
 
-interface InlayHint {
-  position: Position;
-  label: string;
-}
-
-interface Color {
-  red: number;
-  green: number;
-  blue: number;
-  alpha: number;
-}
-
-interface ColorInformation {
-  range: Range;
-  color: Color;
-}
+interface InlayHint { position: Position; label: string }
+interface Color { red: number; green: number; blue: number; alpha: number }
+interface ColorInformation { range: Range; color: Color }
 
 /** How long the text has to rest before hints are asked for, in milliseconds. */
 const REST = 150;
 
+/** A colour as it is written. */
+const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
 const setHints = StateEffect.define<DecorationSet>();
 
 export const hintField = StateField.define<DecorationSet>({
@@ -40,23 +30,14 @@ export const hintField = StateField.define<DecorationSet>({
 });
 
 class HintWidget extends WidgetType {
-  constructor(private readonly text: string) {
-    super();
-  }
-
-  override eq(other: HintWidget): boolean {
-    return other.text === this.text;
-  }
-
-  toDOM(): HTMLElement {
-    return create("span", "hint", this.text);
-  }
+  constructor(private readonly text: string) { super(); }
+  override eq(other: HintWidget): boolean { return other.text === this.text; }
+  toDOM(): HTMLElement { return create("span", "hint", this.text); }
 }
 
 class SwatchWidget extends WidgetType {
-  constructor(private readonly hints: Hints, private readonly color: string, private readonly written: string) {
-    super();
-  }
+  constructor(private readonly hints: Hints, private readonly color: string,
+    private readonly written: string) { super(); }
 
   override eq(other: SwatchWidget): boolean {
     return other.color === this.color && other.written === this.written;
@@ -65,6 +46,8 @@ class SwatchWidget extends WidgetType {
   toDOM(view: EditorView): HTMLElement {
     const input = create("input", "swatch");
     input.type = "color";
+    // The text is one stop of the Tab key. From a colour, Alt-Enter leads here.
+    input.tabIndex = -1;
     let gesture: Gesture | null = null;
     let wanted: string | null = null;
     let work = Promise.resolve();
@@ -95,10 +78,21 @@ class SwatchWidget extends WidgetType {
     return true;
   }
 
-  override ignoreEvent(): boolean {
-    return true;
-  }
+  override ignoreEvent(): boolean { return true; }
 }
+
+/** Opens the picker of the colour at the cursor. */
+export const openSwatch: Command = view => {
+  const { state: { doc, selection: { main } }, dom } = view;
+  const swatch = [...dom.querySelectorAll<HTMLInputElement>(".swatch")].find(it => {
+    const at = view.posAtDOM(it);
+    const { length } = COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
+    return at <= main.head && main.head <= at + length;
+  });
+  swatch?.focus();
+  swatch?.showPicker();
+  return swatch !== undefined;
+};
 
 export class Hints {
   private timer = 0;
@@ -122,32 +116,38 @@ export class Hints {
     // A newer text or connection brings new ones.
     if (hints === null || colors === null || editor.view.state.doc !== doc) return;
     const decorations = [
-      ...hints.map(({ position, label }) => Decoration.widget({ widget: new HintWidget(label), side: 1 }).range(editor.offset(position))),
+      ...hints.map(({ position, label }) =>
+        Decoration.widget({ widget: new HintWidget(label), side: 1 })
+        .range(editor.offset(position))),
       ...colors.map(({ range, color }) => {
         const from = editor.offset(range.start);
-        const widget = new SwatchWidget(this, hex(color), doc.sliceString(from, editor.offset(range.end)));
+        const widget = new SwatchWidget(this, hex(color),
+          doc.sliceString(from, editor.offset(range.end)));
         return Decoration.widget({ widget, side: -1 }).range(from);
       }),
     ];
     editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
   }
 
-  /** Writes a picked colour in place of the one that begins at an offset, in the way it is written there. */
+  /** Writes a picked colour over the one at an offset, in the way it is written there. */
   async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
     const { editor } = this;
     const { doc } = editor.view.state;
-    const written = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
-    const line = doc.lineAt(offset);
-    const start = { line: line.number - 1, character: offset - line.from };
+    const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
+    const start = editor.position(offset);
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>("textDocument/colorPresentation", { color, range });
-    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb")) ?? ways?.[0];
-    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(editor.changes([way.textEdit]));
+    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>(
+      "textDocument/colorPresentation", { color, range });
+    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
+      ?? ways?.[0];
+    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(
+      editor.changes([way.textEdit]));
   }
 }
 
 function hex({ red, green, blue }: Color): string {
-  return `#${[red, green, blue].map(it => Math.round(it * 255).toString(16).padStart(2, "0")).join("")}`;
+  const channel = (value: number) => Math.round(value * 255).toString(16).padStart(2, "0");
+  return `#${[red, green, blue].map(channel).join("")}`;
 }

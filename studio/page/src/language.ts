@@ -1,10 +1,10 @@
-// The scene language as the editor colours it while one types. What names mean is the server's business.
+// The scene language as the editor colours it while one types. What names mean is the server's
+// business.
 
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { tags } from "@lezer/highlight";
 
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
-
 const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
 
 // The words of the language; a test of Pinhole compares them with its own.
@@ -15,16 +15,12 @@ const FIELDS = words(
   "method per_pixel total seed",
   "center radius color centroid normal sides spin v0 v1 v2 size min max y square colors",
 );
-const FUNCTIONS = words("sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb");
+const FUNCTIONS = words(
+  "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb",
+);
 /** Fields that take whole numbers. */
 const WHOLE_FIELDS = words("width height per_pixel total seed");
-
-interface State {
-  comment: boolean;
-  block: boolean;
-  parentheses: number;
-  defines: boolean;
-}
+interface State { comment: boolean; block: boolean; parentheses: number; defines: boolean }
 
 /** Whether the word that a text ends in is a field that takes whole numbers. */
 export function endsInWholeField(text: string): boolean {
@@ -59,7 +55,8 @@ export const sceneLanguage = StreamLanguage.define<State>({
       if (word[0] === "let") return "keyword";
       if (!state.block && KINDS.has(word[0])) return "keyword";
       if (defines) return "typeName";
-      if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos)) && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.standard";
+      if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos))
+        && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.standard";
       if (state.block && state.parentheses === 0 && FIELDS.has(word[0])) return "propertyName";
       return "variableName";
     }
@@ -72,7 +69,10 @@ export const sceneLanguage = StreamLanguage.define<State>({
     state.defines = false;
     return "+-*/=".includes(character ?? "") ? "operator" : "punctuation";
   },
-  languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } }, closeBrackets: { brackets: ["(", "{"] } },
+  indent: (state, after, context) =>
+    state.block && !/^\s*\}/.test(after) ? context.unit : 0,
+  languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } },
+    closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
 export const sceneHighlighting = syntaxHighlighting(

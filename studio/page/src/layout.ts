@@ -1,4 +1,5 @@
-// The layout: the divider between text and picture, the zoom buttons, the menus, and the list of keys.
+// The layout: the divider between text and picture, the zoom buttons, the menus, and the list of
+// keys.
 
 import { byId, create, followPointer, remember, remembered } from "./dom";
 import { LAYERS, type Layer, type OverlayLayer } from "./overlays";
@@ -11,14 +12,15 @@ const MOST = 80;
 export function layOut(picture: Picture): void {
   const divider = byId("divider");
   const panes = byId("panes");
-  const isNarrow = matchMedia("(max-width: 760px)");
+  const isNarrow = matchMedia("(max-width: 760px), (max-aspect-ratio: 1)");
   const share = (percent: number) => {
     const bounded = Math.round(Math.min(MOST, Math.max(LEAST, percent)));
     panes.style.setProperty("--text-share", `${bounded}%`);
     divider.setAttribute("aria-valuenow", String(bounded));
     remember("text-share", String(bounded));
   };
-  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal" : "vertical");
+  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal"
+    : "vertical");
   isNarrow.addEventListener("change", orient);
   orient();
   share(Number(remembered("text-share") ?? 42));
@@ -27,7 +29,8 @@ export function layOut(picture: Picture): void {
     event.preventDefault();
     const { left, top, width, height } = panes.getBoundingClientRect();
     // On narrow screens the picture is above the text.
-    const move = ({ clientX, clientY }: PointerEvent) => share(isNarrow.matches ? 100 - ((clientY - top) / height) * 100 : ((clientX - left) / width) * 100);
+    const move = ({ clientX, clientY }: PointerEvent) =>
+      share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
     followPointer(event, move, () => {});
   });
   divider.addEventListener("keydown", event => {
@@ -41,7 +44,6 @@ export function layOut(picture: Picture): void {
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());
   byId("zoom-actual").addEventListener("click", () => picture.actualSize());
-
   byId("keys").addEventListener("click", () => byId<HTMLDialogElement>("keys-dialog").showModal());
 
   // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
@@ -54,7 +56,8 @@ export function layOut(picture: Picture): void {
       menu.open = false;
       menu.querySelector("summary")?.focus();
     });
-    for (const button of menu.querySelectorAll("button")) button.addEventListener("click", () => (menu.open = false));
+    const close = () => (menu.open = false);
+    for (const button of menu.querySelectorAll("button")) button.addEventListener("click", close);
   }
 }
 

@@ -1,28 +1,28 @@
-// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that opens below a number on a click or by Alt-Enter.
+// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that
+// opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
-import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type ViewUpdate } from "@codemirror/view";
+import { Facet, StateEffect, StateField, type EditorState,
+  type Extension } from "@codemirror/state";
+import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type
+  ViewUpdate } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
+import type { Limits } from "./protocol";
 
 /** A number literal, with the sign that belongs to it. */
-interface Literal {
-  from: number;
-  to: number;
-  value: number;
-  step: number;
-}
+interface Literal { from: number; to: number; value: number; step: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
-/** A minus sign that belongs to the number: nothing stands before it that it could subtract from. */
+/** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 function literalAt(state: EditorState, at: number): Literal | null {
-  const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1)).find(it => it.name === "number");
+  const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1))
+    .find(it => it.name === "number");
   if (node === undefined) return null;
   const written = NUMBER.exec(state.sliceDoc(node.from, node.to))?.[0];
   if (written === undefined) return null;
@@ -30,10 +30,12 @@ function literalAt(state: EditorState, at: number): Literal | null {
   const before = state.sliceDoc(line.from, node.from);
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
-  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value, step: stepOf(value, written, endsInWholeField(before)) };
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value,
+    step: stepOf(value, written, endsInWholeField(before)) };
 }
 
-/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero ends; and no coarser than how it is written. */
+/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
+ *  ends; and no coarser than how it is written. */
 function stepOf(value: number, written: string, isWhole: boolean): number {
   if (isWhole) return 1;
   const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];
@@ -48,27 +50,48 @@ function format(value: number, step: number): string {
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
-/** Turns one number through a gesture. */
+/** Says between which numbers the one at a place of the text may be; null if nobody knows. */
+const limitSource = Facet.define<(at: number) => Promise<Limits | null>>();
+
+async function limitsOf({ state }: EditorView, literal: Literal): Promise<Limits | null> {
+  return (await state.facet(limitSource)[0]?.(literal.to)) ?? null;
+}
+
+/** The least and the greatest value that a number can be turned to. */
+function bounds({ step }: Literal, limits: Limits | null): [number, number] {
+  const margin = limits?.open ? step : 0;
+  return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
+}
+
+/** Turns one number through a gesture, as far as its limits allow, which the server knows. */
 class Turn {
   private readonly gesture: Gesture;
   private to: number;
+  private written: string;
+  private readonly bounds: Promise<[number, number]>;
+  private wanted = 0;
 
   constructor(private readonly view: EditorView, private readonly literal: Literal) {
     this.gesture = new Gesture(view);
     this.to = literal.to;
+    this.written = view.state.sliceDoc(literal.from, literal.to);
+    this.bounds = limitsOf(view, literal).then(limits => bounds(literal, limits));
   }
 
-  set(value: number): void {
+  async set(value: number): Promise<void> {
     const { from, step } = this.literal;
-    const text = format(value, step);
-    if (text === this.view.state.sliceDoc(from, this.to)) return;
+    this.wanted = value;
+    const [least, most] = await this.bounds;
+    const text = format(Math.min(most, Math.max(least, this.wanted)), step);
+    const now = this.view.state.sliceDoc(from, this.to);
+    // Whoever has changed the number otherwise keeps it.
+    if (text === now || now !== this.written) return;
     this.gesture.apply({ from, to: this.to, insert: text });
     this.to = from + text.length;
+    this.written = text;
   }
 
-  end(): void {
-    this.gesture.end();
-  }
+  end(): void { void this.bounds.then(() => this.gesture.end()); }
 }
 
 const openSlider = StateEffect.define<number | null>();
@@ -78,9 +101,14 @@ const sliderField = StateField.define<Tooltip | null>({
   update(tooltip, transaction) {
     let next = tooltip;
     // Typing closes it; what the slider itself writes does not.
-    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
+    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null
+      : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
     if (next !== null && transaction.selection !== undefined) next = null;
-    for (const effect of transaction.effects) if (effect.is(openSlider)) next = effect.value === null ? null : { pos: effect.value, create: createSlider, strictSide: false };
+    for (const effect of transaction.effects) {
+      if (!effect.is(openSlider)) continue;
+      const pos = effect.value;
+      next = pos === null ? null : { pos, create: createSlider, strictSide: false };
+    }
     return next;
   },
   provide: field => showTooltip.from(field),
@@ -97,17 +125,23 @@ function createSlider(view: EditorView): TooltipView {
     const found = literal();
     if (found === null || turn !== null || found.value === shown) return;
     const span = Math.max(Math.abs(found.value), 50 * found.step);
-    range.min = String(found.value - span);
-    range.max = String(found.value + span);
-    range.step = String(found.step);
-    range.value = String(found.value);
+    const offer = (limits: Limits | null) => {
+      const [least, most] = bounds(found, limits);
+      range.min = String(Math.max(least, found.value - span));
+      range.max = String(Math.min(most, found.value + span));
+      range.step = String(found.step);
+      range.value = String(found.value);
+    };
     range.setAttribute("aria-label", `Value ${found.value}`);
     shown = found.value;
+    offer(null);
+    const isStill = () => found.value === shown && turn === null;
+    void limitsOf(view, found).then(limits => isStill() && offer(limits));
   };
   range.addEventListener("input", () => {
     const found = literal();
     if (found !== null) turn ??= new Turn(view, found);
-    turn?.set(Number(range.value));
+    void turn?.set(Number(range.value));
   });
   range.addEventListener("change", () => {
     turn?.end();
@@ -144,7 +178,8 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
   event.preventDefault();
   const turn = new Turn(view, literal);
   document.body.classList.add("scrubbing");
-  const move = (next: PointerEvent) => turn.set(literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
+  const move = (next: PointerEvent) => void turn.set(
+    literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
   followPointer(event, move, () => {
     document.body.classList.remove("scrubbing");
     turn.end();
@@ -155,7 +190,7 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
 function turnOnce(view: EditorView, literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(view, literal);
-  turn.set(literal.value + direction * literal.step);
+  void turn.set(literal.value + direction * literal.step);
   turn.end();
   return true;
 }
@@ -173,8 +208,9 @@ const openAtCursor: Command = view => {
   return true;
 };
 
-export function numberControls(): Extension {
+export function numberControls(limits: (at: number) => Promise<Limits | null>): Extension {
   return [
+    limitSource.of(limits),
     sliderField,
     EditorView.domEventHandlers({
       pointerdown(event, view) {

@@ -1,9 +1,9 @@
-// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the horizon, the view axis, the pixel grid, the planes near and far,
-// and the samples of a pixel.
+// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the
+// horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
 
 import { createSvg, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
-import type { DrawnObject, Overlays, Point, Polyline, Samples } from "./protocol";
+import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
 /** What can be switched on, with its name in the menu. */
@@ -25,28 +25,41 @@ const GRID_ZOOM = 6;
 export class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
   data: Overlays | null = null;
-  private selected: DrawnObject | null = null;
-  private hovered: number | null = null;
+  /** Whether they are those of the text that is there. */
+  isTrue = true;
+  /** The index of the object under the pointer. */
+  hovered: number | null = null;
+  /** Called when something is to be drawn that may not be known yet. */
+  onNeed: () => void = () => {};
+  private selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
   private readonly on = new Set<Layer>();
 
   constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
     const layers = remembered("layers")?.split(" ") ?? [];
-    for (const layer of Object.keys(LAYERS) as Layer[]) if (layers.includes(layer)) this.on.add(layer);
+    const known = Object.keys(LAYERS) as Layer[];
+    for (const layer of known) if (layers.includes(layer)) this.on.add(layer);
   }
 
-  isOn(layer: Layer): boolean {
-    return this.on.has(layer);
-  }
+  isOn(layer: Layer): boolean { return this.on.has(layer); }
 
   turn(layer: Layer, on: boolean): void {
     if (on) this.on.add(layer);
     else this.on.delete(layer);
     remember("layers", [...this.on].join(" "));
     this.draw();
+    if (on) this.onNeed();
   }
 
-  select(selected: DrawnObject | null): void {
+  /** Whether anything is switched on that the server has to be asked about. */
+  get needsAny(): boolean {
+    return this.needsAll || (["horizon", "near"] as const).some(layer => this.isOn(layer));
+  }
+
+  /** Whether something is switched on that all objects have. */
+  get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
+
+  select(selected: number | null): void {
     this.selected = selected;
     this.draw();
   }
@@ -55,6 +68,7 @@ export class OverlayLayer {
     if (hovered === this.hovered) return;
     this.hovered = hovered;
     this.draw();
+    if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
   showSamples(pixel: Point, samples: Samples | null): void {
@@ -72,7 +86,8 @@ export class OverlayLayer {
       const d = lines.map(line => `M${line.join("L")}`).join("");
       if (d === "") return;
       // A dark line under a light one is seen on every ground.
-      group.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }));
+      group.append(createSvg("path", { d, class: `line under ${name}` }),
+        createSvg("path", { d, class: `line ${name}` }));
     };
     if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid(picture));
     if (this.isOn("near")) {
@@ -80,12 +95,18 @@ export class OverlayLayer {
       path("far", data.far);
     }
     if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
-    if (this.isOn("vanishing")) for (const { axis, lines } of data.vanishing) path(`axis-${axis}`, lines);
+    const vanishing = this.isOn("vanishing") ? data.vanishing : [];
+    for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
     if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
-    const hovered = data.objects.find(it => it.index === this.hovered);
-    if (hovered !== undefined) path("outline hovered", hovered.outline);
-    if (this.selected !== null) path("outline selected", this.selected.outline);
-    if (this.isOn("vanishing")) for (const { axis, point } of data.vanishing) if (point !== null) this.mark(point, `axis-${axis}`, axis);
+    const outline = (index: number | null, name: string) => {
+      const object = this.isTrue ? data.objects.find(it => it.index === index) : undefined;
+      if (object !== undefined) path(`outline ${name}`, object.outline);
+    };
+    outline(this.hovered, "hovered");
+    outline(this.selected, "selected");
+    for (const { axis, point } of vanishing) {
+      if (point !== null) this.mark(point, `axis-${axis}`, axis);
+    }
     if (this.isOn("axis")) this.mark(data.axis, "view-axis", "view axis");
     if (this.isOn("samples")) this.drawSamples();
   }
@@ -96,7 +117,8 @@ export class OverlayLayer {
     const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
     const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
     setText(label, text);
-    this.svg.append(createSvg("path", { d, class: `line under ${name}` }), createSvg("path", { d, class: `line ${name}` }), label);
+    this.svg.append(createSvg("path", { d, class: `line under ${name}` }),
+      createSvg("path", { d, class: `line ${name}` }), label);
   }
 
   private drawSamples(): void {
@@ -106,7 +128,8 @@ export class OverlayLayer {
     const size = this.picture.zoom;
     this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
     samples.points.forEach(([dx, dy], i) => {
-      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size, r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
+      const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size,
+        r: Math.max(2, Math.min(5, size / 12)), class: "sample" });
       dot.style.fill = samples.colors[i] ?? "";
       this.svg.append(dot);
     });

@@ -49,18 +49,15 @@ export class Picture {
       this.size = size;
       this.fit();
     }
-    canvas.dispatchEvent(new CustomEvent("pinhole-frame", { bubbles: true, detail: { fineness, version } }));
+    canvas.dispatchEvent(new CustomEvent("pinhole-frame",
+      { bubbles: true, detail: { fineness, version } }));
   }
 
   /** Whether there has been no picture yet. */
-  get isEmpty(): boolean {
-    return this.canvas.dataset["fineness"] === undefined;
-  }
+  get isEmpty(): boolean { return this.canvas.dataset["fineness"] === undefined; }
 
   /** A point of the stage, in screen pixels, from a point of the picture. */
-  toScreen([x, y]: Point): Point {
-    return [this.left + x * this.zoom, this.top + y * this.zoom];
-  }
+  toScreen([x, y]: Point): Point { return [this.left + x * this.zoom, this.top + y * this.zoom]; }
 
   toPicture([x, y]: Point): Point {
     return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
@@ -77,16 +74,15 @@ export class Picture {
   }
 
   /** The matrix that takes points of the picture to the stage, for SVG. */
-  get matrix(): string {
-    return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`;
-  }
+  get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
   /** Shows the whole picture, as large as the stage allows. */
   fit(): void {
     this.fitted = true;
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
-    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width, (clientHeight - 2 * MARGIN) / height));
+    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width,
+      (clientHeight - 2 * MARGIN) / height));
     this.center();
   }
 
@@ -97,7 +93,8 @@ export class Picture {
     this.center();
   }
 
-  zoomBy(factor: number, about: Point = [this.stage.clientWidth / 2, this.stage.clientHeight / 2]): void {
+  zoomBy(factor: number, about?: Point): void {
+    about ??= [this.stage.clientWidth / 2, this.stage.clientHeight / 2];
     const [x, y] = this.toPicture(about);
     this.fitted = false;
     this.zoom = Math.min(MOST_ZOOM, Math.max(0.02, this.zoom * factor));

@@ -1,19 +1,9 @@
-// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
+// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and
+// `studio/…`, as docs/protocol.md describes them.
 
-export interface Position {
-  line: number;
-  character: number;
-}
-
-export interface Range {
-  start: Position;
-  end: Position;
-}
-
-export interface TextEdit {
-  range: Range;
-  newText: string;
-}
+export interface Position { line: number; character: number }
+export interface Range { start: Position; end: Position }
+export interface TextEdit { range: Range; newText: string }
 
 /** A point of the picture, in pixels of the scene, from the top left corner. */
 export type Point = readonly [number, number];
@@ -37,16 +27,8 @@ export interface SceneObject {
   selection: Range;
 }
 
-export interface Handle {
-  handle: string;
-  at: Point | null;
-  label: string;
-}
-
-export interface DrawnObject extends SceneObject {
-  outline: Polyline[];
-  handles: Handle[];
-}
+export interface Handle { handle: string; at: Point | null; label: string }
+export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
 
 export interface Overlays {
   size: [number, number];
@@ -73,13 +55,13 @@ export type Along = "x" | "y" | "z" | "floor";
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
+  /** What else moves with it, as `camera.lookat`. */
+  also?: string[];
 }
 
-export interface Samples {
-  points: Point[];
-  colors: string[];
-  color: string;
-}
+/** Between which numbers a number may be; `open` excludes the bounds themselves. */
+export interface Limits { least: number | null; most: number | null; open: boolean; whole: boolean }
+export interface Samples { points: Point[]; colors: string[]; color: string }
 
 /** The file that a served page edits: its text is null while there is none. */
 export interface HostedFile {
@@ -88,16 +70,19 @@ export interface HostedFile {
   /** Why there is no text, where something else is there. */
   reason?: string | null;
   saved: boolean;
+  /** What was written and not saved, when a page comes that is new. */
+  draft?: Draft | null;
 }
+
+/** A text that was not saved: what it was made from, and when, in seconds since 1970. */
+export interface Draft { text: string; base: string | null; time: number }
 
 /** Whether the file was saved; if not, what is in it now. */
 export type Saved = { ok: true } | { ok: false; text: string | null };
 
 /** An error that the server answered with. */
 export class Refusal extends Error {
-  constructor(readonly code: number, message: string) {
-    super(message);
-  }
+  constructor(readonly code: number, message: string) { super(message); }
 }
 
 /** Codes of answers that a newer question has made pointless. */
@@ -105,14 +90,5 @@ export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }
 
-export interface ServerDiagnostic {
-  range: Range;
-  severity?: number;
-  message: string;
-}
-
-export interface Published {
-  uri: string;
-  version?: number;
-  diagnostics: ServerDiagnostic[];
-}
+export interface ServerDiagnostic { range: Range; severity?: number; message: string }
+export interface Published { uri: string; version?: number; diagnostics: ServerDiagnostic[] }

@@ -1,10 +1,13 @@
-// Documentation comes from the server as Markdown, which the language client turns into HTML. Scenes can put any text into it, so nothing but plain formatting passes.
+// Documentation comes from the server as Markdown, which the language client turns into HTML.
+// Scenes can put any text into it, so nothing but plain formatting passes.
 
 import { visible } from "./visible";
 
-const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI", "BR", "HR"]);
+const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI",
+  "BR", "HR"]);
 
-/** The HTML with elements of plain formatting alone, without attributes; of a link its text, and of all others how they were written. */
+/** The HTML with elements of plain formatting alone, without attributes; of a link its text, and
+ *  of all others how they were written. */
 export function sanitized(html: string): string {
   // The parsed document has no window: nothing in it runs or loads.
   const { body } = new DOMParser().parseFromString(html, "text/html");

@@ -1,4 +1,5 @@
-// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent anywhere.
+// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent
+// anywhere.
 
 import { addressWith, inAddress } from "./address";
 import { byId, createButton, download, fromBase64 } from "./dom";
@@ -10,6 +11,7 @@ import type { Status } from "./status";
 /** A scene in a link may have so many characters unpacked. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
+const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
 
 export async function packed(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
@@ -21,7 +23,8 @@ export async function packed(text: string): Promise<string> {
 
 async function unpacked(text: string): Promise<string> {
   const bytes = fromBase64(text.replaceAll("-", "+").replaceAll("_", "/"));
-  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")).pipeThrough(new TextDecoderStream("utf-8", { fatal: true })).getReader();
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))
+    .pipeThrough(new TextDecoderStream("utf-8", { fatal: true })).getReader();
   let scene = "";
   for (;;) {
     const { done, value } = await reader.read();
@@ -47,24 +50,26 @@ export async function sceneInAddress(status: Status): Promise<string | null> {
   }
 }
 
-export function offerSharing(editor: SceneEditor, connection: Connection, status: Status, files: Files): void {
+export function offerSharing(editor: SceneEditor, connection: Connection, status: Status,
+  files: Files): void {
   const stem = () => files.name.replace(/\.scn$/, "");
   const picture = async (kind: "png" | "exr", type: string) => {
     status.say(`Rendering ${stem()}.${kind}…`);
     try {
-      const answer = await connection.request<Record<string, string> | null>(`studio/${kind}`, { text: editor.text });
+      const answer = await connection.request<Partial<Record<string, string>> | null>(
+        `studio/${kind}`, { text: editor.text });
       const bytes = answer?.[kind];
-      if (bytes === undefined) return status.say("The text has errors: it has no picture.", "warning");
+      if (bytes === undefined) return status.say("The text has errors: it has no picture.",
+        "warning");
       download(`${stem()}.${kind}`, fromBase64(bytes), type);
       status.say(`${stem()}.${kind} is downloaded.`);
-    } catch (error) {
-      status.say((error as Error).message, "warning");
-    }
+    } catch (error) { status.say((error as Error).message, "warning"); }
   };
   byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
   byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));
   for (const id of ["download-scene", "connection-download"]) {
-    byId(id).addEventListener("click", () => download(`${stem()}.scn`, files.textToSave, "text/plain"));
+    byId(id).addEventListener("click", () =>
+      download(`${stem()}.scn`, files.textToSave, "text/plain"));
   }
 
   const dialog = byId<HTMLDialogElement>("share-dialog");
@@ -74,13 +79,14 @@ export function offerSharing(editor: SceneEditor, connection: Connection, status
       field.select();
       void navigator.clipboard.writeText(field.value).then(
         () => (dialog.close(), status.say("The link is copied.")),
-        () => status.say("The browser does not let the page copy: copy the selected link yourself.", "warning"),
+        () => status.say(NO_COPY, "warning"),
       );
     }),
     createButton("Close", "", () => dialog.close()),
   );
   byId("share").addEventListener("click", async () => {
-    if (editor.text.length > LONGEST) return status.say("The scene is too long for a link: give away its file.", "warning");
+    if (editor.text.length > LONGEST) return status.say(
+      "The scene is too long for a link: give away its file.", "warning");
     field.value = addressWith(KEY, await packed(editor.text));
     dialog.showModal();
     field.select();

@@ -1,21 +1,18 @@
-// Text from a file, its name or the engine, as people may see it. The rule is that of the command line (src/diagnostic/visible.rs): what is not seen, or has other
-// text shown in another order than it is written, stands there as its code.
+// Text from a file, its name or the engine, as people may see it. The rule is that of the command
+// line (src/diagnostic/visible.rs): what is not seen, or has other text shown in another order than
+// it is written, stands there as its code.
 
-/** Control characters, and those that control bidirectional text (Unicode Standard Annex #9, table 4); line feeds and tabs stay. */
+/** Control characters, and those that control bidirectional text (Unicode Standard Annex #9,
+ *  table 4); line feeds and tabs stay. */
 const INVISIBLE = /(?![\n\t])[\p{Cc}\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/gu;
 const BREAKS = /[\n\t\u2028\u2029]/g;
-
 const code = (character: string): string => `\\u{${character.codePointAt(0)?.toString(16)}}`;
 
 /** The text with such characters as `\u{202e}`. */
-export function visible(text: string): string {
-  return text.replace(INVISIBLE, code);
-}
+export function visible(text: string): string { return text.replace(INVISIBLE, code); }
 
-/** A name, or whatever else stands within one line: its line feeds and tabs are made visible, too. */
-export function visibleLine(text: string): string {
-  return visible(text).replace(BREAKS, code);
-}
+/** A name, or another text of one line: line feeds and tabs are made visible, too. */
+export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
 /** Shows a text in an element. It is never read as HTML. */
 export function setText(element: Element, text: string): void {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { test } from "node:test";
-import { FIGURE, host, launch, open, type } from "./helpers.mjs";
+import { andFinished, FIGURE, host, launch, open, rested, type } from "./helpers.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
@@ -26,16 +26,18 @@ for (const colorScheme of ["dark", "light"]) {
       await page.waitForSelector(".hint");
       await audit(page, "at first");
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the page");
-      await page.selectOption("#objects", { label: "Ball (sphere)" });
-      await page.waitForSelector(".handle");
+      for (const label of ["Sail (triangle)", "Crate (box)", "checkerboard (19)", "Ball (sphere)"]) {
+        await page.selectOption("#objects", { label });
+        await page.waitForSelector(`.handle[aria-label^="${label.split(" ")[0]}"]`);
+        await audit(page, `with ${label} selected`);
+      }
       await page.click("summary:text('Show')");
       await audit(page, "with handles and a menu");
       await page.keyboard.press("Escape");
       await page.click("#share");
       await audit(page, "with the share dialog");
       await page.click("#share-dialog >> text=Close");
-      // A telephone has no keys.
-      if (width > 760) {
+      {
         await page.click("#keys");
         await audit(page, "with the list of keys");
         await page.click("#keys-dialog >> text=Close");
@@ -47,4 +49,68 @@ for (const colorScheme of ["dark", "light"]) {
       await audit(page, "with an error");
     });
   }
+}
+
+test("from the text the picture is three stops of the Tab key away, and a colour is picked by Alt-Enter", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.waitForSelector(".swatch");
+  const line = page.locator(".cm-line", { hasText: "sphere" });
+  await line.click();
+  let stops = 0;
+  while ((await page.evaluate(() => document.activeElement.id)) !== "stage") {
+    await page.keyboard.press("Tab");
+    assert.ok(++stops <= 3, `${stops} stops`);
+  }
+  await line.click();
+  for (let i = 0; i < 2; i++) await page.keyboard.press("End");
+  for (let i = 0; i < 4; i++) await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("Alt+Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), "Colour olive");
+});
+
+test("who does not see the picture hears what is in it, and what has changed", async t => {
+  const page = await open(await launch(t), await host(t));
+  const seen = pattern => page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("canvas").ariaLabel), pattern);
+  await seen("^Ball: middle centre; Sail: .*; Crate: middle .*; checkerboard: ");
+  assert.equal(await page.textContent("#seen"), "");
+  await andFinished(page, () => type(page, FIGURE.replace("(-1.6, 1, 0)", "(-3.6, 1, 0)")));
+  await seen("^Ball: middle left");
+  assert.match(await page.textContent("#seen"), /^Ball: middle left/);
+});
+
+test("paper has the picture and the whole text", async t => {
+  const long = `${FIGURE}${Array.from({ length: 200 }, (_, i) => `// line ${i}`).join("\n")}`;
+  const page = await open(await launch(t), await host(t, long));
+  await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print" });
+  await rested(page);
+  for (const hidden of ["header", "footer", ".tools", "#text-pane"]) assert.ok(await page.isHidden(hidden), hidden);
+  for (const shown of ["canvas", "#print-text"]) assert.ok(await page.isVisible(shown), shown);
+  const printed = await page.textContent("#print-text");
+  assert.match(printed, /^scene\.scn, .*\d/);
+  assert.ok(printed.includes(FIGURE) && printed.endsWith("// line 199"));
+  const pdf = await page.pdf();
+  assert.ok((pdf.toString("latin1").match(/\/Type\s*\/Page\b/g) ?? []).length >= 3, "several pages");
+});
+
+for (const [width, height, least] of [[640, 400, 0.4], [390, 844, 0.9], [844, 390, 0.3], [820, 1180, 0.9]]) {
+  test(`everything can be reached at ${width} × ${height}, and the picture is large`, async t => {
+    const page = await open(await launch(t), await host(t), { viewport: { width, height } });
+    for (const id of ["#undo", "#save", "#share", "#keys", "#objects", "#along", "#zoom-in", "#zoom-actual", "#problems", "#theme"]) {
+      const { x, y, width: wide, height: high } = await page.locator(id).evaluate(it => {
+        it.scrollIntoView({ block: "nearest", inline: "nearest" });
+        const box = it.getBoundingClientRect();
+        const found = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+        return { ...box.toJSON(), width: it.contains(found) ? box.width : 0 };
+      });
+      assert.ok(wide > 0 && x >= 0 && y >= 0 && x + wide <= width + 1 && y + high <= height + 1, id);
+    }
+    await page.click("#zoom-fit");
+    const shown = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+    assert.ok(shown >= least * width, `${shown}`);
+    await type(page, FIGURE.replace("radius 1", "radios 1"));
+    await page.waitForSelector("#stale:not([hidden])");
+    const [note, stage] = await page.evaluate(() => ["#stale", "#stage"].map(it => document.querySelector(it).getBoundingClientRect().height));
+    assert.ok(note <= 0.26 * stage + 2, `${note} of ${stage}`);
+  });
 }

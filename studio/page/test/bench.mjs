@@ -100,6 +100,38 @@ try {
   // 200 bytes kept of each of 10 000 pictures would be more.
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
+
+  // A thousand spheres: from the hand to the coarse picture, and for how many keys, one each 120 ms, there is one before the next.
+  if (process.env.SITE === undefined) {
+    const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
+    writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);
+    const many = await serve(file);
+    ending.push(() => many.stop());
+    const page = await open(browser, many);
+    await page.waitForTimeout(1000);
+    await page.evaluate(() => {
+      for (const type of ["keydown", "pointermove"]) addEventListener(type, event => (window.begin = event.timeStamp), true);
+      addEventListener("pinhole-frame", ({ detail: { fineness } }) => fineness === "coarse" && window.coarse.push(performance.now() - window.begin));
+    });
+    const coarse = async act => {
+      await page.evaluate(() => (window.coarse = []));
+      await act();
+      await page.waitForTimeout(120);
+      return page.evaluate(() => window.coarse[0] ?? Infinity);
+    };
+    const [x, y] = await onPage(page, [640, 310]);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.waitForTimeout(300);
+    const drags = [];
+    for (let i = 0; i < TIMES; i++) drags.push(await coarse(() => page.mouse.move(x + 20 + (i % 2 === 0 ? 15 : 0), y)));
+    await page.mouse.up();
+    await page.locator(".cm-line").nth(2).click();
+    await page.keyboard.press("End");
+    const keys = [];
+    for (let i = 0; i < TIMES; i++) keys.push(await coarse(() => page.keyboard.press(i % 2 === 0 ? "Space" : "Backspace")));
+    console.log(`1000 spheres: drag ${round(median(drags))} ms, key ${round(median(keys))} ms; ${keys.filter(Number.isFinite).length} of ${TIMES} keys have a coarse picture within 120 ms`);
+  }
 } finally {
   await browser.close();
   for (const end of ending) end();

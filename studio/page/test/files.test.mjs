@@ -1,7 +1,7 @@
 // Files of the served host: saved whole, changed outside, and both changed.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
@@ -141,6 +141,56 @@ test("a new scene gets its name by Save", async t => {
   await page.waitForFunction(() => document.querySelector("#file-name").textContent === "other.scn");
   await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
   assert.equal(readFileSync(path.join(folder, "other.scn"), "utf8"), FIGURE);
+});
+
+test("a name gets its ending, and one that will not do stays in the dialog with the reason", async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  writeFileSync(path.join(folder, "taken.scn"), "");
+  const started = await serve(null, { folder });
+  t.after(() => started.stop());
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, FIGURE));
+  await page.keyboard.press("Control+s");
+  for (const [name, reason] of [["a/b", /no path/], ["taken", /something of this name/]]) {
+    await page.fill("#name-field", name);
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(reason => new RegExp(reason).test(document.querySelector("#name-problem").textContent), reason.source);
+    assert.ok(await page.isVisible("#name-dialog"));
+    assert.equal(await page.inputValue("#name-field"), name);
+  }
+  await page.fill("#name-field", "my scene");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#file-name").textContent === "my scene.scn");
+  assert.equal(readFileSync(path.join(folder, "my scene.scn"), "utf8"), FIGURE);
+});
+
+test("lines that end in different ways keep their ends", async t => {
+  const ends = ["\r\n", "\n", "\n", "\r\n"];
+  const mixed = text => text.split("\n").map((line, i, all) => (i === all.length - 1 ? line : line + ends[i % 4])).join("");
+  const started = await host(t, mixed(FIGURE));
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  const at = LARGER.split("\n").findIndex(line => line.includes("radius 1.5"));
+  const lines = mixed(LARGER).split(/(?<=\n)/);
+  const saved = started.text().split(/(?<=\n)/);
+  assert.deepEqual(saved.filter((_, i) => i !== at), lines.filter((_, i) => i !== at));
+  assert.equal(await text(page), LARGER);
+});
+
+test("a file that cannot be written is named, with what to do", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  const folder = path.dirname(started.file);
+  renameSync(folder, `${folder}-away`);
+  t.after(() => rmSync(`${folder}-away`, { recursive: true, force: true }));
+  await page.waitForFunction(() => /is gone; Save/.test(document.querySelector("#said").textContent));
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => /scene\.scn is not saved: its folder is gone.*download/.test(document.querySelector("#said").textContent));
+  assert.equal(await page.textContent("#file-state"), "not saved");
 });
 
 for (const [choice, onDisk, onPage] of [

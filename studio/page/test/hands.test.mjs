@@ -85,8 +85,9 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "objects");
   await page.keyboard.press("ArrowDown");
   await page.waitForSelector('.handle[aria-label="Ball: center"]');
+  // The picture comes before its tools.
   for (let i = 0; i < 20; i++) {
-    await page.keyboard.press("Tab");
+    await page.keyboard.press("Shift+Tab");
     if (await page.evaluate(() => document.activeElement.ariaLabel === "Ball: center")) break;
   }
   await page.keyboard.press("x");
@@ -142,6 +143,7 @@ test("every handle moves its object, and every tool the camera, and nothing else
   for (const [object, names] of Object.entries(handles)) {
     const option = await page.locator("#objects option", { hasText: object }).getAttribute("value");
     await page.selectOption("#objects", option);
+    await page.waitForSelector(`.handle[data-handle=${names[0]}][data-object="${option}"]`);
     assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
     for (const name of names) {
       await page.focus(`.handle[data-handle=${name}]`);

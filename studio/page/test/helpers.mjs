@@ -1,4 +1,5 @@
-// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the path), CHROMIUM the browser.
+// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the path), CHROMIUM the browser. With DIST, the page's script and style
+// are those of that folder, so that the program need not be built anew for each change of them.
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -9,12 +10,32 @@ import { chromium } from "playwright-core";
 
 const PINHOLE = process.env.PINHOLE ?? "pinhole";
 
+/** What hosts keep of their user, here. */
+export const STATE = mkdtempSync(path.join(tmpdir(), "pinhole-state-"));
+process.on("exit", () => rmSync(STATE, { recursive: true, force: true }));
+
 export const FIGURE = readFileSync(new URL("../../../examples/figure_9_9.scn", import.meta.url), "utf8");
 
 /** A browser, closed when the test ends. */
 export async function launch(context) {
-  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
+  const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-features=LocalNetworkAccessChecks"] });
   context.after(() => browser.close());
+  const folder = process.env.DIST;
+  if (folder !== undefined) {
+    const newContext = browser.newContext.bind(browser);
+    browser.newContext = async options => {
+      const created = await newContext(options);
+      const fulfil = (route, path) => route.fulfill({ path, headers: { "cache-control": "no-store" } });
+      for (const file of ["studio.js", "studio.css"]) await created.route(`**/${file}`, route => fulfil(route, path.join(folder, file)));
+      await created.route(url => url.pathname === "/" && url.protocol === "http:", async route => {
+        const response = await route.fetch().catch(() => null);
+        const nonce = /nonce-([^']+)/.exec(response?.headers()["content-security-policy"])?.[1];
+        if (nonce === undefined) return route.continue();
+        route.fulfill({ response, body: readFileSync(path.join(folder, "index.html"), "utf8").replace("__NONCE__", nonce) });
+      });
+      return created;
+    };
+  }
   return browser;
 }
 
@@ -36,7 +57,7 @@ export async function serve(file, { port, folder, browser } = {}) {
   const scene = file === null ? [] : [file];
   const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port])];
   // What starts a browser is found on the path.
-  const env = browser === undefined ? process.env : { ...process.env, PATH: `${browser}:${process.env.PATH}` };
+  const env = { ...process.env, XDG_STATE_HOME: STATE, PATH: browser === undefined ? process.env.PATH : `${browser}:${process.env.PATH}` };
   const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {
@@ -84,7 +105,7 @@ export async function open(browser, { address }, options = {}) {
 
 /** Waits for the finished picture of the newest text. */
 export async function finished(page) {
-  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 30_000 });
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 15_000 });
 }
 
 /** Does something, and waits for the finished picture of the text that it makes. */
@@ -153,6 +174,37 @@ export async function drag(page, from, to) {
   const [x, y] = await onPage(page, to);
   await page.mouse.move(x, y, { steps: 5 });
   await page.mouse.up();
+}
+
+/** Takes hold at a place of the page, moves on by steps at a hand's pace, and lets go. */
+export async function hand(page, [x, y], [dx, dy], { steps = 12, back = false, hold = false } = {}) {
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.waitForTimeout(30);
+  const part = i => (back ? 1 - Math.abs(2 * i / steps - 1) : i / steps);
+  for (let i = 1; i <= steps; i++) {
+    await page.mouse.move(x + dx * part(i), y + dy * part(i));
+    await page.waitForTimeout(16);
+  }
+  if (!hold) await page.mouse.up();
+}
+
+/** Waits until the text and its picture have come to rest. */
+export async function rested(page) {
+  let before = null;
+  for (let same = 0; same < 4; ) {
+    await page.waitForTimeout(60);
+    const now = `${await version(page)} ${await text(page)}`;
+    same = now === before ? same + 1 : 0;
+    before = now;
+  }
+  await finished(page);
+}
+
+/** The middle of a handle on the page. */
+export async function handle(page, label) {
+  const { x, y, width, height } = await page.locator(`.handle[aria-label="${label}"]`).boundingBox();
+  return [x + width / 2, y + height / 2];
 }
 
 /** The pixels of the picture, as RGBA bytes in base64. */

@@ -84,7 +84,7 @@ test("a host that is started anew is told from one that is lost; its address goe
   await says(page, /Studio was ended\. .*printed in its terminal/);
   await type(page, LARGER);
   await page.keyboard.press("Control+s");
-  await page.waitForFunction(() => /without a connection/.test(document.querySelector("#said").textContent));
+  await page.waitForFunction(() => /Nothing was saved/.test(document.querySelector("#said").textContent));
   await keeps(page, LARGER);
   const again = await serve(started.file, { port });
   t.after(() => again.stop());

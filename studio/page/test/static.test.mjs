@@ -70,3 +70,27 @@ test("an engine that takes long to load is waited for", { skip }, async t => {
   assert.equal(await page.textContent("#connection"), "Connecting…");
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 30_000 });
 });
+
+test("the static page keeps what is written in the browser, and offers it after a reload", { skip }, async t => {
+  const host = await site(t, process.env.SITE);
+  const page = await open(await launch(t), host);
+  page.on("dialog", dialog => dialog.accept());
+  const scene = FIGURE.replace("radius 1", "radius 1.5");
+  await andFinished(page, () => type(page, scene));
+  await page.waitForTimeout(900);
+  await page.reload();
+  await page.waitForSelector("#draft-bar:not([hidden])");
+  assert.equal(await text(page), FIGURE);
+  await page.click("#draft-choices >> text=Restore");
+  assert.equal(await text(page), scene);
+  // It goes on as the one draft that it is.
+  await page.waitForTimeout(900);
+  await page.reload();
+  await page.waitForSelector("#draft-bar:not([hidden])");
+  await page.click("#draft-choices >> text=Forget");
+  assert.ok(await page.isHidden("#draft-bar"));
+  await page.waitForTimeout(300);
+  await page.reload();
+  await page.waitForTimeout(900);
+  assert.ok(await page.isHidden("#draft-bar"));
+});

@@ -2,7 +2,13 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, finished, host, launch, open, pixels, rendered, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, open, pixels, rendered, rested, text, type } from "./helpers.mjs";
+
+/** Waits until the text is this one. */
+async function until(page, expected) {
+  for (let i = 0; i < 40 && (await text(page)) !== expected; i++) await page.waitForTimeout(25);
+  assert.equal(await text(page), expected);
+}
 
 test("the picture is that of `pinhole render`, pixel by pixel", async t => {
   const { address, folder } = await host(t);
@@ -103,7 +109,7 @@ test("numbers are turned by a slider, by keys, and by a drag with the alt key, e
   assert.match(await text(page), /radius 1\.1 /);
   await page.keyboard.press("Escape");
   await andFinished(page, () => page.keyboard.press("Alt+ArrowDown"));
-  assert.equal(await text(page), FIGURE);
+  await until(page, FIGURE);
   const box = await radius.boundingBox();
   await page.keyboard.down("Alt");
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
@@ -111,7 +117,7 @@ test("numbers are turned by a slider, by keys, and by a drag with the alt key, e
   await page.mouse.move(box.x + box.width / 2 + 40, box.y + box.height / 2, { steps: 10 });
   await page.mouse.up();
   await page.keyboard.up("Alt");
-  assert.match(await text(page), /radius 2 /);
+  await page.waitForFunction(() => /radius 2 /.test(document.querySelector(".cm-content").innerText));
   await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
   for (const [before, after] of [["1e-3", "0.002"], ["-0.05", "-0.04"], ["2.75", "2.76"], ["1_000", "1100"], ["1e6", "1100000"], ["0", "0.1"], ["30", "31"]]) {
@@ -119,8 +125,52 @@ test("numbers are turned by a slider, by keys, and by a drag with the alt key, e
     await page.keyboard.press("Home");
     for (let i = 0; i < "let a = (".length + 1; i++) await page.keyboard.press("ArrowRight");
     await page.keyboard.press("Alt+ArrowUp");
-    assert.equal(await text(page), `let a = (${after}, 1, 1)`);
+    await until(page, `let a = (${after}, 1, 1)`);
   }
+});
+
+test("a slider, a key and a drag stay where the number is right", async t => {
+  const page = await open(await launch(t), await host(t));
+  for (const [line, number, least] of [["sphere", "1", "0.1"], ["sampler", "16", "1"], ["camera", "2.75", "0.01"]]) {
+    const written = page.locator(".cm-line", { hasText: line === "camera" ? "2.75" : line }).getByText(number, { exact: true }).first();
+    await written.click();
+    const slider = page.locator(".slider input");
+    await page.waitForFunction(least => document.querySelector(".slider input")?.min === least, least);
+    const { x, y, width, height } = await slider.boundingBox();
+    // To the left end and beyond.
+    await hand(page, [x + width / 2, y + height / 2], [-width, 0]);
+    await rested(page);
+    assert.ok(await page.isHidden("#stale"), await text(page));
+    assert.equal(await page.textContent("#problems"), "No problems");
+    await page.keyboard.press("Escape");
+    await page.click("#undo");
+    assert.equal(await text(page), FIGURE);
+    const at = await written.boundingBox();
+    await page.keyboard.down("Alt");
+    await hand(page, [at.x + at.width / 2, at.y + at.height / 2], [-400, 0]);
+    await page.keyboard.up("Alt");
+    await rested(page);
+    assert.equal(await page.textContent("#problems"), "No problems", await text(page));
+    await page.click("#undo");
+    assert.equal(await text(page), FIGURE);
+  }
+});
+
+test("braces that are typed are the braces that are there, and what is between them is indented", async t => {
+  const page = await open(await launch(t), await host(t));
+  const typed = async (keys, expected) => {
+    await type(page, "");
+    for (const part of keys.split("\n")) {
+      if (part !== keys.split("\n")[0]) await page.keyboard.press("Enter");
+      await page.keyboard.type(part, { delay: 15 });
+      await page.keyboard.press("Escape");
+    }
+    assert.equal(await text(page), expected);
+  };
+  const block = "camera {\n  eye (0, 1, 5)\n  lookat (0, 0, 0)\n}";
+  await typed("camera {\neye (0, 1, 5)\nlookat (0, 0, 0)\n}", block);
+  await typed("camera {\neye (0, 1, 5)\nlookat (0, 0, 0)\n}\nsphere { radius 1 }\n", `${block}\nsphere { radius 1 }\n`);
+  await typed("sphere {\nradius 1 }", "sphere {\n  radius 1 }");
 });
 
 test("texts and names of a scene are never HTML", async t => {

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
-    editor::viewport::{Along, Drag, overlays},
+    editor::viewport::{Along, Drag, Shown, overlays},
     inspect::{CameraFacts, inspect},
     probe::probe,
     scene::{self, CenteredTriangle, Cuboid, Outline, Scene, Shape, View},
@@ -53,7 +53,7 @@ fn point_of(scene: &Scene, (x, y): (f64, f64)) -> DVec2 {
 
 /// The handles of the first object.
 fn handles(scene: &Scene) -> Vec<&'static str> {
-    let objects = overlays(scene, None).objects;
+    let objects = overlays(scene, &Shown::First(None)).objects;
     objects[0].handles.iter().map(|(name, _)| *name).collect()
 }
 
@@ -130,7 +130,7 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
 /// The apex is seen in the direction of a point, from the centroid; or the two are too near to each other to tell.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = seen(scene, triangle.centroid);
-    let shown = overlays(scene, None);
+    let shown = overlays(scene, &Shown::First(None));
     let (_, apex) = shown.objects[0].handles[2];
     let (wanted, found) = (to - middle, apex.expect("it is seen") - middle);
     let across = wanted.perp_dot(found) / wanted.length();

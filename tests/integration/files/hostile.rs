@@ -25,9 +25,9 @@ const HOSTILE: [(&str, &str); 9] = [
     ("link to a full device", "it is a device, not a file"),
     ("socket", "it is a socket, not a file"),
     ("folder", "it is a folder, not a file"),
-    ("dangling link", "No such file or directory"),
+    ("dangling link", "there is no such file or folder"),
     ("loop of links", "symbolic links"),
-    ("nothing", "No such file or directory"),
+    ("nothing", "there is no such file or folder"),
 ];
 
 /// Puts it there.
@@ -217,10 +217,10 @@ fn a_name_that_was_given_may_lead_elsewhere_but_is_never_waited_for() {
     for (what, about) in [
         ("pipe", "it is a pipe that nobody reads"),
         ("link to a pipe", "it is a pipe that nobody reads"),
-        ("link to a full device", "No space left on device"),
+        ("link to a full device", "there is no room left for it"),
         ("socket", "it is a socket, not a file"),
         ("folder", "it is a folder, not a file"),
-        ("dangling link", "No such file or directory"),
+        ("dangling link", "there is no such file or folder"),
         ("loop of links", "symbolic links"),
     ] {
         let folder = folder();

@@ -93,7 +93,7 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
             }
             // Nowhere is room for the copy.
             false => {
-                let told = "error: cannot write to closed/a.scn: Permission denied (os error 13)\n";
+                let told = "error: cannot write to closed/a.scn: its permissions, or those of its folder, do not allow that\n";
                 assert_eq!((said.status, &*said.errors), (2, told));
                 assert_eq!(text, "sphere  {}\n");
             }

@@ -122,6 +122,34 @@ fn a_long_recipe_is_left_out() {
     assert!(!many.fits());
 }
 
+/// What a decoder says of a file may hold a part of it, which can have any length.
+#[test]
+fn no_error_carries_much_of_a_file() {
+    let long = "x".repeat(5000);
+    let heads = [
+        "P7\nWIDTH LONG\n",
+        "P7\nLONG 3\nENDHDR\n",
+        "P7\nWIDTH 3\nHEIGHT 3\nDEPTH 1\nMAXVAL 255\nTUPLTYPE LONG\nENDHDR\n",
+        "P6\n3 LONG\n255\n",
+        "P3\n3 3\n255\nLONG\n",
+        "GIF89aLONG",
+        "BMLONG",
+        "RIFFLONGWEBPLONG",
+        "II*\0LONG",
+        "\u{89}PNG\r\n\u{1a}\nLONG",
+    ];
+    for head in heads {
+        // Latin-1: a byte for each character.
+        let bytes: Vec<u8> = head
+            .replace("LONG", &long)
+            .chars()
+            .map(|c| c as u8)
+            .collect();
+        let said = read_picture(&bytes).unwrap_err().to_string();
+        assert!(said.chars().count() <= 300, "{head}: {said}");
+    }
+}
+
 #[test]
 fn what_is_damaged_is_told_from_what_is_whole() {
     let png = png_bytes(&film(3, 2), &recipe());

@@ -11,7 +11,7 @@ use crate::{
     tracer::Random,
 };
 
-const METHODS: [&str; 24] = [
+const METHODS: [&str; 26] = [
     "textDocument/completion",
     "textDocument/hover",
     "textDocument/documentSymbol",
@@ -32,6 +32,8 @@ const METHODS: [&str; 24] = [
     "pinhole/frame",
     "pinhole/overlays",
     "pinhole/drag",
+    "pinhole/limits",
+    "pinhole/objects",
     "pinhole/probe",
     "pinhole/at",
     "workspace/symbol",

@@ -50,6 +50,23 @@ fn the_reference_has_every_row_of_the_table() {
     assert_eq!(rows.len(), header_and_rule, "{rows:?}");
 }
 
+/// d of a lens is exact, and the angle beside it right to the last digit.
+#[test]
+fn the_lenses_are_right_to_the_last_digit() {
+    let mut lenses = 0;
+    for line in REFERENCE.lines() {
+        let Some((lens, row)) = line.split_once(" mm | ") else {
+            continue;
+        };
+        let lens = lens.trim_start_matches("| ");
+        let focal: f64 = lens.parse().unwrap();
+        let angle = (2.0 * (12.0 / focal).atan()).to_degrees();
+        assert_eq!(row, format!("`d {lens}/12` | `fov {angle:.4}deg` |"));
+        lenses += 1;
+    }
+    assert_eq!(lenses, 8);
+}
+
 #[test]
 fn the_reference_has_every_method_function_and_name() {
     for (method, _) in schema::METHODS {

@@ -146,5 +146,55 @@ fn overlays_are_not_more_than_a_page_can_show() {
         let objects = found["objects"].as_array().expect("a list");
         let found = (objects.len(), &objects[count - 1]["index"]);
         assert_eq!(found, (count, &json!(last)));
+        let listed = talk.ask("pinhole/objects", json!({ "object": further }));
+        assert_eq!(listed.as_array().map(Vec::len), Some(count));
+        assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
+    }
+    for (only, indices) in [
+        (json!([]), vec![]),
+        (json!([1400, 3]), vec![3, 1400]),
+        (json!([1504]), vec![]),
+    ] {
+        let found = talk.ask("pinhole/overlays", json!({ "only": only }));
+        let objects = found["objects"].as_array().expect("a list");
+        let found: Vec<_> = objects.iter().map(|it| it["index"].as_u64()).collect();
+        assert_eq!(found, indices.into_iter().map(Some).collect::<Vec<_>>());
+    }
+}
+
+/// A slider need not offer what the language forbids.
+#[test]
+fn a_number_has_the_limits_of_its_field() {
+    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox { center (0, 0, 0) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }";
+    let mut talk = Talk::with(text);
+    let limits = |least: Value, most: Value, open: bool, whole: bool| json!({ "least": least, "most": most, "open": open, "whole": whole });
+    let pi = std::f64::consts::PI;
+    for (before, expected) in [
+        ("radius 1", limits(json!(0.0), Value::Null, true, false)),
+        ("per_pixel 16", limits(json!(1.0), Value::Null, false, true)),
+        ("fov 1", limits(json!(0.0), json!(pi), true, false)),
+        ("size (1, 2", limits(json!(0.0), Value::Null, true, false)),
+        ("eye (0", limits(Value::Null, Value::Null, false, false)),
+        ("let a = 3", Value::Null),
+        ("radius a + 1", Value::Null),
+    ] {
+        let at = text.find(before).expect("it is there") + before.len();
+        let lines: Vec<&str> = text[..at].split('\n').collect();
+        let character = lines[lines.len() - 1].len();
+        let position = json!({ "line": lines.len() - 1, "character": character });
+        let found = talk.ask("pinhole/limits", json!({ "position": position }));
+        assert_eq!(found, expected, "{before}");
+    }
+}
+
+/// Who drags a ball that the camera looks at hears that the camera moves.
+#[test]
+fn a_drag_tells_what_else_moves() {
+    let text = "let ball = (0, 0, 0)\ncamera { eye (0, 0, 5) lookat ball }\nsphere Ball { center ball }\nsphere { center (0, 2, 0) }";
+    let mut talk = Talk::with(text);
+    for (object, also) in [(0, json!(["camera.lookat"])), (1, json!([]))] {
+        let about = json!({ "object": object, "handle": "center", "to": [430, 225] });
+        let found = talk.ask("pinhole/drag", about);
+        assert_eq!(found["also"], also, "{found}");
     }
 }

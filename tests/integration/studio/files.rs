@@ -303,3 +303,36 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
         }
     }
 }
+
+/// What is not saved survives the program, and is gone when it is saved or forgotten.
+#[test]
+fn a_draft_outlives_the_program() {
+    let folder = Folder::with([("a.scn", SCENE)]);
+    let start = || {
+        let mut command = folder.command("studio --no-open a.scn");
+        command.env("XDG_STATE_HOME", folder.path("state"));
+        command.env("LOCALAPPDATA", folder.path("state"));
+        Studio::start(command)
+    };
+    let draft = |text: Value| json!({ "text": text, "base": SCENE });
+    for end in ["saved", "forgotten"] {
+        let mut first = start();
+        let (mut page, found) = first.page();
+        assert_eq!(found.get("draft"), None);
+        assert_eq!(page.ask("studio/draft", draft(json!("// mine"))), saved());
+        first.child.kill().unwrap();
+        let second = start();
+        let (mut page, mut found) = second.page();
+        let mut kept = found["draft"].take();
+        assert!(kept["time"].take().as_u64() > Some(1_700_000_000));
+        assert_eq!([&kept["text"], &kept["base"]], ["// mine", SCENE]);
+        match end {
+            "saved" => {
+                assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
+                assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
+            }
+            _ => assert_eq!(page.ask("studio/draft", draft(Value::Null)), saved()),
+        }
+        assert_eq!(second.page().1.get("draft"), None);
+    }
+}

@@ -1,0 +1,183 @@
+// Drags by a hand: a real pointer that is pressed, moved twelve times at a hand's pace, and released.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { FIGURE, finished, hand, handle, host, launch, onPage, open, rested, text, type } from "./helpers.mjs";
+
+const BALL = [455, 320];
+
+/** The ball that the camera looks at. */
+const WATCHED = "let ball = (0, 1, 0)\nimage { width 640  height 360 }\ncamera { eye (0, 2, 8)  lookat ball }\nsampler { per_pixel 4 }\nsphere Ball { center ball }\n";
+
+const select = async (page, label) => {
+  await page.selectOption("#objects", { label });
+  await page.waitForSelector(".handle");
+};
+
+const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.]+)`).exec(text)[1]);
+
+test("one drag follows another, from handle to handle, to the camera and back", async t => {
+  const page = await open(await launch(t), await host(t));
+  await select(page, "Crate (box)");
+  const drags = [["Crate: max y", [0, -40]], ["Crate: max x", [40, 0]], ["Crate: max y", [0, 30]], ["Crate: min x", [-30, 0]], ["Crate: center", [30, 0]]];
+  for (const [label, by] of drags) {
+    const before = await text(page);
+    await hand(page, await handle(page, label), by);
+    await rested(page);
+    assert.notEqual(await text(page), before, `the drag of ${label} does nothing`);
+  }
+  for (const tool of ["orbit", "pan", "move", "orbit", "look"]) {
+    await page.check(`input[value=${tool}]`, { force: true });
+    const before = await text(page);
+    const at = tool === "move" ? await handle(page, "Crate: center") : await onPage(page, [640, 600]);
+    await hand(page, at, [25, 10]);
+    await rested(page);
+    assert.notEqual(await text(page), before, `the drag by ${tool} does nothing`);
+  }
+  // Each was one step.
+  for (let i = 0; i < drags.length + 5; i++) await page.keyboard.press("Control+z");
+  assert.equal(await text(page), FIGURE);
+});
+
+test("a drag depends on press and place alone, and says what moves with it", async t => {
+  const ends = new Set();
+  const started = await host(t, WATCHED);
+  const browser = await launch(t);
+  for (const steps of [1, 6, 12, 30]) {
+    const page = await open(browser, started);
+    await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
+    const from = await onPage(page, [320, 180]);
+    await hand(page, from, [90, 0], { steps, hold: true });
+    await page.waitForFunction(() => /ball|Ball/.test(document.querySelector("#drag-note").textContent));
+    assert.match(await page.textContent("#drag-note"), /Ball\.center = .*also camera\.lookat/);
+    await rested(page);
+    await page.mouse.up();
+    await page.waitForSelector("#drag-note", { state: "hidden" });
+    ends.add(await text(page));
+    await page.context().close();
+  }
+  assert.equal(ends.size, 1, [...ends].join("\n---\n"));
+  assert.ok(number([...ends][0], "let ball = \\(") > 1, [...ends][0]);
+});
+
+for (const [tool, by] of [["orbit", [90, 60]], ["orbit", [0, -400]], ["look", [0, -200]], ["look", [60, 300]], ["pan", [70, 30]], ["dolly", [0, 80]], ["roll", [50, 90]], ["view_distance", [0, -90]], ["move", [80, 40]]]) {
+  test(`out and back leaves the text as it was: ${tool} ${by}`, async t => {
+    const page = await open(await launch(t), await host(t));
+    await page.check(`input[value=${tool}]`, { force: true });
+    const from = await onPage(page, tool === "move" ? BALL : [900, 380]);
+    await hand(page, from, by.map(it => it / 2), { steps: 6, hold: true });
+    await rested(page);
+    assert.notEqual(await text(page), FIGURE);
+    await page.mouse.move(from[0] + by[0], from[1] + by[1], { steps: 12 });
+    await page.mouse.move(...from, { steps: 12 });
+    await rested(page);
+    await page.mouse.up();
+    await rested(page);
+    assert.equal(await text(page), FIGURE);
+    assert.equal(await page.textContent("#file-state"), "");
+    assert.ok(await page.isDisabled("#undo"), "nothing has happened that could be undone");
+  });
+}
+
+test("Escape in a drag leaves nothing to redo, and what was to redo stays", async t => {
+  const page = await open(await launch(t), await host(t));
+  assert.ok(await page.isDisabled("#undo") && (await page.isDisabled("#redo")));
+  await hand(page, await onPage(page, BALL), [50, 0]);
+  await rested(page);
+  const first = await text(page);
+  await page.click("#undo");
+  assert.equal(await text(page), FIGURE);
+  assert.ok(await page.isDisabled("#undo"));
+  await hand(page, await onPage(page, BALL), [0, -60], { hold: true });
+  await rested(page);
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  await rested(page);
+  assert.equal(await text(page), FIGURE);
+  await page.keyboard.press("Control+y");
+  assert.equal(await text(page), first);
+  assert.ok(await page.isDisabled("#redo"));
+});
+
+test("what a drag says stands at the hand, and is gone afterwards; the footer says nothing that is not true any more", async t => {
+  const page = await open(await launch(t), await host(t));
+  const from = await onPage(page, BALL);
+  await hand(page, from, [110, 0], { hold: true });
+  await page.waitForSelector("#drag-note:not([hidden])");
+  const { x, y } = await page.locator("#drag-note").boundingBox();
+  assert.ok(Math.hypot(x - from[0] - 110, y - from[1]) < 80, `${x} ${y}`);
+  assert.equal(await page.textContent("#pointed"), "");
+  await page.mouse.up();
+  await page.waitForSelector("#drag-note", { state: "hidden" });
+  // The pointer has not moved since: the footer tells what is there now.
+  await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
+  await page.keyboard.press("Control+z");
+  await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
+  assert.equal(await page.textContent("#said"), "");
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => /is saved/.test(document.querySelector("#said").textContent));
+  await page.click("#redo");
+  assert.equal(await page.textContent("#said"), "");
+});
+
+test("handles are not there while the text has errors", async t => {
+  const page = await open(await launch(t), await host(t));
+  await select(page, "Ball (sphere)");
+  await page.locator(".cm-line", { hasText: "sphere" }).click();
+  await page.keyboard.press("Home");
+  await page.keyboard.insertText("sphere { }\n");
+  await page.waitForSelector("#stale:not([hidden])");
+  await page.waitForSelector(".handle", { state: "detached" });
+  await page.keyboard.press("Control+z");
+  await page.waitForSelector(".handle");
+});
+
+test("handles that are seen at one place lie side by side, and each can be taken", async t => {
+  const scene = "image { width 640  height 360 }\ncamera { eye (0, 0, 6)  direction (0, 0, -1) }\nsampler { per_pixel 1 }\nbox Crate { center (0, 0, 0)  size (1, 1, 1) }\n";
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
+  await select(page, "Crate (box)");
+  const places = await page.locator(".handle").evaluateAll(all => all.map(it => [it.dataset.handle, it.getBoundingClientRect()]));
+  assert.equal(places.length, 7);
+  for (const [i, [, a]] of places.entries()) {
+    assert.ok(a.width >= 24 && a.height >= 24);
+    for (const [, b] of places.slice(0, i)) assert.ok(Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) >= 24);
+  }
+  // The camera looks along z: what moves along it does not move in the picture.
+  for (const label of ["min x", "max x", "min y", "max y"]) {
+    const before = await text(page);
+    await hand(page, await handle(page, `Crate: ${label}`), [label.endsWith("x") ? 12 : 0, label.endsWith("y") ? 12 : 0]);
+    await rested(page);
+    assert.notEqual(await text(page), before, label);
+  }
+});
+
+test("a vertex that is brought onto another one is refused, and says why", async t => {
+  const scene = "image { width 640  height 360 }\ncamera { eye (0, 0, 6)  direction (0, 0, -1) }\nsampler { per_pixel 1 }\ntriangle Sail { v0 (-1, -1, 0)  v1 (1, -1, 0)  v2 (0.6, 1, 0) }\n";
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
+  await select(page, "Sail (triangle)");
+  const [from, to] = [await handle(page, "Sail: v2"), await handle(page, "Sail: v0")];
+  await hand(page, from, [to[0] - from[0], to[1] - from[1]], { hold: true });
+  await page.waitForFunction(() => /line/.test(document.querySelector("#drag-note").textContent));
+  await page.mouse.up();
+  await rested(page);
+  const [, x, y] = /v2 \((\S+), (\S+), 0\)/.exec(await text(page));
+  for (const number of [x, y]) assert.ok(number.length < 9, number);
+});
+
+test("a hand that is quicker than the answers moves things, too", async t => {
+  const page = await open(await launch(t), await host(t));
+  const [x, y] = await onPage(page, BALL);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y, { steps: 2 });
+  await page.mouse.up();
+  await rested(page);
+  assert.notEqual(await text(page), FIGURE);
+  await finished(page);
+  // A text that is typed meanwhile is never lost.
+  await type(page, WATCHED);
+  await rested(page);
+  assert.equal(await text(page), WATCHED);
+});
