@@ -161,7 +161,17 @@ impl World {
 
     fn slot_of(&self, point: &Point, among: impl Iterator<Item = usize> + Clone) -> usize {
         let among = || among.clone();
-        let (seen, _) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
+        let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
+        if !is_sure {
+            // What the last precision cannot tell apart counts as met, but where bounds exclude it:
+            // whichever objects were asked, the answer is the same.
+            let near = self.candidates(point);
+            let is_near = |object: &usize| near.binary_search(object).is_ok();
+            if !among().all(|object| is_near(&object)) {
+                let among = || among().filter(is_near);
+                (seen, _) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
+            }
+        }
         self.slot(seen)
     }
 

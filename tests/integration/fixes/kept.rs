@@ -168,7 +168,8 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     if next.is_some() {
         complaints.push(format!("a number is new: {next:?}"));
     }
-    if !lost.is_empty() && !(has_removed && lost.iter().all(is_elsewhere)) {
+    let is_listed = has_removed && lost.iter().all(is_elsewhere);
+    if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
     // Whether two words were joined, or one replaced, may be read in two ways.
@@ -177,7 +178,8 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
         true => [ways[1].clone(), ways[0].clone()],
         false => ways,
     };
-    if !lost.is_empty() && !(has_removed && lost.iter().all(|name| after.names.contains(name))) {
+    let is_listed = has_removed && lost.iter().all(|name| after.names.contains(name));
+    if !lost.is_empty() && !is_listed {
         complaints.push(format!("names are lost: {lost:?}"));
     }
     if !new.is_empty() {
