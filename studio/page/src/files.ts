@@ -26,6 +26,8 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
+/** A carriage return that ends no line. */
+const LONE = /\r(?!\n)/;
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
@@ -62,7 +64,7 @@ export class Files {
   get isUnsaved(): boolean {
     const { text } = this.editor;
     return this.opened && text !== this.untouched
-      && (this.isGone || this.seen === null || text !== withLf(this.seen));
+      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
   }
 
   /** The text with its file's ends of lines. */
@@ -86,6 +88,7 @@ export class Files {
       const start = this.isServed ? (text ?? "") : example;
       this.untouched = saved ? null : withLf(start);
       this.editor.open(start);
+      this.tellLone();
       if (linked !== null) this.editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
       if (!this.isServed) this.untouched = this.editor.text;
@@ -113,8 +116,15 @@ export class Files {
       this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
+      this.tellLone();
     } else this.ask(text);
     this.show();
+  }
+
+  /** A page cannot show the file as the language reads it: nothing is changed without a word. */
+  private tellLone(): void {
+    if (LONE.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
+      + "which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
   private tellGone(reason?: string | null): void {
@@ -246,6 +256,7 @@ export class Files {
       this.name = file.name;
       this.seen = text;
       this.untouched = null;
+      this.tellLone();
     } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
   }
@@ -277,16 +288,13 @@ export class Files {
   }
 }
 
-/** A text with the ends of lines that a file has; a new line ends as the one before it. */
+/** A text with the ends of lines that a file has; a new line ends as the one before it. A carriage
+ *  return alone ends none. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
-  const ends = file.match(/\r\n?|\n/g) ?? [];
-  const [a, b] = [withLf(file).split("\n"), text.split("\n")];
+  const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
   let [i, end, made] = [0, ends[0] ?? "\n", ""];
-  const [start, rest] = common(a, b);
-  const middle = changedLines(a.slice(start, a.length - rest), b.slice(start, b.length - rest));
-  const kept = (lines: string[]) => lines.map(text => ({ sign: " " as const, text }));
-  const lines = [...kept(b.slice(0, start)), ...middle, ...kept(b.slice(b.length - rest))];
+  const lines = compared(withLf(file).split("\n"), text.split("\n"));
   const last = lines.findLastIndex(line => line.sign !== "-");
   lines.forEach(({ sign, text }, at) => {
     if (sign !== "+") end = ends[i++] ?? end;
@@ -295,30 +303,28 @@ export function withEndsOf(file: string, text: string): string {
   return made;
 }
 
-/** How many lines two texts have in common at the start and at the end. */
-function common(a: string[], b: string[]): [number, number] {
-  let start = 0;
-  while (start < a.length && start < b.length && a[start] === b[start]) start++;
-  let end = 0;
-  while (end < a.length - start && end < b.length - start
-    && a[a.length - 1 - end] === b[b.length - 1 - end]) end++;
-  return [start, end];
-}
-
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** The lines of two texts: those of the first alone by -, those of the second alone by +, with
- *  up to two common ones around (longest common subsequence). */
+/** Where two texts differ, with up to two lines around. */
 export function difference(one: string, other: string): DifferenceLine[] {
-  const [a, b] = [one.split("\n"), other.split("\n")];
-  const [start, end] = common(a, b);
-  const same = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
-  const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...same(a.slice(Math.max(0, start - 2), start)), ...middle,
-    ...same(a.slice(a.length - end, a.length - end + 2))];
+  const lines = compared(one.split("\n"), other.split("\n"));
+  const differs = ({ sign }: DifferenceLine) => sign !== " ";
+  return lines.slice(Math.max(0, lines.findIndex(differs) - 2), lines.findLastIndex(differs) + 3);
 }
 
+/** The lines of two texts: those of the first alone by -, those of the second alone by +. */
+function compared(a: string[], b: string[]): DifferenceLine[] {
+  let [start, end] = [0, 0];
+  while (start < a.length && start < b.length && a[start] === b[start]) start++;
+  while (end < a.length - start && end < b.length - start
+    && a.at(-1 - end) === b.at(-1 - end)) end++;
+  const kept = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
+  const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
+  return [...kept(a.slice(0, start)), ...middle, ...kept(a.slice(a.length - end))];
+}
+
+/** The same of what is between them (longest common subsequence). */
 function changedLines(a: string[], b: string[]): DifferenceLine[] {
   const lines: DifferenceLine[] = [];
   const [n, m] = [a.length, b.length];

@@ -115,7 +115,7 @@ fn a_picture_that_cannot_be_compared_is_a_line_of_its_own() {
         "
         broken.png -> it is no picture in PNG
         small.png -> it has 48 × 32 pixels, and the scene's picture 60 × 40
-        none.png -> No such file
+        none.png -> there is no such file
     ",
     );
     let said = folder
