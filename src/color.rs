@@ -122,6 +122,14 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
+/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be another colour from 0 to 255.
+pub fn are_shares(parts: &[&str]) -> bool {
+    let separates = |c: char| c == ',' || c.is_whitespace();
+    let parts = parts.iter().flat_map(|part| part.split(separates));
+    let mut parts = parts.filter(|part| !part.is_empty());
+    parts.all(|part| part.parse().is_ok_and(|part: f64| part <= 1.0))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,12 +142,4 @@ mod tests {
             assert_eq!(are_below, [true, false], "{k}");
         }
     }
-}
-
-/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be another colour from 0 to 255.
-pub fn are_shares(parts: &[&str]) -> bool {
-    let separates = |c: char| c == ',' || c.is_whitespace();
-    let parts = parts.iter().flat_map(|part| part.split(separates));
-    let mut parts = parts.filter(|part| !part.is_empty());
-    parts.all(|part| part.parse().is_ok_and(|part: f64| part <= 1.0))
 }

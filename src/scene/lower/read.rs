@@ -190,10 +190,9 @@ fn is_utf16(file: &Source) -> bool {
     const LOOKED_AT: usize = 256;
     let bytes = file.text().as_bytes();
     let has_mark = file.invalid_utf8().starts_with(&[0, 1]);
-    let start = bytes
-        .get(if has_mark { 2 } else { 0 }..)
-        .unwrap_or_default();
-    let start = &start[..start.len().min(LOOKED_AT)];
+    let first = if has_mark { 2 } else { 0 };
+    let end = bytes.len().min(first + LOOKED_AT);
+    let start = bytes.get(first..end).unwrap_or_default();
     let zeros = |first| {
         start
             .iter()
