@@ -22,7 +22,7 @@ fn spawned(folder: &Folder, line: &str) -> Child {
 
 #[test]
 fn a_save_of_another_program_is_never_lost() {
-    let long = "sphere  { color gren }\n".repeat(4000);
+    let long = "sphere  { color oliv }\n".repeat(4000);
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
