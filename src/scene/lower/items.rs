@@ -148,7 +148,9 @@ impl<'s> Lowering<'s> {
         let near = schema::nearest_block(kind.text);
         let is_sure = |near: &schema::Block| {
             let is_tried = suggest::is_among(kind.text, near.also_tried);
-            is_tried && !schema::is_word(kind.text)
+            // A plane of one colour has no squares.
+            let is_plane = matches!(kind.text, "plane" | "floor" | "ground");
+            is_tried && !is_plane && !schema::is_word(kind.text)
                 || suggest::is_only_near(kind.text, near.name, schema::block_names())
         };
         // Nobody can tell what it was to be: an object, perhaps.

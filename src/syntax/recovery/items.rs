@@ -445,7 +445,17 @@ impl<'s> Recovery<'_, 's> {
         let sign = self.word(0);
         let span = self.bump();
         let fix = self.remove(format!("remove this `{sign}`"), span);
-        self.report(&say::STRAY_CLOSING, span, &[sign], fix);
+        // What opened it may be in something else that is wrong in its line.
+        let line = self.text.get(..span.start).unwrap_or_default();
+        let line = line.rsplit('\n').next().unwrap_or_default();
+        let open = if sign == ")" { '(' } else { '[' };
+        let is_opened = line.matches(open).count() > line.matches(sign).count();
+        self.report(
+            &say::STRAY_CLOSING,
+            span,
+            &[sign],
+            (!is_opened).then_some(fix),
+        );
     }
 
     /// `}` that was never opened, and others right behind it.

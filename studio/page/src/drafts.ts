@@ -67,7 +67,8 @@ export class Drafts {
     const time = new Date(draft.time * 1000).toLocaleString();
     const isNewer = this.isServed && draft.base !== this.files.seen;
     const newer = isNewer ? " The file has changed since; Save will ask." : "";
-    setText(byId("draft"), `A text of ${time} was not saved.${newer} Restore it?`);
+    setText(byId("draft"), `A text of ${time} was not saved.${newer} Restore it? `
+      + "What is written before you answer is not kept.");
     const choose = (act: () => void) => () => {
       act();
       this.editor.view.focus();
