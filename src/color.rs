@@ -122,7 +122,8 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be another colour from 0 to 255.
+/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be
+/// another colour from 0 to 255.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -47,8 +47,9 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Whether no other candidate is as near to what was written as this one, which is the nearest. A name of other digits is another
-/// name, and words that stand apart are one only if they have its letters.
+/// Whether no other candidate is as near to what was written as this one, which is the nearest. A
+/// name of other digits is another name, and words that stand apart are one only if they have its
+/// letters.
 pub fn is_only_near<'c>(
     written: &str,
     near: &str,

@@ -71,8 +71,9 @@ fn push_hunk(text: &mut String, hunk: &[Change], old: &[&str], new: &[&str], las
     push(' ', &old[at..last.old.end + after]);
 }
 
-/// Walks both texts. Where they differ, they go on at the nearest place at which two lines, or the ends, are the same: changes are
-/// small, and far from the shortest list nothing is wrong but its length.
+/// Walks both texts. Where they differ, they go on at the nearest place at which two lines, or the
+/// ends, are the same: changes are small, and far from the shortest list nothing is wrong but its
+/// length.
 fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {

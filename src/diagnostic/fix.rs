@@ -2,10 +2,12 @@
 
 use crate::source::{SourceId, Sources, Span};
 
-/// What a fix does to what the author wrote, and so who may apply it. The later ones include what the earlier ones may do.
+/// What a fix does to what the author wrote, and so who may apply it. The later ones include what
+/// the earlier ones may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
-    /// All that was written stays, and there is one plausible meaning: it can be applied without being asked.
+    /// All that was written stays, and there is one plausible meaning: it can be applied without
+    /// being asked.
     Safe,
     /// One of several meanings is chosen, or something that was written is removed or changed.
     Unsafe,
@@ -95,7 +97,8 @@ impl Fix {
         self.being(Applicability::Placeholder)
     }
 
-    /// Makes it unsafe if it takes a comment of the text away with something else, or joins two words.
+    /// Makes it unsafe if it takes a comment of the text away with something else, or joins two
+    /// words.
     pub fn mind(&mut self, sources: &Sources) {
         let mut edits = self.edits.iter();
         if self.is_safe()

@@ -73,7 +73,8 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl<'s> Report<'s> {
-    /// Of more reports than this, a terminal shows the first few, and how many there are of each kind; JSON has them all.
+    /// Of more reports than this, a terminal shows the first few, and how many there are of each
+    /// kind; JSON has them all.
     pub const MOST_SHOWN: usize = 100;
     /// As many are shown then.
     pub const FIRST_SHOWN: usize = 20;

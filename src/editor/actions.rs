@@ -32,7 +32,8 @@ pub fn fixes<'a>(
     })
 }
 
-/// Where the values stand that the author is to replace, in a text that a placeholder writes: numbers and lists, or all of it.
+/// Where the values stand that the author is to replace, in a text that a placeholder writes:
+/// numbers and lists, or all of it.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);

@@ -1,4 +1,5 @@
-//! All that can be put right at once: the first fix of each error that may be applied, again until nothing changes.
+//! All that can be put right at once: the first fix of each error that may be applied, again until
+//! nothing changes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -30,8 +31,8 @@ pub struct Done {
     pub title: String,
 }
 
-/// Fixes the errors of a file by safe fixes, or by unsafe ones, too; values are never made up. Errors in arguments stay, and
-/// warnings are not touched: what they tell of may be meant.
+/// Fixes the errors of a file by safe fixes, or by unsafe ones, too; values are never made up.
+/// Errors in arguments stay, and warnings are not touched: what they tell of may be meant.
 pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
     /// A fix can show what another mistake hid; so many in a row are more than any text has.

@@ -52,7 +52,8 @@ pub struct Block {
     pub several: &'static [Several],
     /// Other words that people try for it.
     pub also_tried: &'static str,
-    /// Words of other languages for what is said elsewhere or otherwise here, with what to write instead.
+    /// Words of other languages for what is said elsewhere or otherwise here, with what to write
+    /// instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
 }
 

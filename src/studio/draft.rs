@@ -5,14 +5,17 @@
 //! time. Saving removes it, and so does time.
 
 use std::{
+    io,
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use serde_json::{Value, json};
 
-use super::scene_file::Read;
 use crate::files;
+
+/// What reads a file, up to the length that scenes have.
+pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
 /// How long a draft is kept that nobody asks for.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);

@@ -6,7 +6,7 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
-use super::draft::Draft;
+use super::draft::{Draft, Read};
 use serde_json::Value;
 
 use crate::{
@@ -14,9 +14,6 @@ use crate::{
     preview::{self, Content, Latest},
     scene::SMALLEST,
 };
-
-/// What reads a file, up to the length that scenes have.
-pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
 /// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
 pub type Held = Result<Option<String>, String>;

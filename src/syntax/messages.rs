@@ -1,4 +1,5 @@
-//! What is said of each slip, and whether its fix is safe. `{0}` and `{1}` stand for what is named where it arises.
+//! What is said of each slip, and whether its fix is safe. `{0}` and `{1}` stand for what is named
+//! where it arises.
 
 use super::problem::{Message, times};
 use crate::{diagnostic::Diagnostic, source::Span};

@@ -100,7 +100,8 @@ impl Scan {
         scan
     }
 
-    /// Notes carriage returns that end no line, also those in comments: there they would take the lines along that other programs show below them.
+    /// Notes carriage returns that end no line, also those in comments: there they would take the
+    /// lines along that other programs show below them.
     fn find_carriage_returns(&mut self, text: &str, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {

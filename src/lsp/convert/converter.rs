@@ -144,7 +144,8 @@ impl Converter<'_> {
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// A way out of a diagnostic, or of all of them. Values that are made up are selected, where the client can do that.
+    /// A way out of a diagnostic, or of all of them. Values that are made up are selected, where
+    /// the client can do that.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {

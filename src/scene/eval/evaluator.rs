@@ -148,8 +148,9 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// Writes a number as an angle, in both units. What holds `pi` or is at most pi is more likely in radians, anything else in
-    /// degrees; what is more than a turn in radians is surely none. Where that is not sure, the titles say what each comes to.
+    /// Writes a number as an angle, in both units. What holds `pi` or is at most pi is more likely
+    /// in radians, anything else in degrees; what is more than a turn in radians is surely none.
+    /// Where that is not sure, the titles say what each comes to.
     pub(super) fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);

@@ -134,7 +134,8 @@ impl<'s> Lowering<'s> {
             .at(tree.span, label)
     }
 
-    /// How a value of another type has to be written for a field, if that can be told, and whether that is sure.
+    /// How a value of another type has to be written for a field, if that can be told, and whether
+    /// that is sure.
     pub(super) fn converted(
         &self,
         row: &Field,

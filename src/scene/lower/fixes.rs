@@ -34,7 +34,8 @@ pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sourc
     })
 }
 
-/// Takes away what stands elsewhere, too: nothing is lost, unless a comment goes with it or stands in it.
+/// Takes away what stands elsewhere, too: nothing is lost, unless a comment goes with it or stands
+/// in it.
 pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
@@ -43,7 +44,8 @@ pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix 
 }
 
 impl Lowering<'_> {
-    /// Adds fields with made-up values at the end of a block that stands in the file: on its line, or on lines of their own.
+    /// Adds fields with made-up values at the end of a block that stands in the file: on its line,
+    /// or on lines of their own.
     pub(super) fn add_fields(
         &self,
         block: &Block<'_>,

@@ -184,8 +184,8 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
 }
 
-/// Whether a file is UTF-16, with its mark or without: what people write is mostly ASCII, of which every second byte is zero, and no
-/// other one.
+/// Whether a file is UTF-16, with its mark or without: what people write is mostly ASCII, of which
+/// every second byte is zero, and no other one.
 fn is_utf16(file: &Source) -> bool {
     const LOOKED_AT: usize = 256;
     let bytes = file.text().as_bytes();

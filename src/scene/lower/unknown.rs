@@ -205,7 +205,8 @@ impl<'s> Lowering<'s> {
         found
     }
 
-    /// How a value has to be written for a field, if it will do or can be made to, and whether that is sure.
+    /// How a value has to be written for a field, if it will do or can be made to, and whether that
+    /// is sure.
     fn fitting(
         &mut self,
         block: &Block<'s>,

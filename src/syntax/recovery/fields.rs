@@ -84,7 +84,8 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Whether a sign stands where the block should be closed: at the end of a line, and the next one begins an item.
+    /// Whether a sign stands where the block should be closed: at the end of a line, and the next
+    /// one begins an item.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1) && self.words.is_kind(self.word(1));
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)

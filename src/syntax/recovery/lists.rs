@@ -89,7 +89,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether the call of a function of another language starts here. It is a value on a new line, too.
+    /// Whether the call of a function of another language starts here. It is a value on a new line,
+    /// too.
     pub(super) fn is_foreign_call(&mut self) -> bool {
         self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
     }
@@ -216,7 +217,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// The names of parts, each with its `=`. In any other order than the usual one, nobody knows what is meant.
+    /// The names of parts, each with its `=`. In any other order than the usual one, nobody knows
+    /// what is meant.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {
             return;

@@ -9,8 +9,8 @@ use std::{
 
 use crate::{math::Real, tracer::object::Object};
 
-/// As many objects are kept as people write by hand and more. It is a prime number, so that objects in rows, whose indices often are a
-/// power of two or of ten apart, do not take each other's.
+/// As many objects are kept as people write by hand and more. It is a prime number, so that objects
+/// in rows, whose indices often are a power of two or of ten apart, do not take each other's.
 pub const KEPT: usize = 4093;
 
 /// Objects in one precision, each prepared when it is first asked for and kept, of many until another takes its place.

@@ -27,8 +27,7 @@ export function addressWith(key: string, value: string): string {
 export function takeToken(): string | null {
   const token = inAddress(TOKEN);
   if (token === null) return null;
-  const rest = pairs().filter(([key]) => key !== TOKEN).map(([key, value]) => `${key}=${value}`)
-    .join("&");
+  const rest = pairs().filter(([key]) => key !== TOKEN).map(pair => pair.join("=")).join("&");
   history.replaceState(history.state, "",
     location.pathname + location.search + (rest === "" ? "" : `#${rest}`));
   return token;

@@ -13,8 +13,7 @@ interface CodeAction {
   kind: string;
   diagnostics?: ServerDiagnostic[];
   edit: { changes?: Record<string, TextEdit[]> };
-  /** Where the made-up values stand in the text of the first edit. */
-  data?: { values: [number, number][] };
+  data?: { values: [number, number][] }; // made-up ones, in the text of the first edit
 }
 
 /** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
@@ -54,7 +53,6 @@ function isSame(one: ServerDiagnostic, other: ServerDiagnostic): boolean {
 function fix(editor: SceneEditor, action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit.changes?.[editor.uri] ?? [];
-  const [first] = edits;
   const [value] = action.data?.values ?? [];
   return {
     name: visible(action.title),
@@ -62,13 +60,11 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
       // The edits are for the text that was judged; a newer one is being judged now.
       if (view.state.doc !== doc) return;
       // A made-up value is selected, to type over. What is made up is ASCII.
-      const at = first === undefined ? 0 : editor.offset(first.range.start);
-      const selection = value && { anchor: at + value[0], head: at + value[1] };
-      view.dispatch({
-        changes: editor.changes(edits), userEvent: "input.fix",
-        ...(selection && { selection, scrollIntoView: true }),
-      });
-      if (selection) view.focus();
+      const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
+      const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
+      const changes = editor.changes(edits);
+      view.dispatch({ changes, userEvent: "input.fix", ...made, scrollIntoView: true });
+      if (made) view.focus();
     },
   };
 }

@@ -26,8 +26,7 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
-/** A carriage return that ends no line. */
-const LONE = /\r(?!\n)/;
+const LONE_CR = /\r(?!\n)/;
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
@@ -64,7 +63,7 @@ export class Files {
   get isUnsaved(): boolean {
     const { text } = this.editor;
     return this.opened && text !== this.untouched
-      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
+      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE_CR.test(this.seen));
   }
 
   /** The text with its file's ends of lines. */
@@ -123,7 +122,7 @@ export class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
+    if (LONE_CR.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
       + "which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
@@ -144,18 +143,16 @@ export class Files {
 
   async save(): Promise<void> {
     try {
-      if (this.isServed) await this.saveHosted();
-      else await this.saveLocal();
-    } catch (error) {
-      const { name, message } = error as Error;
-      if (name !== "AbortError") this.status.say(message, "warning");
-    }
+      if (!this.isServed) await this.saveLocal();
+      else if (this.isNew) this.askName();
+      else await this.saveAs(this.name);
+    } catch (error) { this.failed(error as Error); }
     this.show();
   }
 
-  private async saveHosted(): Promise<void> {
-    if (this.isNew) this.askName();
-    else await this.saveAs(this.name);
+  /** Says what kept a file from being saved or opened, unless that was the user. */
+  private failed({ name, message }: Error): void {
+    if (name !== "AbortError") this.status.say(message, "warning");
   }
 
   private async saveAs(name: string): Promise<void> {
@@ -240,10 +237,7 @@ export class Files {
         if (file !== undefined) void this.take(file, null);
       });
       input.click();
-    } catch (error) {
-      const { name, message } = error as Error;
-      if (name !== "AbortError") this.status.say(message, "warning");
-    }
+    } catch (error) { this.failed(error as Error); }
   }
 
   private async take(file: File, handle: FileHandle | null): Promise<void> {
@@ -328,15 +322,13 @@ function compared(a: string[], b: string[]): DifferenceLine[] {
 function changedLines(a: string[], b: string[]): DifferenceLine[] {
   const lines: DifferenceLine[] = [];
   const [n, m] = [a.length, b.length];
-  // lengths[i * (m + 1) + j] is that of the longest common subsequence of a from i on and b from j
-  // on.
+  // lengths[i * (m + 1) + j]: of the longest common subsequence of a from i on and b from j on.
   const isLong = n > MOST_LINES || m > MOST_LINES;
   const lengths = isLong ? new Uint16Array(0) : new Uint16Array((n + 1) * (m + 1));
   const at = (i: number, j: number) => lengths[i * (m + 1) + j] ?? 0;
-  if (!isLong) {
-    for (let i = n - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
-      a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
-  }
+  const rows = isLong ? 0 : n;
+  for (let i = rows - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
+    a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
   let [i, j] = [0, 0];
   while (i < n || j < m) {
     if (!isLong && i < n && j < m && a[i] === b[j]) {

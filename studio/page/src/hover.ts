@@ -23,9 +23,7 @@ export class Hover {
   }
 
   /** Something else may be seen where the pointer is. */
-  again(): void {
-    if (this.place !== null) void this.at(this.picture.toPicture(this.place));
-  }
+  again(): void { if (this.place !== null) void this.at(this.picture.toPicture(this.place)); }
 
   /** While one answer is awaited, only the newest place is remembered. */
   private async at(point: Point): Promise<void> {

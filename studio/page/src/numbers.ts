@@ -167,9 +167,7 @@ function createSlider(view: EditorView): TooltipView {
   return {
     dom,
     mount: adapt,
-    update: (update: ViewUpdate) => {
-      if (update.docChanged) adapt();
-    },
+    update: (update: ViewUpdate) => { if (update.docChanged) adapt(); },
   };
 }
 

@@ -9,8 +9,7 @@ const compartment = new Compartment();
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 
 function isDark(): boolean {
-  const chosen = remembered("theme");
-  return chosen === null ? systemIsDark.matches : chosen === "dark";
+  return (remembered("theme") ?? (systemIsDark.matches ? "dark" : "light")) === "dark";
 }
 
 /** The editor's part of the theme; all colours are variables of studio.css. */

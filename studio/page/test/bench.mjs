@@ -101,7 +101,8 @@ try {
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 
-  // A thousand spheres: from the hand to the coarse picture, and for how many keys, one each 120 ms, there is one before the next.
+  // A thousand spheres: from the hand to the coarse picture, and for how many keys, one each 120
+  // ms, there is one before the next.
   if (process.env.SITE === undefined) {
     const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
     writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);

@@ -1,4 +1,5 @@
-// What is written and not saved is not lost: by a reload, a crash of the host, another port, another program that saves the file.
+// What is written and not saved is not lost: by a reload, a crash of the host, another port,
+// another program that saves the file.
 
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";

@@ -1,4 +1,5 @@
-// Drags by a hand: a real pointer that is pressed, moved twelve times at a hand's pace, and released.
+// Drags by a hand: a real pointer that is pressed, moved twelve times at a hand's pace, and
+// released.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

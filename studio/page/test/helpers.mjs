@@ -1,5 +1,6 @@
-// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the path), CHROMIUM the browser. With DIST, the page's script and style
-// are those of that folder, so that the program need not be built anew for each change of them.
+// Starts the host and a browser for the tests. PINHOLE is the program (default: `pinhole` on the
+// path), CHROMIUM the browser. With DIST, the page's script and style are those of that folder, so
+// that the program need not be built anew for each change of them.
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";

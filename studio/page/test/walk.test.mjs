@@ -1,5 +1,5 @@
-// A random walk of hands' steps: whatever is done in whatever order, the picture is that of the text, and Undo leads back to the first text. STEPS is how many,
-// SEED where they begin.
+// A random walk of hands' steps: whatever is done in whatever order, the picture is that of the
+// text, and Undo leads back to the first text. STEPS is how many, SEED where they begin.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,5 +1,6 @@
-//! What safe fixes keep: every number, and every name or the known one that is near it. All that is new are keywords, units and
-//! punctuation. The words of a text are read here by a walk of its own, comments among them, so that none of them gets lost.
+//! What safe fixes keep: every number, and every name or the known one that is near it. All that is
+//! new are keywords, units and punctuation. The words of a text are read here by a walk of its own,
+//! comments among them, so that none of them gets lost.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -76,7 +77,8 @@ impl Words {
     }
 }
 
-/// How long the field's name is that a word starts with where the field's value follows, as in `radius2`.
+/// How long the field's name is that a word starts with where the field's value follows, as in
+/// `radius2`.
 fn glued(word: &str, text: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
@@ -226,7 +228,8 @@ fn of_names(before: &[String], after: &[String], joins: bool) -> (Vec<String>, V
     (names, new)
 }
 
-/// Texts with one to four slips, as many as are asked for, the same ones whenever they are asked for.
+/// Texts with one to four slips, as many as are asked for, the same ones whenever they are asked
+/// for.
 pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     let mut random = Random(1);
     for _ in 0..count {
@@ -238,7 +241,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// One slip: a piece of the text is taken away, written twice, put elsewhere or replaced, or something stands behind it.
+/// One slip: a piece of the text is taken away, written twice, put elsewhere or replaced, or
+/// something stands behind it.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",

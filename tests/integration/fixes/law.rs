@@ -1,5 +1,5 @@
-//! Safe fixes keep what the author wrote, whatever the text: slips made by a program in every example and fixture, and files of
-//! other programs and languages.
+//! Safe fixes keep what the author wrote, whatever the text: slips made by a program in every
+//! example and fixture, and files of other programs and languages.
 
 use std::{fs, path::Path};
 
@@ -15,7 +15,8 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Each file, each of its lines, and what is left of it behind each line: a file as a whole may be known at once.
+/// Each file, each of its lines, and what is left of it behind each line: a file as a whole may be
+/// known at once.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));

@@ -68,7 +68,8 @@ fn is_laid_out(text: &str) {
 
 /// Texts that once were not: fixes that take the same space away, a label in the middle of a sign,
 /// a parenthesis for each of two hundred fixes in one place, and a comment with empty lines. A
-/// comment in the middle of a hyphenated name, and functions of other languages and values on a new line.
+/// comment in the middle of a hyphenated name, and functions of other languages and values on a new
+/// line.
 #[test]
 fn what_was_found_stays_mended() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));
