@@ -26,7 +26,7 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
-const LONE_CR = /\r(?!\n)/;
+const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
@@ -63,7 +63,7 @@ export class Files {
   get isUnsaved(): boolean {
     const { text } = this.editor;
     return this.opened && text !== this.untouched
-      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE_CR.test(this.seen));
+      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
   }
 
   /** The text with its file's ends of lines. */
@@ -122,7 +122,7 @@ export class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE_CR.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
+    if (LONE.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
       + "which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
