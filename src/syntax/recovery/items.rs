@@ -321,8 +321,9 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if is_field(self) {
             self.body(&mut block, close);
-            // Where nothing closes it, it is not known where it ends.
-            fix = block.close.map(|close| {
+            // Where nothing closes it, or braces stand within, it is not known where it ends.
+            let is_flat = !self.written(block.span).contains('{');
+            fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));
                 Fix::new(title, [Edit::new(open, " {"), Edit::new(close, "}")])
             });
@@ -466,7 +467,10 @@ impl<'s> Recovery<'_, 's> {
             all = all.to(self.bump());
         }
         // Before anything but an item it may stand for another sign.
-        let is_sure = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
+        let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
+        // It may close a block that lacks its `{`.
+        let mut last = self.problems.iter().rev().take(8);
+        let is_sure = is_before_item && last.all(|found| found.code != "pinhole::unopened_block");
         let fix = is_sure.then(|| self.remove("remove this `}`", all));
         self.report(&say::STRAY_CLOSING, first, &["}"], fix);
     }
