@@ -245,7 +245,7 @@ impl<'s> Recovery<'_, 's> {
                 format!("take `{}` away", shorten(first.text)),
                 [Edit::new(before, "")],
             );
-            self.report(&say::BAD_HEAD, first.span, &[kind.text], fix);
+            self.report(&say::BAD_HEAD.safe_if(false), first.span, &[kind.text], fix);
             block = Block::empty(kind.span);
             block.kind = Some(kind);
             block.name = (!self.is(0, "{")).then(|| self.name());
