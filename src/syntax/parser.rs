@@ -1,11 +1,12 @@
 //! The parser: from a text to the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few kilobytes at a time, and
-//! the functions here make nodes of its pairs; they carry the names of the grammar's rules. Where pest stops, or where
-//! words show that something else was meant (a field that its block does not know), `recovery` reads that one item.
+//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few
+//! kilobytes at a time, and the functions here make nodes of its pairs; they carry the names of the
+//! grammar's rules. Where pest stops, or where words show that something else was meant (a field
+//! that its block does not know), `recovery` reads that one item.
 //!
-//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
-//! apart.
+//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a
+//! right text can be taken apart.
 
 use std::{
     ops::Range,
@@ -49,13 +50,16 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
+/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each
+/// of 256 levels of nesting.
 pub const STACK: usize = 64 << 20;
 
-/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
+/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte:
+/// most values are short, and there is one for each default.
 const SHALLOW: usize = 32;
 
-/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
+/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its
+/// pairs of a whole file would take much memory.
 pub const CHUNK: usize = 4096;
 
 /// Parses a file.
@@ -140,7 +144,8 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     }
 }
 
-/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
+/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and
+/// on every thread.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
@@ -163,7 +168,8 @@ pub struct TreeBuilder<'w, 's> {
     words: &'w Vocabulary<'s>,
     /// Where the slice that pest reads starts: its offsets count from there.
     base: usize,
-    /// Whether the item follows the grammar, but holds a field or a function that is not known, so that recovery should try it.
+    /// Whether the item follows the grammar, but holds a field or a function that is not known, so
+    /// that recovery should try it.
     doubtful: bool,
 }
 
@@ -179,7 +185,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items as far as they are right. Answers where they end, and whether that is where pest stopped.
+    /// Reads items as far as they are right. Answers where they end, and whether that is where pest
+    /// stopped.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -210,7 +217,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         (end, true)
     }
 
-    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the
+    /// name the kind.
     fn is_rest_of_value(&self, block: &Block<'_>, end: usize) -> bool {
         let (Some(kind), Some(name)) = (block.kind, block.name) else {
             return false;

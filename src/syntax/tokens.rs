@@ -1,15 +1,17 @@
 //! The lexer: from a text to its tokens.
 //!
-//! In: a text and an offset. Out: one token after the other, comments among them; what lies between two tokens is white
-//! space. It knows nothing of the grammar, so it reads any text: a character that starts no token is one by itself. The
-//! scan for comments, recovery and the editor read with it; the formatter walks the tree.
+//! In: a text and an offset. Out: one token after the other, comments among them; what lies between
+//! two tokens is white space. It knows nothing of the grammar, so it reads any text: a character
+//! that starts no token is one by itself. The scan for comments, recovery and the editor read with
+//! it; the formatter walks the tree.
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind {
     /// A word of ASCII letters, digits and `_` that does not start with a digit; `let` is one.
     Name,
-    /// What starts with a digit, or with a `.` and a digit, up to the end of the word: `2`, `1e-3`, `30deg`, `0x10`.
+    /// What starts with a digit, or with a `.` and a digit, up to the end of the word: `2`, `1e-3`,
+    /// `30deg`, `0x10`.
     Number,
     /// `#` and the word right behind it.
     Color,
@@ -150,8 +152,8 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Up to the mark that closes it in its line; where there is none, the word behind the mark. A comment may start within:
-    /// to the grammar these are no quotation marks.
+    /// Up to the mark that closes it in its line; where there is none, the word behind the mark. A
+    /// comment may start within: to the grammar these are no quotation marks.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);

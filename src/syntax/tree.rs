@@ -1,8 +1,8 @@
 //! The syntax tree.
 //!
-//! It says what was written and where, and nothing of what it means. Every token of a right file has its place in a node's
-//! span, so that a formatter can put the text together again from the tree and the comments. What could not be understood
-//! is `Bad`, and a problem was reported for it.
+//! It says what was written and where, and nothing of what it means. Every token of a right file
+//! has its place in a node's span, so that a formatter can put the text together again from the
+//! tree and the comments. What could not be understood is `Bad`, and a problem was reported for it.
 
 use crate::{math::Angle, source::Span};
 
@@ -186,16 +186,16 @@ pub enum ValueKind<'s> {
         /// What follows it.
         operand: Box<Value<'s>>,
     },
-    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from left to right. A chain
-    /// rather than a tree, so that a long sum is no deeper than a short one.
+    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from
+    /// left to right. A chain rather than a tree, so that a long sum is no deeper than a short one.
     Chain {
         /// The first value.
         first: Box<Value<'s>>,
         /// What is done to it, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A field's name without a value after it. It is for the next stage to report, which knows the fields' names and so
-    /// whether the value is missing or the name of a field.
+    /// A field's name without a value after it. It is for the next stage to report, which knows the
+    /// fields' names and so whether the value is missing or the name of a field.
     Missing,
     /// Something that was reported.
     Bad,

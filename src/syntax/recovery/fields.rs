@@ -74,8 +74,8 @@ impl<'s> Recovery<'_, 's> {
         self.within = outside;
     }
 
-    /// Whether something starts here that shows that the block's `}` was forgotten: an item at the start of a line that is
-    /// indented no more than the block.
+    /// Whether something starts here that shows that the block's `}` was forgotten: an item at the
+    /// start of a line that is indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block())

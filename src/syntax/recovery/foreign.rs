@@ -1,4 +1,5 @@
-//! What other languages write and this one has not: statements, comments by `#` and `--`, and whole files.
+//! What other languages write and this one has not: statements, comments by `#` and `--`, and whole
+//! files.
 
 use super::Recovery;
 use crate::{
@@ -23,7 +24,8 @@ pub(super) enum Place {
 }
 
 impl Recovery<'_, '_> {
-    /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands in braces behind it.
+    /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands
+    /// in braces behind it.
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
         self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
@@ -38,7 +40,8 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Passes over comments of other languages. They end with their line, or before the `}` of a block that was opened in it.
+    /// Passes over comments of other languages. They end with their line, or before the `}` of a
+    /// block that was opened in it.
     pub(super) fn comments(&mut self, place: Place) {
         while self.starts_comment(place) {
             let start = self.here().start;
@@ -87,7 +90,8 @@ impl Recovery<'_, '_> {
             && (place == Place::Start || (place == Place::Operator && is_remark))
     }
 
-    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the name of a colour.
+    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the
+    /// name of a colour.
     fn is_remark(&mut self) -> bool {
         let word = self.word(1);
         let is_lone_color = self.words.is_color(word) && !self.is_on_new_line(2);

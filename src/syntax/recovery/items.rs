@@ -216,7 +216,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// A line that starts with a name, as a rule: a block, whatever stands in its head, or something else.
+    /// A line that starts with a name, as a rule: a block, whatever stands in its head, or
+    /// something else.
     fn block_or_line(&mut self) {
         if self.is_head(0) {
             return self.block();
@@ -291,7 +292,8 @@ impl<'s> Recovery<'_, 's> {
         self.open_block(block);
     }
 
-    /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere Ball` and then fields.
+    /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere
+    /// Ball` and then fields.
     fn unopened_block(&mut self) -> bool {
         let Some(row) = schema::block(self.word(0)) else {
             return false;

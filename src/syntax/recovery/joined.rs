@@ -1,5 +1,5 @@
-//! Several values where one should stand: the parts of a list without parentheses, a product without its sign, a number with
-//! commas, or the value of a field without a name.
+//! Several values where one should stand: the parts of a list without parentheses, a product
+//! without its sign, a number with commas, or the value of a field without a name.
 
 use super::{Recovery, example, is_plain_number};
 use crate::{

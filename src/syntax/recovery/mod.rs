@@ -1,12 +1,14 @@
 //! Reads an item that does not follow the grammar.
 //!
-//! In: the text from the item's start. Out: nodes of what can be understood, and one problem for each slip. A reader by
-//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values`, `joined` and `lists`,
-//! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
+//! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
+//! each slip. A reader by recursive descent over the lexer's tokens: items stand in `items`, fields
+//! in `fields`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
+//! languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
-//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
-//! - A fix is offered where it is plain. A value with a slip is bad, as a rule, whether there is a fix or not, and nothing
-//!   that uses it is reported.
+//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
+//!   (`resync`).
+//! - A fix is offered where it is plain. A value with a slip is bad, as a rule, whether there is a
+//!   fix or not, and nothing that uses it is reported.
 //! - Where different slips are found in one value, none of their fixes is sure (`settle`).
 
 mod fields;
@@ -137,8 +139,9 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it ends, if that is a better
-    /// explanation: by fields that the block has, or by a comment or a function of another language.
+    /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it
+    /// ends, if that is a better explanation: by fields that the block has, or by a comment or a
+    /// function of another language.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.within.slips.values().map(Vec::len).sum::<usize>();
@@ -327,7 +330,8 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Going on.
 
-    /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a line.
+    /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a
+    /// line.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -397,7 +401,8 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Signs that are not needed, and those of comments in other languages: one report in a block for all of a kind.
+    // Signs that are not needed, and those of comments in other languages: one report in a block
+    // for all of a kind.
 
     /// Takes a `,` or `;` between fields or items. Before a value it may stand for something else.
     fn separator(&mut self) {

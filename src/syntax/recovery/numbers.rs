@@ -12,7 +12,8 @@ use crate::{
     },
 };
 
-/// What people write for a unit, how much of the right one it is, and that one: nothing for a length, which is in metres.
+/// What people write for a unit, how much of the right one it is, and that one: nothing for a
+/// length, which is in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -89,7 +90,8 @@ impl<'s> Recovery<'_, 's> {
             _ => "the units are `deg` and `rad`",
         };
         let text = scaled(digits, factor).filter(|_| fits);
-        // What is told about an angle, or a number, that stays the same number is not told only once this is mended.
+        // What is told about an angle, or a number, that stays the same number is not told only
+        // once this is mended.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => ValueKind::Angle {

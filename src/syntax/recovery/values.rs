@@ -146,7 +146,8 @@ impl<'s> Recovery<'_, 's> {
         loop {
             self.comments(Place::Operator);
             let written = self.word(0);
-            // An operator without a value before it may have been passed over: then its product goes on.
+            // An operator without a value before it may have been passed over: then its product
+            // goes on.
             let is_rest = left.kind == ValueKind::Bad && PRODUCT.contains(&written);
             if self.too_deep || !(is_rest || signs.contains(&written)) {
                 return left;
