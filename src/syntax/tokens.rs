@@ -70,9 +70,13 @@ impl<'s> Lexer<'s> {
 
     /// The first token at an offset or behind it that is no comment and can be seen.
     pub fn past_comments(text: &'s str, at: usize) -> Token {
-        let mut lexer = Self::new(text, at);
+        Self::new(text, at).seen_token()
+    }
+
+    /// The next token that is no comment and can be seen.
+    pub fn seen_token(&mut self) -> Token {
         loop {
-            let token = lexer.token();
+            let token = self.token();
             if !matches!(
                 token.kind,
                 TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace
@@ -142,9 +146,9 @@ impl<'s> Lexer<'s> {
             let is_digit = bytes.get(end + 1).is_some_and(u8::is_ascii_digit);
             let is_exponent = matches!(before, Some(b'e' | b'E')) && end > start && is_digit;
             match byte {
-                b'.' | b'_' => {}
+                b'.' => {}
                 b'+' | b'-' if is_exponent => {}
-                _ if byte.is_ascii_alphanumeric() => {}
+                _ if is_name_char(byte) => {}
                 _ => break,
             }
             end += 1;
@@ -204,14 +208,11 @@ pub fn is_color_code(digits: &str) -> bool {
 
 /// Whether a character cannot be seen and is no white space of the language.
 fn is_odd_space(c: char) -> bool {
-    let other = c.is_whitespace() && !matches!(c, ' ' | '\t' | '\r' | '\n');
-    let control = c.is_ascii_control() && !c.is_whitespace();
-    other
-        || control
-        || matches!(
-            c,
-            '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}' | '\u{AD}'
-        )
+    match c {
+        ' ' | '\t' | '\r' | '\n' => false,
+        '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}' | '\u{AD}' => true,
+        _ => c.is_whitespace() || c.is_ascii_control(),
+    }
 }
 
 /// The digits at the start of a number, up to its unit or whatever else follows them.

@@ -45,10 +45,8 @@ impl Recovery<'_, '_> {
     pub(super) fn comments(&mut self, place: Place) {
         while self.starts_comment(place) {
             let start = self.here().start;
-            let line = self.text.get(start..line_end(self.text, start));
-            let line = line.unwrap_or_default();
-            let before = self.text.get(..start).unwrap_or_default();
-            let before = before.rsplit('\n').next().unwrap_or_default();
+            let line = self.written(Span::new(self.id, start, line_end(self.text, start)));
+            let before = self.line_before(start);
             let kept = match before.matches('{').count() > before.matches('}').count() {
                 true => line.trim_end_matches([' ', '\t', '}']),
                 false => line,
@@ -57,12 +55,11 @@ impl Recovery<'_, '_> {
             let sign = if line.starts_with('#') { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
             // A comment with the right sign would take the brace, too.
-            match kept.len() < line.len() {
-                true => {
-                    let written = self.written(place);
-                    self.report(&say::COMMENT_SIGN, place, &[written, ""], None);
-                }
-                false => self.slip(place),
+            if kept.len() < line.len() {
+                let words = [self.written(place), ""];
+                self.report(&say::COMMENT_SIGN, place, &words, None);
+            } else {
+                self.slip(place);
             }
             self.seek(end);
         }
@@ -127,17 +124,10 @@ impl Recovery<'_, '_> {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');
-        let ink: String = text
-            .chars()
-            .filter(|c| !c.is_whitespace())
-            .take(5)
-            .collect();
-        let count = |marks: &str| {
-            marks
-                .split('|')
-                .map(|mark| text.matches(mark).count())
-                .sum::<usize>()
-        };
+        let ink = text.chars().filter(|c| !c.is_whitespace());
+        let ink: String = ink.take(5).collect();
+        let times = |mark: &str| text.matches(mark).count();
+        let count = |marks: &str| marks.split('|').map(times).sum::<usize>();
         let is_it = |row: &&(&str, &str, &str, usize, &str)| {
             row.1.split(' ').any(|start| ink.starts_with(start))
                 && count(row.2) >= row.3

@@ -120,13 +120,11 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Reads one item, or what stands in the place of one; answers where it ends.
     pub fn item(&mut self, start: usize) -> usize {
-        if !self.is_ours {
-            self.is_ours = !self.foreign_file();
-            if !self.is_ours {
-                self.read_to = self.text.len();
-                return self.read_to;
-            }
+        if !self.is_ours && self.foreign_file() {
+            self.read_to = self.text.len();
+            return self.read_to;
         }
+        self.is_ours = true;
         self.seek(start);
         self.any_item();
         if self.last_end == start {
@@ -144,8 +142,6 @@ impl<'w, 's> Recovery<'w, 's> {
     /// function of another language.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
-        let slips = |this: &Self| this.within.slips.values().map(Vec::len).sum::<usize>();
-        let slips_before = slips(self);
         let end = self.item(start);
         let is_better = match self.items.get(items..) {
             Some([Item::Block(block)]) => {
@@ -155,8 +151,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                let is_new = slips(self) > slips_before || self.problems.len() > problems;
-                is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
+                new.all(|problem| problem.code == "pinhole::foreign_function")
             }
             _ => false,
         };
@@ -209,14 +204,7 @@ impl<'w, 's> Recovery<'w, 's> {
     /// The token that is so many behind the next one.
     fn peek(&mut self, ahead: usize) -> Token {
         while self.tokens.len() <= self.next + ahead {
-            let token = self.lexer.token();
-            let is_seen = !matches!(
-                token.kind,
-                TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace
-            );
-            if is_seen {
-                self.tokens.push(token);
-            }
+            self.tokens.push(self.lexer.seen_token());
         }
         let end = self.text.len();
         let token = self.tokens.get(self.next + ahead).copied();
@@ -240,6 +228,12 @@ impl<'w, 's> Recovery<'w, 's> {
 
     fn is(&mut self, ahead: usize, word: &str) -> bool {
         self.word(ahead) == word
+    }
+
+    /// The text of what lies before a place, in the line of the place.
+    fn line_before(&self, at: usize) -> &'s str {
+        let before = self.text.get(..at).unwrap_or_default();
+        before.rsplit('\n').next().unwrap_or_default()
     }
 
     fn is_name(&mut self, ahead: usize) -> bool {
@@ -362,14 +356,8 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Problems.
 
-    fn report(
-        &mut self,
-        message: &Message,
-        span: Span,
-        words: &[&str],
-        fix: impl Into<Option<Fix>>,
-    ) {
-        self.problems.push(message.at(span, words, fix));
+    fn report(&mut self, said: &Message, at: Span, words: &[&str], fix: impl Into<Option<Fix>>) {
+        self.problems.push(said.at(at, words, fix));
     }
 
     fn unexpected(&mut self, expected: &str, help: &str) {
@@ -390,14 +378,9 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Where different slips are found since so many, none of their fixes is sure.
     fn settle(&mut self, told: usize) {
         let problems = self.problems.get_mut(told..).unwrap_or_default();
-        let is_same = problems.windows(2).all(|pair| match pair {
-            [first, second] => first.code == second.code,
-            _ => true,
-        });
-        if !is_same {
-            problems
-                .iter_mut()
-                .for_each(|problem| problem.fixes.clear());
+        if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
+            let fixes = problems.iter_mut().map(|problem| &mut problem.fixes);
+            fixes.for_each(Vec::clear);
         }
     }
 
