@@ -84,7 +84,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
 /// What is said besides of programs whose z points away from the viewer.
 pub const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
+/// Files of other programs: how they are called, how they start, what marks them and how often at
+/// least, and what they have not.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
     ("XML", "<?xml", "<", 1, ""),
     ("XML", "<", "</", 1, ""),
