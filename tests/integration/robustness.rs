@@ -112,7 +112,7 @@ fn one_thing_many_times(effort: Effort) {
     for block in BLOCKS {
         for field in block.field_names() {
             let piece = format!("x{field} 1\n");
-            let within = piece.repeat(length / piece.len());
+            let within = piece.repeat(4 * length / piece.len());
             read(format!("{CAMERA} {} {{ {within} }}", block.name));
         }
     }
