@@ -23,13 +23,14 @@ use tokio::{runtime::Handle, sync::watch, time::timeout};
 use super::{
     access::{NotAdmitted, Pass},
     download,
+    draft::{Kept, Unsaved},
     scene_file::{NotSaved, SceneFile, lock},
 };
 use crate::{
     lsp::{
         Refusal, Server,
         messages::{self, Malformed},
-        response,
+        optional, response,
     },
     threads,
 };
@@ -204,7 +205,7 @@ impl Conversation<'_> {
             "saved": file.path().is_some(),
         });
         if let Some(draft) = draft {
-            params["draft"] = draft;
+            params["draft"] = json!(draft);
         }
         drop(file);
         self.say(vec![
@@ -257,8 +258,13 @@ impl Conversation<'_> {
                 }
             }
             ("studio/draft", text) => {
-                let kept = lock(self.file).keep_draft(text, field("base"));
-                let kept = kept.map_err(Refusal::failed);
+                let newest = text.map(|text| Unsaved::new(text, field("base")));
+                let keep = |earlier: Option<Vec<Unsaved>>| {
+                    let texts = newest.into_iter().chain(earlier.into_iter().flatten());
+                    let kept = lock(self.file).keep_draft(Kept::new(texts).as_ref());
+                    kept.map_err(Refusal::failed)
+                };
+                let kept = optional(&params, "earlier").and_then(keep);
                 kept.map(|()| json!({ "ok": true }))
             }
             ("studio/alive", _) => Ok(json!({ "ok": true })),

@@ -80,7 +80,7 @@ const hover = new Hover(editor, picture, overlays, status);
 outlines.onRest = () => hover.again();
 const files = new Files(editor, connection, status, isServed);
 const drafts = new Drafts(editor, connection, files, isServed);
-files.onSaved = () => drafts.changed();
+files.onSaved = () => void drafts.keep();
 
 function changed(): void {
   if (editor.uri === "") return;

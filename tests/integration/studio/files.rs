@@ -1,6 +1,6 @@
 //! The scene's file: read, saved, changed by others, and no other file.
 
-use std::{fs, net::TcpListener};
+use std::{fs, iter, net::TcpListener};
 
 use pinhole::scene::SMALLEST as SCENE;
 use serde_json::{Value, json};
@@ -304,7 +304,8 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
     }
 }
 
-/// What is not saved survives the program, and is gone when it is saved or forgotten.
+/// What is not saved survives the program, and is gone when it is saved or forgotten; what earlier
+/// pages have written stays until it is forgotten itself.
 #[test]
 fn a_draft_outlives_the_program() {
     let folder = Folder::with([("a.scn", SCENE)]);
@@ -314,25 +315,70 @@ fn a_draft_outlives_the_program() {
         command.env("LOCALAPPDATA", folder.path("state"));
         Studio::start(command)
     };
-    let draft = |text: Value| json!({ "text": text, "base": SCENE });
-    for end in ["saved", "forgotten"] {
+    let text = |text: &str, time: u64| json!({ "text": text, "base": SCENE, "time": time });
+    let offered = |studio: &Studio| {
+        let mut draft = studio.page().1["draft"].take();
+        let earlier = draft["earlier"].take();
+        let earlier = earlier.as_array().cloned().unwrap_or_default();
+        let all = iter::once(draft).chain(earlier);
+        let texts = all.map(|it| it["text"].as_str().unwrap_or_default().to_owned());
+        texts.collect::<Vec<_>>().join(" ")
+    };
+    let kept = [
+        text("// 1", 1),
+        text("// 2", 2),
+        text("// 3", 3),
+        text("// 4", 4),
+    ];
+    // What a page keeps, what a later one is offered, and what is left when that has saved.
+    let cases = [
+        (json!({ "text": "// 0", "base": SCENE }), "// 0", ""),
+        (
+            json!({ "text": "// 0", "earlier": kept[..2] }),
+            "// 0 // 1 // 2",
+            "// 1 // 2",
+        ),
+        (
+            json!({ "text": null, "earlier": kept[..2] }),
+            "// 1 // 2",
+            "// 2",
+        ),
+        (
+            json!({ "text": "// 0", "earlier": kept }),
+            "// 0 // 1 // 2 // 3",
+            "// 1 // 2 // 3",
+        ),
+        // What the file holds is not offered.
+        (
+            json!({ "text": SCENE, "earlier": kept[..1] }),
+            "// 1",
+            "// 1",
+        ),
+        (json!({ "text": SCENE }), "", ""),
+        (json!({ "text": null, "earlier": null }), "", ""),
+    ];
+    for (draft, later, left) in cases {
         let mut first = start();
         let (mut page, found) = first.page();
         assert_eq!(found.get("draft"), None);
-        assert_eq!(page.ask("studio/draft", draft(json!("// mine"))), saved());
+        assert_eq!(page.ask("studio/draft", draft.clone()), saved());
         first.child.kill().unwrap();
         let second = start();
+        assert_eq!(offered(&second), later, "{draft}");
         let (mut page, mut found) = second.page();
-        let mut kept = found["draft"].take();
-        assert!(kept["time"].take().as_u64() > Some(1_700_000_000));
-        assert_eq!([&kept["text"], &kept["base"]], ["// mine", SCENE]);
-        match end {
-            "saved" => {
-                assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
-                assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
-            }
-            _ => assert_eq!(page.ask("studio/draft", draft(Value::Null)), saved()),
-        }
-        assert_eq!(second.page().1.get("draft"), None);
+        let newest = found["draft"]["time"].take();
+        assert!(later == "" || newest.as_u64() > Some(0), "{draft}");
+        assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
+        assert_eq!(offered(&second), left, "{draft}");
+        assert_eq!(page.ask("studio/draft", json!({ "text": null })), saved());
+        assert_eq!(offered(&second), "", "{draft}");
+        assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
     }
+    let studio = start();
+    let (mut page, _) = studio.page();
+    let params = json!({ "text": "// 0", "earlier": ["// 1"] });
+    assert_eq!(
+        page.respond("studio/draft", params)["error"]["code"],
+        -32602
+    );
 }
