@@ -11,6 +11,7 @@ use crate::{
     files::{self, Original, Purpose},
     preview::{self, Content, Latest},
     scene::SMALLEST,
+    source::Source,
 };
 
 /// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
@@ -219,8 +220,13 @@ impl SceneFile {
 }
 
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
-    let no_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
-    String::from_utf8(bytes?).map_err(no_text)
+    let bytes = bytes?;
+    let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
+    // Half of the bytes of such a text are zero.
+    if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
+        return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
+    }
+    String::from_utf8(bytes).map_err(|_| no_text("it is not a text in UTF-8"))
 }
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.

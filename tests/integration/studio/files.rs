@@ -96,6 +96,40 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
+/// Each way of protecting a file that this system and user have: whoever is root has the last alone.
+#[cfg(unix)]
+#[test]
+fn a_save_that_is_not_allowed_names_the_file_and_a_way_out() {
+    use std::process::Command;
+
+    let way_out = "allow it to be changed, or download the scene";
+    let permissions = "its permissions, or those of its folder, do not allow that";
+    let system = "the system protects it from being changed";
+    for (protect, release, why) in [
+        ("chmod 444", "chmod 644", permissions),
+        ("chattr +i", "chattr -i", system),
+    ] {
+        let (folder, studio) = studio();
+        let path = folder.path("a.scn");
+        let run = |command: &str| {
+            let mut words = command.split(' ');
+            let mut program = Command::new(words.next().unwrap_or_default());
+            let status = program.args(words).arg(&path).output();
+            status.is_ok_and(|output| output.status.success())
+        };
+        let is_protected = run(protect) && fs::File::options().write(true).open(&path).is_err();
+        let (mut page, _) = studio.page();
+        let answer = is_protected.then(|| save(&mut page, "// mine", Some(SCENE)));
+        run(release);
+        let Some(mut answer) = answer else { continue };
+        let message = format!("a.scn is not saved: {why}; {way_out}");
+        assert_eq!(answer["error"]["message"].take(), message, "{protect}");
+        assert_eq!(folder.text("a.scn"), SCENE);
+        // Once it is allowed, it is saved.
+        assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], saved());
+    }
+}
+
 #[test]
 fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let outer = Folder::with([("inner/there.scn", "// there")]);
@@ -180,6 +214,12 @@ fn a_scene_that_becomes_a_pipe_is_told_and_holds_nothing_up() {
 fn what_cannot_be_edited_is_told_at_once() {
     let folder = Folder::with([("a.scn", SCENE)]);
     folder.write("bytes.scn", b"\xff");
+    let wide = |mark: &str, text: &str| -> Vec<u8> {
+        let units = mark.encode_utf16().chain(text.encode_utf16());
+        units.flat_map(u16::to_le_bytes).collect()
+    };
+    folder.write("marked.scn", wide("\u{feff}", SCENE));
+    folder.write("wide.scn", wide("", SCENE));
     assert_eq!(folder.run("render a.scn --crop 0,0,1,1").status, 0);
     let taken = TcpListener::bind(("127.0.0.1", 0)).unwrap();
     let port = taken.local_addr().unwrap().port();
@@ -191,6 +231,14 @@ fn what_cannot_be_edited_is_told_at_once() {
         (
             "bytes.scn",
             "cannot read bytes.scn: it is not a text in UTF-8",
+        ),
+        (
+            "marked.scn",
+            "cannot read marked.scn: it is UTF-16, not UTF-8: save it as UTF-8",
+        ),
+        (
+            "wide.scn",
+            "cannot read wide.scn: it is UTF-16, not UTF-8: save it as UTF-8",
         ),
         (
             &format!("a.scn --port {port}"),
