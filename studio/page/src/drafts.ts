@@ -25,7 +25,7 @@ export class Drafts {
   private isKept = false;
   /** What is offered and not answered yet, the newest first. */
   private unanswered: Draft[] = [];
-  private id = newId();
+  private id = `${Date.now()} ${Math.random()}`;
   private readonly bar = byId("draft-bar");
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
@@ -106,8 +106,6 @@ export class Drafts {
     this.editor.view.focus();
   }
 }
-
-function newId(): string { return `${Date.now()} ${Math.random()}`; }
 
 /** Does something with the drafts in this browser. */
 async function inStore<T>(act: (store: IDBObjectStore) => IDBRequest<T>): Promise<T> {
