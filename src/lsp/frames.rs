@@ -16,7 +16,7 @@ use super::{
 use crate::{
     area::Area,
     film,
-    render::{SLICE, Slices, work},
+    render::{SLICE, Slices, pixel_work},
     sampling::Sampling,
     scene::{Count, Method, Sampler},
 };
@@ -124,7 +124,7 @@ impl Frame {
             ..own
         };
         let sampling = Sampling::new(&samples.map_or(own, regular), width, height);
-        let work = work(&sampling);
+        let work = pixel_work(&sampling);
         if work > SLICE {
             let message = format!(
                 "{work} samples a pixel take too long for a frame; at most {SLICE} can be asked for, by `samples`"

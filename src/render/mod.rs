@@ -35,7 +35,7 @@ use crate::{
 pub use self::{
     exact::{Exact, render_exact, render_numbers},
     sampled::render,
-    slices::{SLICE, Slices, work},
+    slices::{SLICE, Slices, pixel_work},
 };
 
 /// How a render is watched, and by how many it is done.

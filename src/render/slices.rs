@@ -40,7 +40,7 @@ impl<P: Pixel> Slices<P> {
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
         // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of
         // one.
-        let pixels = (SLICE / work(&sampling)).max(1);
+        let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
             sampling,
@@ -90,7 +90,7 @@ impl<P: Pixel> Slices<P> {
 }
 
 /// How many samples a pixel takes, or as long as how many.
-pub fn work(sampling: &Sampling) -> u64 {
+pub fn pixel_work(sampling: &Sampling) -> u64 {
     match sampling.is_exact() {
         true => EXACT,
         false => sampling.samples_per_pixel().max(1),

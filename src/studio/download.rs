@@ -70,27 +70,21 @@ impl Sliced {
     ///
     /// # Errors
     ///
-    /// The answer to the request, if there will be no file.
-    pub fn new(request: Request) -> Result<Self, Message> {
-        let Request { id, method, params } = request;
-        let begin = || {
-            if method == EXR {
+    /// Why there will be no file.
+    pub fn new(request: &Request) -> Result<Self, Refusal> {
+        unharmed(|| {
+            if request.method == EXR {
                 return Err(Refusal::failed("no EXR is written here"));
             }
-            let (scene, text) = scene(&params)?;
+            let (scene, text) = scene(&request.params)?;
             let size = [scene.image.width, scene.image.height];
-            let slices = Slices::new(sampling(&scene), size).map_err(Refusal::failed)?;
-            Ok((World::new(&scene), text, slices))
-        };
-        match unharmed(begin) {
-            Err(refusal) => Err(response(id, Err(refusal))),
-            Ok((world, text, slices)) => Ok(Self {
-                request: id,
+            Ok(Self {
+                request: request.id.clone(),
                 text,
-                world,
-                slices,
-            }),
-        }
+                world: World::new(&scene),
+                slices: Slices::new(sampling(&scene), size).map_err(Refusal::failed)?,
+            })
+        })
     }
 
     /// Makes a slice. Returns what is to be said of it, and whether that is the answer.

@@ -42,15 +42,17 @@ impl Engine {
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if download::is_asked_for(&request) => {
-                if self.download.is_some() {
-                    let why = Refusal::failed("another picture is being made");
-                    return texts(vec![response(request.id, Err(why))]);
+                let begun = match self.download {
+                    Some(_) => Err(Refusal::failed("another picture is being made")),
+                    None => Sliced::new(&request),
+                };
+                match begun {
+                    Ok(download) => {
+                        self.download = Some(download);
+                        Vec::new()
+                    }
+                    Err(refusal) => texts(vec![response(request.id, Err(refusal))]),
                 }
-                match Sliced::new(request) {
-                    Ok(download) => self.download = Some(download),
-                    Err(answer) => return texts(vec![answer]),
-                }
-                Vec::new()
             }
             Ok(message) => {
                 let mut said = Vec::from_iter(self.cancelled(&message));

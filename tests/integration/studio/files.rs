@@ -415,7 +415,7 @@ fn a_draft_outlives_the_program() {
         assert_eq!(offered(&second), later, "{draft}");
         let (mut page, mut found) = second.page();
         let newest = found["draft"]["time"].take();
-        assert!(later == "" || newest.as_u64() > Some(0), "{draft}");
+        assert!(later.is_empty() || newest.as_u64() > Some(0), "{draft}");
         assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
         assert_eq!(offered(&second), left, "{draft}");
         assert_eq!(page.ask("studio/draft", json!({ "text": null })), saved());
