@@ -37,8 +37,9 @@ const MOST_LINES = 3000;
 export class Files {
   name = "scene.scn";
   onSaved: () => void = () => {};
-  /** What the file held when it was last seen; null where there was none. */
-  seen: string | null = null;
+  /** What the page's text was made from: Save asks if the file holds something else. */
+  base: string | null = null;
+  private held: string | null = null;
   /** Whether the file has gone since. */
   private isGone = false;
   private handle: FileHandle | null = null;
@@ -66,12 +67,16 @@ export class Files {
       && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
   }
 
+  /** What the file held when it was last seen; null where there was none. */
+  get seen(): string | null { return this.held; }
+  private set seen(text: string | null) { this.held = this.base = text; }
+
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
 
-  /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
+  /** Puts a draft in place. */
   restore(draft: Draft): void {
-    if (this.isServed && this.seen !== null) this.seen = draft.base;
+    if (this.seen !== null) this.base = draft.base;
     this.editor.replace(draft.text);
     this.show();
   }
@@ -158,7 +163,7 @@ export class Files {
   private async saveAs(name: string): Promise<void> {
     if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
+    const about = { text, base: this.isGone ? null : this.base, ...(this.isNew ? { name } : {}) };
     const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await this.connection.request<Saved>("studio/save", about);
