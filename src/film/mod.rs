@@ -14,6 +14,7 @@ mod memory;
 mod picture;
 mod pixels;
 mod png;
+mod pnm;
 mod read;
 mod srgb;
 
@@ -30,6 +31,6 @@ pub use self::{
     picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
     pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    read::{is_picture, read_picture, read_picture_up_to},
+    read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
     srgb::Encoder,
 };
