@@ -11,6 +11,8 @@ mod exr;
 mod jpeg;
 mod mean;
 mod memory;
+#[cfg(feature = "cli")]
+mod part;
 mod picture;
 mod pixels;
 mod png;
@@ -20,6 +22,8 @@ mod srgb;
 
 #[cfg(any(feature = "cli", feature = "report"))]
 pub use self::embed::{data_uri, reduced};
+#[cfg(feature = "cli")]
+pub use self::part::place_of_part;
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,

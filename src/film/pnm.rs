@@ -120,7 +120,13 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     };
     let length = if maxval < 256 { 1 } else { 2 };
     check_size([width, height], length, limit)?;
-    let [width, height] = [width, height].map(|side| side as u32);
+    let (Ok(width), Ok(height)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(Unreadable::Large {
+            width,
+            height,
+            limit,
+        });
+    };
     let channels: usize = if matches!(kind, 3 | 6) { 3 } else { 1 };
     let whole = 2 * channels + size_of::<[f64; 3]>();
     memory::check(width, height, whole as u64)?;
