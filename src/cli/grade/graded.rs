@@ -92,6 +92,11 @@ impl Judged {
         self.fields.get("rest")?.as_f64()
     }
 
+    /// Whether it carries the text that Pinhole writes into its pictures.
+    pub fn is_ours(&self) -> bool {
+        self.fields.get("rendered_by_pinhole") == Some(&Value::Bool(true))
+    }
+
     /// Whether the search for mistakes was ended by its bound.
     pub fn is_limited(&self) -> bool {
         self.fields.get("limited") == Some(&Value::Bool(true))

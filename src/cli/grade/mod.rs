@@ -44,7 +44,7 @@ use super::{
     Status, Trouble,
     args::{GradeArgs, GradeFormat},
     diff,
-    input::{Input, not_written, shown},
+    input::{Input, check_standard, not_written, shown},
     interrupt::Interrupt,
     judge, output, progress,
 };
@@ -115,7 +115,9 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
         args.worksheet.as_ref(),
     ];
     let own: Vec<&Path> = own.into_iter().flatten().map(AsRef::as_ref).collect();
-    super::input::check_standard(&[&[args.scene.clone()], &args.pictures[..]].concat())?;
+    let mut read = args.pictures.clone();
+    read.push(args.scene.clone());
+    check_standard(&read)?;
     let class = Class::read(&args.pictures, &own)?;
     if class.students.is_empty() {
         return Err(class::nobody(&args.pictures));
@@ -249,13 +251,16 @@ fn mark_equal(graded: &mut [Graded]) {
     }
 }
 
-/// Each student by himself, on as many threads as there are processors, and the exact picture's file if there will be a page.
+/// What is said of each student, and the exact picture's file if there will be a page.
+type Answers = (Vec<Graded>, Vec<u8>);
+
+/// Each student by himself, on as many threads as there are processors.
 fn graded(
     args: &GradeArgs,
     scene: &Scene,
     class: &Class,
     cancel: &AtomicBool,
-) -> Result<Result<(Vec<Graded>, Vec<u8>), RenderError>, rayon::ThreadPoolBuildError> {
+) -> Result<Result<Answers, RenderError>, rayon::ThreadPoolBuildError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let processors = || thread::available_parallelism().map_or(1, NonZero::get);
     let threads = args.threads.count().map_or_else(processors, NonZero::get);

@@ -192,7 +192,7 @@ fn verdict(one: &Graded) -> String {
         if let Some(warning) = judged.warning {
             html += &format!("<p>Of the file: {}.</p>", escaped(warning));
         }
-        if judged.fields.get("rendered_by_pinhole") == Some(&true.into()) {
+        if judged.is_ours() {
             html +=
                 "<p class=\"mark\">It carries the text that Pinhole writes into its pictures.</p>";
         }

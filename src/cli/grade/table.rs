@@ -2,7 +2,7 @@
 
 use std::iter;
 
-use super::graded::{Finding, Graded, percent};
+use super::graded::{Finding, Graded, Judged, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
 
 /// Its cells: name, error, samples.
@@ -32,10 +32,8 @@ pub fn table(graded: &[Graded]) -> String {
     let row = |one: &Graded| {
         let [error, samples] = figures(one);
         let mut verdict = one.line();
-        if let Ok(judged) = one.best() {
-            if judged.fields.get("rendered_by_pinhole") == Some(&true.into()) {
-                verdict += " (rendered by Pinhole)";
-            }
+        if one.best().is_ok_and(Judged::is_ours) {
+            verdict += " (rendered by Pinhole)";
         }
         if let Some(score) = one.score {
             verdict += &format!("; {} points", short(score));
