@@ -9,11 +9,18 @@ const MOST_COMPARED: u64 = 100_000_000;
 /// Share of the usual difference that is left where a part lies; sampling noise leaves less.
 const LEFT: f64 = 0.2;
 
+/// Minimum share of the whole picture: a smaller part looks alike in too many places.
+const LEAST_SHARE: f64 = 0.05;
+
 /// The place in a whole picture where a part of it differs far less than elsewhere, if there is one.
 pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     let area = Area::whole(part.width(), part.height());
     let columns = whole.width().checked_sub(area.width)? + 1;
     let rows = whole.height().checked_sub(area.height)? + 1;
+    let all = Area::whole(whole.width(), whole.height());
+    if (area.pixels() as f64) < LEAST_SHARE * all.pixels() as f64 {
+        return None;
+    }
     let places = u64::from(columns) * u64::from(rows);
     let compared = (MOST_COMPARED / places).clamp(16, 400).min(area.pixels());
     // Every so many pixels one, with a number that no width is a multiple of in all rows.
