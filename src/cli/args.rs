@@ -299,6 +299,9 @@ pub struct DiffArgs {
     /// nothing, always comes on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
+    /// The part of the scene that A shows, where it does not say so itself
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Area>,
     /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance implies it
     #[arg(long)]
     pub strict: bool,
@@ -317,21 +320,56 @@ pub struct DiffArgs {
 pub struct GradeArgs {
     /// The scene: a .scn file, or a PNG that Pinhole wrote
     pub scene: PathBuf,
-    /// The pictures, or folders of them
+    /// The pictures, or folders or zip files with a folder or a file a student, as Moodle, Gradescope and GitHub Classroom hand
+    /// them out
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing, and keeps
+    /// The folder for index.html, its pictures, grade.csv and grade.jsonl; it is made if it is missing, and keeps
     /// a list `.pinhole` of what was made there: any other file in the way is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of several the newest is
+    /// [default: all that are named as pictures are]
+    #[arg(long, value_name = "GLOB")]
+    pub picture: Option<String>,
+    /// The part of the scene that pictures of its size show, where they do not say it themselves
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Area>,
+    /// A JSON file that says what a right picture gets and what each mistake takes off
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Moodle's worksheet of grades, to be filled in by --format moodle
+    #[arg(long, value_name = "FILE")]
+    pub worksheet: Option<PathBuf>,
+    /// How a column of the worksheet is called there, such as `Grade=Bewertung`; repeatable
+    #[arg(long, value_name = "COLUMN=HEADING")]
+    pub columns: Vec<String>,
     #[command(flatten)]
     pub large: LargeArgs,
     #[command(flatten)]
     pub overrides: Overrides,
     #[command(flatten)]
     pub threads: ThreadArgs,
-    #[command(flatten)]
-    pub format: FormatArgs,
+    /// For people, on standard error, or for programs, on standard output
+    #[arg(long, value_enum, default_value_t = GradeFormat::Human)]
+    pub format: GradeFormat,
+}
+
+/// For whom a class is graded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GradeFormat {
+    /// Text for people
+    Human,
+    /// JSON for programs, a line a student
+    Json,
+    /// A table for other programs
+    Csv,
+    /// JUnit XML, as systems of continuous integration show it
+    Junit,
+    /// Gradescope's results.json: of one student on standard output, of several in DIR/STUDENT/
+    Gradescope,
+    /// Moodle's worksheet, filled in: on standard output, or in DIR
+    Moodle,
 }
 
 /// Arguments of `explain`.

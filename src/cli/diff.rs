@@ -93,7 +93,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let Some(scene) = input.scene().scene else {
         return Ok(Status::SceneErrors);
     };
-    let part = judge::part(&a, &scene)
+    let part = judge::part(&a, &scene, args.crop)
         .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
     let reference = progress::watched(part.pixels(), |done| {
         let control = Control {
@@ -229,7 +229,7 @@ struct Report {
 impl Report {
     fn print(&self, format: Format) -> Result<(), Trouble> {
         match format {
-            Format::Human => output::to_people(&self.human()),
+            Format::Human => output::answer(&self.human())?,
             Format::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,
         }
         Ok(())

@@ -27,8 +27,8 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// So much of a picture is read: more than enough for what may stand before its pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// So many bytes of a file say whether it is a picture.
-const START: u64 = 64;
+/// So many bytes of a file say whether it is a picture, also after a program's other words.
+const START: u64 = 4096;
 
 /// What a scene is read from.
 pub struct Input {
@@ -230,7 +230,8 @@ pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compar
     let (mut from, length) = opened(path)?;
     let mut start = Vec::new();
     from.by_ref().take(START).read_to_end(&mut start)?;
-    let is_picture = film::is_picture(&start);
+    let is_picture = film::is_picture(&start)
+        || matches!(most, Most::Start) && film::is_picture_behind_lines(&start);
     let limit = match (is_picture, most) {
         (true, _) => large.file_limit(),
         (false, Most::Scene) => SCENE_LIMIT,

@@ -10,8 +10,6 @@ mod difference;
 mod explain;
 mod fmt;
 mod grade;
-mod grade_page;
-mod graded;
 mod help;
 mod input;
 mod inspect;
@@ -33,7 +31,6 @@ mod show;
 mod speed;
 #[cfg(feature = "studio")]
 mod studio;
-mod thumbnails;
 mod unified;
 #[cfg(feature = "preview")]
 mod watch;

@@ -48,6 +48,16 @@ pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
+/// Writes what a command was called for to standard error. A reader that has gone away has had enough, as one of standard output.
+pub fn answer(text: &str) -> Result<(), Trouble> {
+    match io::stderr().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Trouble(format!("cannot write to standard error: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Says what kept a command from its work.
 pub fn error(message: &dyn fmt::Display) {
     to_people(&worded_error(message));

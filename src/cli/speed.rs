@@ -80,7 +80,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         };
         if args.format.format == Format::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
-            output::to_people(&format!("{gap}{}", speed::text(&found)));
+            output::answer(&format!("{gap}{}", speed::text(&found)))?;
         }
         measured.push(found);
         if interrupt.pressed() {

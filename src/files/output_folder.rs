@@ -97,7 +97,7 @@ impl OutputFolder {
     ///
     /// A file in the way, which is known before the first one is written, unless another program
     /// puts it there meanwhile; or what kept one from being written. Those after it are missing.
-    pub fn write(&mut self, files: &[(String, String)]) -> Result<(), NotWritten> {
+    pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
         for (name, _) in files {
             self.check(name)?;
         }
@@ -105,10 +105,10 @@ impl OutputFolder {
         // Wherever this process is ended, the list has what each file holds by then.
         for (name, text) in files {
             let hashes = self.made.entry(name.clone()).or_default();
-            hashes.push(hash(text.as_bytes()));
+            hashes.push(hash(text.as_ref()));
         }
         if self.made != before {
-            self.write_one(LIST, &self.list())?;
+            self.write_one(LIST, self.list().as_bytes())?;
         }
         for (name, text) in files {
             // Another program may have put something there while those before it were written.
@@ -119,19 +119,19 @@ impl OutputFolder {
                     error,
                 })?;
             }
-            self.write_one(name, text)?;
+            self.write_one(name, text.as_ref())?;
         }
         for (name, text) in files {
-            self.made.insert(name.clone(), vec![hash(text.as_bytes())]);
+            self.made.insert(name.clone(), vec![hash(text.as_ref())]);
         }
-        self.write_one(LIST, &self.list())
+        self.write_one(LIST, self.list().as_bytes())
     }
 
-    fn write_one(&self, name: &str, text: &str) -> Result<(), NotWritten> {
+    fn write_one(&self, name: &str, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
         let purpose = Purpose::Within(&self.path);
-        write(&path, purpose, &go_on, |out| out.write_all(text.as_bytes()))
+        write(&path, purpose, &go_on, |out| out.write_all(bytes))
             .map_err(|error| NotWritten { path, error })
     }
 

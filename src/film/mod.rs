@@ -11,14 +11,19 @@ mod exr;
 mod jpeg;
 mod mean;
 mod memory;
+#[cfg(feature = "cli")]
+mod part;
 mod picture;
 mod pixels;
 mod png;
+mod pnm;
 mod read;
 mod srgb;
 
 #[cfg(any(feature = "cli", feature = "report"))]
 pub use self::embed::{data_uri, reduced};
+#[cfg(feature = "cli")]
+pub use self::part::place_of_part;
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
@@ -30,6 +35,6 @@ pub use self::{
     picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
     pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    read::{is_picture, read_picture, read_picture_up_to},
+    read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
     srgb::Encoder,
 };

@@ -62,6 +62,12 @@ pub enum Coding {
     Palette,
     /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA` or `iCCP`.
     OtherCurve,
+    /// It is a PNM with a mark or lines of text in front, which are passed over.
+    TextBefore,
+    /// It is a PNM of numbers in UTF-16.
+    Utf16,
+    /// It is a PNM of bytes in which every line feed had become two, as in a text.
+    TextMode,
 }
 
 impl Coding {
@@ -73,6 +79,15 @@ impl Coding {
                 "its coding is lossy and changes colours, most of all where they meet: a PNG keeps them",
             ),
             Self::Palette => Some("it has 256 colours at most: a PNG keeps all of them"),
+            Self::TextBefore => Some(
+                "there is text before the picture, which most programs cannot read so: print it to standard error",
+            ),
+            Self::Utf16 => Some(
+                "it is UTF-16, as `>` of PowerShell makes it, which most programs cannot read: have the program write the file itself",
+            ),
+            Self::TextMode => Some(
+                "each of its line feeds had become CR LF, which most programs cannot read so: open the file in binary mode (\"wb\")",
+            ),
             Self::OtherCurve => Some(
                 "its gAMA or iCCP says that its numbers follow another curve than sRGB's, and they are read as sRGB",
             ),

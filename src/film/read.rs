@@ -16,6 +16,7 @@ use super::{
     picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable, check_size, name},
     pixels::Film,
     png::read_recipe,
+    pnm,
 };
 use crate::color::srgb_to_linear;
 
@@ -24,7 +25,12 @@ const UNPACKING: usize = 512 << 20;
 
 /// Whether a file begins as a picture does, of a format that is read here or not.
 pub fn is_picture(bytes: &[u8]) -> bool {
-    format(bytes).is_some()
+    pnm::start(bytes).is_some() || format(bytes).is_some()
+}
+
+/// Whether a PNM begins after lines of text, among as many of a file's first bytes as there are.
+pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
+    pnm::after_lines(bytes).is_some()
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
@@ -48,7 +54,10 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
+        Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
+        // A mark, UTF-16 or lines of text come before it.
+        None => pnm::read(bytes, limit)?,
         other => return Err(Unreadable::Format(other)),
     };
     let width = picture.film.width() as usize;

@@ -14,10 +14,11 @@ use crate::{
 };
 
 /// The documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 4] = [
+const DOCUMENTS: [&str; 5] = [
     "README.md",
     "docs/accuracy.md",
     "docs/speed.md",
+    "docs/teaching.md",
     "examples/README.md",
 ];
 

@@ -1,6 +1,7 @@
 //! Picture files: what is in them, and that they are whole.
 
 mod compare;
+mod foreign;
 mod light;
 
 use std::{io::Cursor, iter};

@@ -1,7 +1,9 @@
 //! Grading: pictures of a tracer of its own judged by the library, and the command `grade`.
 
 mod case;
+mod classes;
 mod command;
+mod forms;
 mod mistakes;
 mod textbook;
 
