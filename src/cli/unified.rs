@@ -7,8 +7,8 @@ use std::ops::Range;
 /// Lines that are shown around a change.
 const AROUND: usize = 3;
 
-/// Farthest that two texts are searched for lines that are the same again.
-const FAR: usize = 500;
+/// Maximum number of lines passed over in both texts together until two are the same again.
+const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new one in their place.
 struct Change {
@@ -88,7 +88,7 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
                 old.take(2).eq(new.take(2))
             }
         };
-        let steps = (1..=2 * FAR).flat_map(|sum| (0..=sum).map(move |i| (i, sum - i)));
+        let steps = (1..=MOST_STEPS).flat_map(|sum| (0..=sum).map(move |i| (i, sum - i)));
         let (i, j) = steps
             .into_iter()
             .find(is_same)

@@ -356,7 +356,7 @@ fn a_picture_is_not_written_over_what_it_is_made_of() {
 fn a_link_that_comes_meanwhile_is_not_followed_to_what_a_picture_is_made_of() {
     for (line, input, target, about) in [
         (
-            "render a.scn -o out.png --set image.width=300 --set image.height=300",
+            "render a.scn -o out.png --threads 1 --set image.width=1200 --set image.height=1200",
             None,
             "a.scn",
             "is the scene itself",
@@ -375,14 +375,14 @@ fn a_link_that_comes_meanwhile_is_not_followed_to_what_a_picture_is_made_of() {
         ),
     ] {
         let folder = folder();
-        let slow = format!("{SCENE} sampler {{ method sobol samples 4096 }}");
+        let slow = format!("{SCENE} sampler {{ method sobol per_pixel 4096 }}");
         folder.write("a.scn", if input.is_none() { &slow } else { SCENE });
         let before = ["a.scn", "a.png"].map(|name| folder.read(name));
         let mut command = folder.command(line);
         let command = command.stdin(Stdio::piped());
         let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
-        thread::sleep(Duration::from_millis(500));
+        thread::sleep(Duration::from_millis(300));
         assert!(
             child.try_wait().unwrap().is_none(),
             "{line} is done already"
