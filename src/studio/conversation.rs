@@ -159,11 +159,11 @@ impl Conversation<'_> {
                 Ok(Ok(())) => return Ok(()),
                 Ok(Err(_)) => return Err(End(None)),
                 Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(End(None)),
-                // A page that reads nothing does not keep the host from ending, nor a session.
-                Err(_) => match over(self.pass, self.ending) {
-                    Some(code) => return Err(End(Some(code))),
-                    None => {}
-                },
+                Err(_) => {}
+            }
+            // A page that reads nothing keeps neither the host from ending nor a session.
+            if let Some(code) = over(self.pass, self.ending) {
+                return Err(End(Some(code)));
             }
         }
     }
