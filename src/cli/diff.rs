@@ -172,6 +172,12 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
             shown(path)
         )));
     }
+    check_is_not_compared(path, args)?;
+    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+}
+
+/// Refuses to write a heat map over what it compares.
+fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
             return Err(Trouble(format!(
@@ -180,7 +186,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
             )));
         }
     }
-    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+    Ok(())
 }
 
 /// What the colours of a heat map mean.
@@ -206,6 +212,8 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
+    // A link may lead to one of them by now.
+    check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
     })

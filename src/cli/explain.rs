@@ -30,7 +30,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
             }
         }
     };
-    output::to_programs(text.as_bytes())?;
+    output::page(&text)?;
     Ok(Status::Done)
 }
 

@@ -8,10 +8,23 @@ use std::{
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;
-use crate::diagnostic::{Drawing, Style, visible_line};
+use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
-/// Writes to standard output.
-pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {
+/// Writes a text to standard output: to programs as it is, and to a terminal so that nothing of it,
+/// such as what a scene holds, can act there.
+pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
+    match io::stdout().is_terminal() {
+        true => page(&visible(&String::from_utf8_lossy(text))),
+        false => write(text),
+    }
+}
+
+/// Writes a page of our own, drawn in the style of the terminal, to standard output.
+pub fn page(text: &str) -> Result<(), Trouble> {
+    write(text.as_bytes())
+}
+
+fn write(bytes: &[u8]) -> Result<(), Trouble> {
     let mut out = Programs::new();
     let written = out.write_all(bytes).and_then(|()| out.flush());
     written.map_err(|error| Trouble(format!("cannot write to standard output: {error}")))

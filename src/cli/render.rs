@@ -47,11 +47,10 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(crop);
-    if let Err(error) = output.write(&picture, &recipe, whole, cancel) {
-        if interrupt.pressed() {
-            return Ok(Status::Interrupted);
-        }
-        return Err(Trouble(format!("cannot write to {output}: {error}")));
+    match output.write(&args.scene, &picture, &recipe, whole, cancel) {
+        Ok(()) => {}
+        Err(_) if interrupt.pressed() => return Ok(Status::Interrupted),
+        Err(trouble) => return Err(trouble),
     }
     output::to_people(&output.note_of_length(&recipe));
     output::to_people(&picture.notes(part, &output));

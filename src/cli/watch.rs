@@ -131,11 +131,7 @@ fn make(
     };
     let recipe = input.recipe(None);
     let whole = Area::whole(scene.image.width, scene.image.height);
-    // The picture must not take the place of the scene, should a link lead there by now.
-    let written = output.check(&args.scene).and_then(|()| {
-        let written = output.write(&picture, &recipe, whole, is_stale);
-        written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
-    });
+    let written = output.write(&args.scene, &picture, &recipe, whole, is_stale);
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
         return Ok(None);
     }

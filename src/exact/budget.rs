@@ -8,8 +8,8 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// So many units of work may be spent on a pixel. A unit is one square of a board cut out of a
-/// polygon, some 50 ns as measured; so this is about 0.6 seconds, of the second that is allowed.
+/// Maximum number of units of work that are spent on a pixel. A unit is one square of a board cut
+/// out of a polygon, some 50 ns on the machine where it was measured, and about 0.6 seconds for all.
 const PIXEL: f64 = 1.2e7;
 
 /// The work that may still be spent on a pixel, and the flag by which its picture is given up.

@@ -2,8 +2,8 @@
 //!
 //! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
 //! its error. In ordinary views (a vertical field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within
-//! 1e±9 or 0) the bound is at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour. A pixel takes a
-//! second at most (`budget`).
+//! 1e±9 or 0) the bound is at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour. The work on a
+//! pixel is limited: to about a second on the machine where it was measured (`budget`).
 //!
 //! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
 //!
@@ -61,11 +61,12 @@ const MOST_CURVES: usize = 12;
 /// With each quartering so many more are allowed: curves that stay together in small pieces are not likely to part in smaller ones. (Measured: of a heap 1
 /// more takes two thirds of the time, and 16 more four times as long.)
 const MORE_CURVES: usize = 4;
-/// So many computed pieces of a pixel are quartered at most, the worst first, where the bound is above what is asked for. Near a point that a few curves share
+/// Maximum number of computed pieces of a pixel that are quartered, the worst first, where the bound is above what is asked for. Near a point that a few curves share
 /// each takes the bound to a quarter, so that 16 take it to 2^−32 of itself.
 const MOST_QUARTERINGS: usize = 16;
-/// Maximum memory of the open pieces of a pixel, in bytes. A pixel that needs more is not divided any further, and its
-/// bound says how much of it is in doubt.
+/// Maximum memory of the open pieces of a pixel, in bytes, unless the whole pixel as one piece takes
+/// more. A pixel that needs more is not divided any further, and its bound says how much of it is in
+/// doubt. What one piece takes while it is computed, which grows with its objects, is not counted.
 const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
@@ -132,11 +133,11 @@ impl Piece {
         self.area() * self.shares.bound
     }
 
-    /// Its memory in bytes.
+    /// Its memory in bytes, apart from its place in the heap.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<Candidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
-        size_of::<ByKey<Self>>() + candidates + shares
+        candidates + shares
     }
 }
 
@@ -247,8 +248,17 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut open = BinaryHeap::from([ByKey(bound, whole)]);
         let mut quarterings = 0;
         while bound > self.tolerance
-            && memory <= MOST_MEMORY
             && !budget.is_spent()
+            && open.peek().is_some_and(|ByKey(_, worst)| {
+                // A heap that is full has its old places beside twice as many new ones for a moment.
+                let copies = if open.len() + 3 > open.capacity() {
+                    3
+                } else {
+                    1
+                };
+                let places = copies * open.capacity() * size_of::<ByKey<Piece>>();
+                memory + places + 4 * worst.memory() <= MOST_MEMORY
+            })
             && let Some(ByKey(_, worst)) = open.pop()
         {
             memory -= worst.memory();

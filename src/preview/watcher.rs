@@ -264,10 +264,7 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
 /// The folder of a file, by one name however the file is named: the system watches a folder once, so that with the watch of one of
 /// two names that of the other would end.
 fn folder(path: &Path) -> PathBuf {
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = files::folder(path);
     // One that is gone is called as it was named.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }

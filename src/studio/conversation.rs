@@ -106,11 +106,8 @@ impl Conversation<'_> {
             Notification::new("studio/session".to_owned(), params).into(),
         ])?;
         while self.server.ended().is_none() {
-            if *self.ending.borrow() {
-                return Err(End(Some(close_code::AWAY)));
-            }
-            if self.pass.is_over() {
-                return Err(End(Some(NotAdmitted::Twice as CloseCode)));
+            if let Some(code) = over(self.pass, self.ending) {
+                return Err(End(Some(code)));
             }
             self.tell_file()?;
             if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
@@ -159,10 +156,20 @@ impl Conversation<'_> {
 
     fn send(&mut self, message: SocketMessage) -> Result<(), End> {
         let socket = &mut self.socket;
-        let sent = async { timeout(WRITE_TIMEOUT, socket.send(message)).await };
-        match self.runtime.block_on(sent) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) | Err(_) => Err(End(None)),
+        let mut sent = pin!(socket.send(message));
+        let start = Instant::now();
+        loop {
+            let slice = async { timeout(WAIT, sent.as_mut()).await };
+            match self.runtime.block_on(slice) {
+                Ok(Ok(())) => return Ok(()),
+                Ok(Err(_)) => return Err(End(None)),
+                Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(End(None)),
+                Err(_) => {}
+            }
+            // A page that reads nothing keeps neither the host from ending nor a session.
+            if let Some(code) = over(self.pass, self.ending) {
+                return Err(End(Some(code)));
+            }
         }
     }
 
@@ -323,6 +330,14 @@ impl Conversation<'_> {
             download.watch.cancel.store(true, Ordering::SeqCst);
         }
     }
+}
+
+/// The code that the socket is closed with where the host ends, or what let the page in is over.
+fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
+    if *ending.borrow() {
+        return Some(close_code::AWAY);
+    }
+    pass.is_over().then_some(NotAdmitted::Twice as CloseCode)
 }
 
 /// The code that says what is wrong with what the page has sent; none if the connection itself is broken.

@@ -49,8 +49,7 @@ pub enum NotSaved {
 
 /// Why a file could not be written, and what could be done.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
-    let folder = path.parent().filter(|it| *it != Path::new(""));
-    let is_gone = folder.is_some_and(|folder| !folder.exists());
+    let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
         io::ErrorKind::NotFound if is_gone => {
             return NotSaved::Refused(format!(

@@ -3,6 +3,7 @@
 
 use std::{
     fs,
+    io::Write,
     os::unix::{ffi::OsStrExt, fs::symlink, net::UnixListener},
     path::Path,
     process::{Command, Stdio},
@@ -115,7 +116,23 @@ fn refused(folder: &Folder, arguments: &[&str], about: &str) {
     assert!(said.output.is_empty(), "{arguments:?}");
     let is_right = said.errors.starts_with("error: ") && said.errors.contains(about);
     assert!(is_right, "{arguments:?}: {}", said.errors);
+    assert!(!said.errors.contains("os error"), "{}", said.errors);
     assert_eq!(all(&folder.path("")), before, "{arguments:?}");
+}
+
+#[test]
+fn why_a_folder_cannot_be_made_is_in_words() {
+    let folder = folder();
+    let long = "x".repeat(300);
+    for out in ["/proc/pinhole", &long, &format!("{long}/x")] {
+        for line in [
+            "grade a.scn a.png -o",
+            "report a.scn --samples 1 --runs 1 -o",
+        ] {
+            let arguments: Vec<_> = line.split(' ').chain([out]).collect();
+            refused(&folder, &arguments, "cannot write to ");
+        }
+    }
 }
 
 #[test]
@@ -334,6 +351,86 @@ fn a_picture_is_not_written_over_what_it_is_made_of() {
     }
 }
 
+/// A link to what a picture is made of that comes after the first look at the path.
+#[test]
+fn a_link_that_comes_meanwhile_is_not_followed_to_what_a_picture_is_made_of() {
+    for (line, input, target, about) in [
+        (
+            "render a.scn -o out.png --threads 1 --set image.width=1200 --set image.height=1200",
+            None,
+            "a.scn",
+            "is the scene itself",
+        ),
+        (
+            "diff /dev/stdin a.png -o out.png",
+            Some("a.png"),
+            "a.png",
+            "is compared",
+        ),
+        (
+            "diff /dev/stdin a.scn -o out.png",
+            Some("a.png"),
+            "a.scn",
+            "is compared",
+        ),
+    ] {
+        let folder = folder();
+        let slow = format!("{SCENE} sampler {{ method sobol per_pixel 4096 }}");
+        folder.write("a.scn", if input.is_none() { &slow } else { SCENE });
+        let before = ["a.scn", "a.png"].map(|name| folder.read(name));
+        let mut command = folder.command(line);
+        let command = command.stdin(Stdio::piped());
+        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        thread::sleep(Duration::from_millis(300));
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "{line} is done already"
+        );
+        symlink(target, folder.path("out.png")).unwrap();
+        let mut pipe = child.stdin.take().unwrap();
+        if let Some(input) = input {
+            pipe.write_all(&folder.read(input)).unwrap();
+        }
+        drop(pipe);
+        let said = Said::from(child.wait_with_output().unwrap());
+        assert_eq!(said.status, 2, "{line}: {}", said.errors);
+        assert!(said.errors.contains(about), "{line}: {}", said.errors);
+        assert_eq!(["a.scn", "a.png"].map(|name| folder.read(name)), before);
+    }
+}
+
+/// On a terminal, where `script` is there to open one; to a pipe goes what is in the file.
+#[test]
+fn no_text_of_a_scene_acts_on_a_terminal() {
+    let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
+    for line in [
+        "pinhole check --fix --diff - < a.scn",
+        "pinhole check --fix - < a.scn",
+        "pinhole check --fix --diff a.scn",
+        "pinhole fmt - < a.scn",
+    ] {
+        let folder = Folder::with([("a.scn", &*format!("sphere {{ radus 1 }} {hostile}"))]);
+        let piped = folder.shell(&format!("{line} | cat"));
+        assert!(piped.text().contains("\u{1b}]0;x\u{7} \u{9b}2J"), "{line}");
+        let quoted = line.replace("pinhole", env!("CARGO_BIN_EXE_pinhole"));
+        let script = format!("script -qec '{quoted} 2> errors' typescript < /dev/null");
+        let shown = folder.shell(&script);
+        if shown.status == 127 {
+            return;
+        }
+        let shown = String::from_utf8(shown.output).unwrap();
+        assert!(
+            shown.contains("\\u{1b}]0;x\\u{7} \\u{9b}2J \\u{202e}"),
+            "{line}: {shown:?}"
+        );
+        assert!(
+            !shown.contains(['\u{1b}', '\u{9b}', '\u{202e}']),
+            "{line}: {shown:?}"
+        );
+    }
+}
+
 #[test]
 fn a_name_forges_no_line_and_no_cell() {
     let names = [
@@ -342,12 +439,25 @@ fn a_name_forges_no_line_and_no_cell() {
         "a\r\x1b[2Kb",
         "\u{202e}gnp.a",
         "a\u{2028}b",
+        "a\u{200b}\u{200d}\u{2060}b\u{feff}\u{ad}\u{e0041}",
         "=cmd|' /C calc'!A0",
         "+1",
         "@a",
         "-a",
     ];
-    let forged = ['\t', '\r', '\x1b', '\u{202e}', '\u{2028}'];
+    let forged = [
+        '\t',
+        '\r',
+        '\x1b',
+        '\u{202e}',
+        '\u{2028}',
+        '\u{200b}',
+        '\u{200d}',
+        '\u{2060}',
+        '\u{feff}',
+        '\u{ad}',
+        '\u{e0041}',
+    ];
     for name in names {
         let folder = folder();
         let [scene, picture, other] =

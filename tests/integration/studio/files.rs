@@ -256,6 +256,7 @@ fn what_cannot_be_edited_is_told_at_once() {
 fn a_browser_is_started_unless_it_is_not_wanted() {
     use std::{
         env,
+        io::Read,
         os::unix::fs::PermissionsExt,
         process::Stdio,
         thread,
@@ -274,7 +275,10 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    for (arguments, is_opened) in [("studio --no-open", false), ("studio", true)] {
+    // More than the system takes for a page that does not read.
+    let long = "// a long scene\n".repeat(3 << 19);
+    folder.write("a.scn", &long);
+    for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
         let mut command = folder.command(arguments);
         command.env("PATH", &path).stdout(Stdio::null());
         let studio = Studio::start(command);
@@ -298,12 +302,20 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
         let (mut other, _) = studio.page();
+        let mut silent = studio.socket();
+        silent.send(session.as_str().into()).unwrap();
+        silent.read().unwrap();
         // Whoever opens it a second time ends the session, and has none.
         let twice = CloseCode::from(4003);
         for token in [once, &session, once] {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
+        // Nor does one that does not read what it is sent go on with it.
+        thread::sleep(Duration::from_secs(1));
+        let mut rest = Vec::new();
+        let _ = silent.get_mut().read_to_end(&mut rest);
+        assert!(rest.len() < long.len(), "{} bytes", rest.len());
         // Pages with the printed address are not concerned.
         other.open(json!({}), SCENE);
         other.diagnostics();
