@@ -117,8 +117,8 @@ fn memory(scene: &str, crop: &str) -> u64 {
 }
 
 /// The first is a pixel in the middle of which nearly everything is seen at once, so that ever more
-/// pieces of it are open: it takes twenty gigabytes without a limit. The other shows a hundred
-/// thousand objects, whose scene takes its own memory, as a pixel beside them shows.
+/// pieces of it are open: it takes twenty gigabytes without a limit. The other shows 65 536 objects,
+/// whose scene takes its own memory, as a pixel beside them shows.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -132,7 +132,7 @@ fn a_pixel_takes_bounded_memory() {
         checkerboard { y 0 square 1.82221 colors (red, teal) }
         box { center (-3.48494606, 2.35211205, -1.3395185) size (0.27574, 1.62986, 0.389944) color blue }
         sampler { method exact }";
-    let heap = spheres(&mut Random::new(5), 100_000, 3.0, [0.005, 0.03]);
+    let heap = spheres(&mut Random::new(5), 1 << 16, 3.0, [0.005, 0.03]);
     let heap = format!(
         "image {{ width 3 height 1 }} camera {{ eye (0, 0, 100) lookat (0, 0, 0) d 0.1 }}
         sampler {{ method exact }}\n{heap}"

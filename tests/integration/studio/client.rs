@@ -10,7 +10,8 @@ use pinhole::scene::SMALLEST;
 use serde_json::Value;
 use tungstenite::{
     Message, WebSocket,
-    client::{IntoClientRequest, client},
+    client::{IntoClientRequest, client_with_config},
+    protocol::WebSocketConfig,
     protocol::frame::coding::CloseCode,
 };
 
@@ -83,7 +84,13 @@ impl Studio {
         let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
         let origin = format!("http://{host}").parse().unwrap();
         request.headers_mut().insert("Origin", origin);
-        client(request, self.stream()).unwrap().0
+        // A long scene is one message.
+        let config = WebSocketConfig::default()
+            .max_message_size(None)
+            .max_frame_size(None);
+        client_with_config(request, self.stream(), Some(config))
+            .unwrap()
+            .0
     }
 
     /// A page that shows a token, and the token that it gets; or the code with which it is turned away.
