@@ -59,8 +59,11 @@ pub fn push_visible(text: &mut String, character: char) {
 /// (DerivedCoreProperties) gives the property `Default_Ignorable_Code_Point`, which includes the
 /// controls of bidirectional text, and the marks of annotations.
 fn is_invisible(character: char) -> bool {
+    // Nearly all characters are among these.
+    if character.is_ascii() {
+        return character.is_ascii_control() && !matches!(character, '\n' | '\t');
+    }
     match character {
-        '\n' | '\t' => false,
         '\u{ad}'
         | '\u{34f}'
         | '\u{61c}'

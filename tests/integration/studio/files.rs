@@ -301,6 +301,9 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         // The page connects again with what it was given.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
+        // What is still on its way would come before the word that the session ends.
+        first.told("studio/file");
+        again.told("studio/file");
         let (mut other, _) = studio.page();
         let mut silent = studio.socket();
         silent.send(session.as_str().into()).unwrap();
