@@ -1,5 +1,5 @@
-//! Zip files as classes hand them in. They are read where they lie, and nothing of them is written anywhere: a name in one is shown and never
-//! opened.
+//! Zip files as classes hand them in. They are read where they lie, and nothing of them is written
+//! anywhere: a name in one is shown and never opened.
 
 use std::{
     fs::File,
@@ -13,8 +13,10 @@ use std::{
 
 use zip::{DateTime, ZipArchive, result::ZipError};
 
-use super::handed_in::FILE_LIMIT;
 use crate::files;
+
+/// Maximum length of a file that is looked at, in a zip file or beside it, in bytes.
+pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries.
 const MOST_ENTRIES: usize = 10_000;
@@ -22,7 +24,8 @@ const MOST_ENTRIES: usize = 10_000;
 /// Maximum number of bytes that all zip files of a class are unpacked to.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// How many bytes may still be unpacked of a class's zip files, counted as they come, whatever a header says.
+/// How many bytes may still be unpacked of a class's zip files, counted as they come, whatever a
+/// header says.
 #[derive(Debug)]
 pub struct Budget(AtomicU64);
 
@@ -124,7 +127,8 @@ impl Archive {
     }
 }
 
-/// An entry's name: in UTF-8 where it can be, though not all programs say so; else in code page 437.
+/// An entry's name: in UTF-8 where it can be, though not all programs say so; else in code page
+/// 437.
 fn name(raw: &[u8], decoded: Option<&str>) -> String {
     let name = match (str::from_utf8(raw), decoded) {
         (Ok(name), _) | (_, Some(name)) => name.to_owned(),
@@ -136,7 +140,8 @@ fn name(raw: &[u8], decoded: Option<&str>) -> String {
 
 /// The seconds since 1970 of a time in a zip file, which has no time zone.
 fn seconds(time: DateTime) -> i64 {
-    // A year begins in March here, so that a day in February is the last one: Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
+    // A year begins in March here, so that a day in February is the last one: Hinnant,
+    // "chrono-compatible low-level date algorithms", days_from_civil.
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);
     let leaps = year / 4 - year / 100 + year / 400;

@@ -1,7 +1,9 @@
-//! A class's work as it is handed in: single pictures, folders and zip files become students, each with files.
+//! A class's work as it is handed in: single pictures, folders and zip files become students, each
+//! with files.
 //!
-//! A folder or zip file that is named has a student in each of its folders, and in each file beside these. What Moodle writes into names, and Gradescope
-//! beside the folders, says who it is. Links are not followed, and nobody is left out.
+//! A folder or zip file that is named has a student in each of its folders, and in each file beside
+//! these. What Moodle writes into names, and Gradescope beside the folders, says who it is. Links
+//! are not followed, and nobody is left out.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -14,8 +16,8 @@ use std::{
 use hmac_sha256::Hash;
 
 use super::{
-    archive::{Archive, Budget},
-    handed_in::{Content, FILE_LIMIT, HandedIn, Student},
+    archive::{Archive, Budget, FILE_LIMIT},
+    handed_in::{Content, HandedIn, Student},
     names::{self, Submitters},
 };
 use crate::{
@@ -54,7 +56,8 @@ impl Class {
     ///
     /// # Errors
     ///
-    /// A folder or zip file that is named cannot be read. A picture that is missing is left to whoever reads it.
+    /// A folder or zip file that is named cannot be read. A picture that is missing is left to
+    /// whoever reads it.
     pub fn read(paths: &[PathBuf], own: &[&Path]) -> Result<Self, Trouble> {
         let mut class = Self::default();
         for path in paths {
@@ -156,7 +159,8 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Takes away what is equal in every folder: that was there before anybody began. Where nobody would have a picture then, they stay: so they all made one.
+    /// Takes away what is equal in every folder: that was there before anybody began. Where nobody
+    /// would have a picture then, they stay: so they all made one.
     fn leave_template(&self, students: &mut [Student]) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -238,7 +242,8 @@ fn single(path: &Path) -> Student {
     }
 }
 
-/// A file beside pictures belongs to the one that has its name but for the ending; the others are somebody's, of whom there is nothing else.
+/// A file beside pictures belongs to the one that has its name but for the ending; the others are
+/// somebody's, of whom there is nothing else.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {

@@ -12,10 +12,8 @@ use crate::cli::{
     judge,
 };
 
-/// Maximum length of a file that is looked at, in bytes.
-pub const FILE_LIMIT: u64 = 256 << 20;
-
-/// Times that differ by no more seconds are one: a zip file has every second one, and to check out a repository takes a while.
+/// Times that differ by no more seconds are one: a zip file has every second one, and to check out
+/// a repository takes a while.
 const SAME_TIME: i64 = 2;
 
 /// Maximum number of pictures of the same time that are compared.
