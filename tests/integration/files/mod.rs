@@ -2,6 +2,8 @@
 //! not waited for.
 
 #[cfg(unix)]
+mod forged;
+#[cfg(unix)]
 mod hostile;
 #[cfg(unix)]
 mod meanwhile;

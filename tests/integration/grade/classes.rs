@@ -1,4 +1,5 @@
-//! Classes as they are handed in: folders and zip files of Gradescope, GitHub Classroom and Moodle, with what else there is in them.
+//! Classes as they are handed in: folders and zip files of Gradescope, GitHub Classroom and Moodle,
+//! with what else there is in them.
 
 use std::{
     fs::File,
@@ -423,13 +424,13 @@ fn a_zip_file_is_a_class_and_nothing_in_it_leads_out() {
 fn a_zip_file_of_a_student_is_his_folder_and_one_around_a_class_is_left() {
     let folder = folder();
     let [right, red] = ["right.png", "red.png"].map(|name| folder.read(name));
-    folder.write("class/anna.zip", zip(&[("work/render.png", &right)]));
+    folder.write("class/anna.zip", zip(&[("out/render.png", &right)]));
     folder.write("class/ben/all.zip", zip(&[("render.png", &red)]));
     folder.write("class/cy.zip", b"PK\x03\x04 cut off");
     assert_lines(
         &graded(&folder, "class", 1),
         &[
-            ("anna", "class/anna.zip/work/render.png", "right", &[]),
+            ("anna", "class/anna.zip/out/render.png", "right", &[]),
             ("ben", "class/ben/all.zip/render.png", "wrong", &[]),
             (
                 "cy.zip",

@@ -13,7 +13,8 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// A file, how it is rendered, its verdict, and the id of its mistake. A third of the pixels of `scatter.png` has no sample.
+/// A file, how it is rendered, its verdict, and the id of its mistake. A third of the pixels of
+/// `scatter.png` has no sample.
 const PICTURES: &str = "
     crop.png -> --set sampler.method=exact --crop 8,4,40,30 -> right ->
     exact.exr -> --set sampler.method=exact -> right ->

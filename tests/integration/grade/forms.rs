@@ -1,4 +1,5 @@
-//! What teachers' systems take: JUnit XML, Gradescope's results and Moodle's worksheet, with points.
+//! What teachers' systems take: JUnit XML, Gradescope's results and Moodle's worksheet, with
+//! points.
 
 use serde_json::Value;
 

@@ -27,7 +27,8 @@ use crate::{
     images,
 };
 
-/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a class makes.
+/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a
+/// class makes.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);

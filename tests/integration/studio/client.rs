@@ -10,8 +10,7 @@ use pinhole::scene::SMALLEST;
 use serde_json::Value;
 use tungstenite::{
     Message, WebSocket,
-    client::{IntoClientRequest, client_with_config},
-    protocol::WebSocketConfig,
+    client::{IntoClientRequest, client},
     protocol::frame::coding::CloseCode,
 };
 
@@ -84,16 +83,11 @@ impl Studio {
         let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
         let origin = format!("http://{host}").parse().unwrap();
         request.headers_mut().insert("Origin", origin);
-        // A long scene is one message.
-        let config = WebSocketConfig::default()
-            .max_message_size(None)
-            .max_frame_size(None);
-        client_with_config(request, self.stream(), Some(config))
-            .unwrap()
-            .0
+        client(request, self.stream()).unwrap().0
     }
 
-    /// A page that shows a token, and the token that it gets; or the code with which it is turned away.
+    /// A page that shows a token, and the token that it gets; or the code with which it is turned
+    /// away.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
