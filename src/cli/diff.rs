@@ -420,7 +420,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// What is right and what is not: all objects, or, where they are many, some of those that are not right.
+/// What is right and what is not: all objects, or, where they are many, some of those that are not
+/// right.
 fn objects(verdict: &Verdict) -> String {
     /// More are not listed.
     const MOST: usize = 12;
@@ -475,7 +476,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
+/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up
+/// to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

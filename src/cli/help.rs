@@ -1,4 +1,5 @@
-//! What `--help` says of each command after its options: examples, the JSON that it prints, its exit status.
+//! What `--help` says of each command after its options: examples, the JSON that it prints, its
+//! exit status.
 
 pub const EXAMPLES: &str = "\
 Examples:

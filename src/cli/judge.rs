@@ -21,7 +21,8 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// The part of a scene that a picture shows: the crop that it carries, the one that is named and has its size, or all of the scene.
+/// The part of a scene that a picture shows: the crop that it carries, the one that is named and
+/// has its size, or all of the scene.
 ///
 /// # Errors
 ///

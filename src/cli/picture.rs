@@ -95,7 +95,8 @@ pub fn picture(
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let expected = match sampling.is_exact() {
         true => part.pixels(),
-        // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
+        // The samples of the part, but for how the extra ones of a total fall: near enough for a
+        // bar.
         false => {
             let share = part.pixels() as f64 / whole.pixels() as f64;
             (sampling.total() as f64 * share) as u64
@@ -132,7 +133,8 @@ const BYTES: &str = "the 8-bit rounding";
 /// What is certain of those of an EXR.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// What is certain of a computed part of the picture, and of the numbers in its file: of so many pixels what is done to them.
+/// What is certain of a computed part of the picture, and of the numbers in its file: of so many
+/// pixels what is done to them.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -144,7 +146,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // No mean of several colours, and so without an error beyond that of the colour's own numbers.
+        // No mean of several colours, and so without an error beyond that of the colour's own
+        // numbers.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -254,7 +257,8 @@ impl Output {
         }
     }
 
-    /// Writes the picture of a scene, of which as much was kept as it takes, unless `cancel` is set.
+    /// Writes the picture of a scene, of which as much was kept as it takes, unless `cancel` is
+    /// set.
     pub fn write(
         &self,
         scene: &Path,

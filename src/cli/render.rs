@@ -17,12 +17,14 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = Output::of(&args.scene, args.output.as_deref())?;
     let input = Input::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
-    // Before the hours of a render, not after them; and a file that cannot be written outweighs errors of the scene.
+    // Before the hours of a render, not after them; and a file that cannot be written outweighs
+    // errors of the scene.
     output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };
-    // A crop on the command line takes the place of the one that a picture carries; both count in pixels of the whole picture.
+    // A crop on the command line takes the place of the one that a picture carries; both count in
+    // pixels of the whole picture.
     let crop = args.crop.or(input.crop);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = crop.unwrap_or(whole);

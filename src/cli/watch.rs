@@ -107,7 +107,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     }
 }
 
-/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes, nor when there is a newer one.
+/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes,
+/// nor when there is a newer one.
 fn make(
     args: &WatchArgs,
     bytes: Vec<u8>,

@@ -1,7 +1,9 @@
 //! Text that a terminal may show.
 //!
-//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything made visible by which it could act on a terminal, or be shown in
-//! another order than it is written, or which is not seen at all: control characters, and those that Unicode says to show nothing of.
+//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything
+//! made visible by which it could act on a terminal, or be shown in another order than it is
+//! written, or which is not seen at all: control characters, and those that Unicode says to show
+//! nothing of.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -55,9 +57,9 @@ pub fn push_visible(text: &mut String, character: char) {
     }
 }
 
-/// Whether a character is shown as its code: control characters, what the Unicode Character Database
-/// (DerivedCoreProperties) gives the property `Default_Ignorable_Code_Point`, which includes the
-/// controls of bidirectional text, and the marks of annotations.
+/// Whether a character is shown as its code: control characters, what the Unicode Character
+/// Database (DerivedCoreProperties) gives the property `Default_Ignorable_Code_Point`, which
+/// includes the controls of bidirectional text, and the marks of annotations.
 fn is_invisible(character: char) -> bool {
     // Nearly all characters are among these.
     if character.is_ascii() {

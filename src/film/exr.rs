@@ -95,7 +95,8 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // A block of 16 rows is in memory several times over, which for the widest pictures would be more than the film.
+        // A block of 16 rows is in memory several times over, which for the widest pictures would
+        // be more than the film.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
             _ => Compression::ZIP1,
@@ -134,7 +135,8 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         })
 }
 
-/// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
+/// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not
+/// looked at.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
@@ -197,7 +199,8 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// The names of the channels that are read: R, G and B, or those of the only layer that has such ones.
+/// The names of the channels that are read: R, G and B, or those of the only layer that has such
+/// ones.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

@@ -1,8 +1,9 @@
 //! Pixels, and the files they go to.
 //!
-//! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in memory, and a picture file: `png` with the
-//! scene that made it, or `exr`. `read` makes a `picture` of a file, also of
-//! another program's, `compare` says how far two films are apart, and `embed` puts one into a page.
+//! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in
+//! memory, and a picture file: `png` with the scene that made it, or `exr`. `read` makes a
+//! `picture` of a file, also of another program's, `compare` says how far two films are apart, and
+//! `embed` puts one into a page.
 
 mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]

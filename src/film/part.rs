@@ -12,7 +12,8 @@ const LEFT: f64 = 0.2;
 /// Minimum share of the whole picture: a smaller part looks alike in too many places.
 const LEAST_SHARE: f64 = 0.05;
 
-/// The place in a whole picture where a part of it differs far less than elsewhere, if there is one.
+/// The place in a whole picture where a part of it differs far less than elsewhere, if there is
+/// one.
 pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     let area = Area::whole(part.width(), part.height());
     let columns = whole.width().checked_sub(area.width)? + 1;

@@ -37,10 +37,11 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the way from black to white.
+    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the
+    /// way from black to white.
     ///
-    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 · 1.055/2.4 steps of a unit of light at
-    /// white, where that product is greatest, rounded up.
+    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 ·
+    /// 1.055/2.4 steps of a unit of light at white, where that product is greatest, rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -60,7 +61,8 @@ pub enum Coding {
     Lossy,
     /// It replaces them by the nearest of at most 256: GIF.
     Palette,
-    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA` or `iCCP`.
+    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA`
+    /// or `iCCP`.
     OtherCurve,
     /// It is a PNM with a mark or lines of text in front, which are passed over.
     TextBefore,

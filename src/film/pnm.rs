@@ -1,8 +1,8 @@
 //! PNM files, as class-mates' first programs write them: P1 to P6, in numbers or in bytes.
 //!
-//! What a shell or a system may have done to one is undone where that can be told for certain: a mark
-//! or lines of text in front, UTF-16 instead of bytes, a carriage return before every line feed. What
-//! is missing or out of range is named with its place. PAM is left to `image`.
+//! What a shell or a system may have done to one is undone where that can be told for certain: a
+//! mark or lines of text in front, UTF-16 instead of bytes, a carriage return before every line
+//! feed. What is missing or out of range is named with its place. PAM is left to `image`.
 
 use super::{
     memory,

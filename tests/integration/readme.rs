@@ -1,5 +1,5 @@
-//! The documents say what happens: their commands are run and the outputs compared, their scenes are checked, and their links
-//! lead to files.
+//! The documents say what happens: their commands are run and the outputs compared, their scenes
+//! are checked, and their links lead to files.
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
 

@@ -1,6 +1,7 @@
 //! What is said of a student's work.
 //!
-//! The verdict is kept as the JSON that programs get, from which every other form takes its words: what one says, all say.
+//! The verdict is kept as the JSON that programs get, from which every other form takes its words:
+//! what one says, all say.
 
 use serde_json::{Map, Value, json};
 

@@ -13,7 +13,8 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// The file. Without points each test counts one. What is not known has no score, so that nobody gets one by mistake.
+/// The file. Without points each test counts one. What is not known has no score, so that nobody
+/// gets one by mistake.
 pub fn results(one: &Graded, scene: &Scene, points: Option<&Points>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -98,7 +99,8 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     all
 }
 
-/// What each test is worth: an object what it has in the points, and the others equal parts of what is left.
+/// What each test is worth: an object what it has in the points, and the others equal parts of what
+/// is left.
 fn shares(criteria: &[(Criterion, String)], points: Option<&Points>) -> Vec<f64> {
     let Some(points) = points else {
         return vec![1.0; criteria.len()];
@@ -115,7 +117,8 @@ fn shares(criteria: &[(Criterion, String)], points: Option<&Points>) -> Vec<f64>
     criteria.iter().map(share).collect()
 }
 
-/// Names for folders, one for each student, from their names, and different ones: no system takes these for anything else.
+/// Names for folders, one for each student, from their names, and different ones: no system takes
+/// these for anything else.
 pub fn folders(graded: &[Graded]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     let name = |one: &Graded| {

@@ -1,9 +1,11 @@
-//! A class as JUnit XML, which systems of continuous integration show: a student is a test case, as Ant's junitreport and Jenkins read them.
+//! A class as JUnit XML, which systems of continuous integration show: a student is a test case, as
+//! Ant's junitreport and Jenkins read them.
 
 use super::graded::Graded;
 use crate::diagnostic::escaped;
 
-/// The file. A wrong picture is a `failure`, one of an unknown fault is `skipped`, and one that cannot be read or is missing an `error`.
+/// The file. A wrong picture is a `failure`, one of an unknown fault is `skipped`, and one that
+/// cannot be read or is missing an `error`.
 pub fn junit(scene: &str, graded: &[Graded]) -> String {
     let count = |word: &str| graded.iter().filter(|one| one.word() == word).count();
     let counts = format!(

@@ -1,9 +1,12 @@
 //! `grade`: a class's work against one scene.
 //!
-//! 1. What is named becomes a `class` of students with files (`handed_in`), from folders and zip files (`archive`); `names` are those of the systems that
-//!    classes hand in by, and `glob` chooses pictures.
-//! 2. Each student's pictures are compared and judged: that is `graded`, of which `points` make a score by `criteria`.
-//! 3. Writers say it: `table` for people and as CSV, `page` with `thumbnails`, `junit`, `gradescope` and `moodle`.
+//! 1. What is named becomes a `class` of students with files (`handed_in`), from folders and zip
+//!    files (`archive`); `names` are those of the systems that classes hand in by, and `glob`
+//!    chooses pictures.
+//! 2. Each student's pictures are compared and judged: that is `graded`, of which `points` make a
+//!    score by `criteria`.
+//! 3. Writers say it: `table` for people and as CSV, `page` with `thumbnails`, `junit`,
+//!    `gradescope` and `moodle`.
 
 mod archive;
 mod class;

@@ -1,8 +1,9 @@
 //! Moodle's worksheet of grades, filled in.
 //!
-//! Rows are found by the number at the end of the identifier, as Moodle's importer does it (`mod/assign/feedback/offline/importgradeslib.php`), and columns by
-//! their headings, of which it needs the identifier, the grade and the time of that. Nothing but the cells of grades and comments changes: a row in which
-//! nothing does is copied byte for byte.
+//! Rows are found by the number at the end of the identifier, as Moodle's importer does it
+//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings, of which it
+//! needs the identifier, the grade and the time of that. Nothing but the cells of grades and
+//! comments changes: a row in which nothing does is copied byte for byte.
 
 use std::path::Path;
 

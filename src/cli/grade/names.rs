@@ -1,8 +1,10 @@
-//! Who handed something in: what Moodle writes into the names of files, Gradescope into a file beside them, and GitHub Classroom into those of folders.
+//! Who handed something in: what Moodle writes into the names of files, Gradescope into a file
+//! beside them, and GitHub Classroom into those of folders.
 
 use std::collections::BTreeMap;
 
-/// What Moodle calls a file or a folder: `Name_12345_assignsubmission_file_` and, where it is a file, its own name.
+/// What Moodle calls a file or a folder: `Name_12345_assignsubmission_file_` and, where it is a
+/// file, its own name.
 #[derive(Debug)]
 pub struct MoodleName<'n> {
     pub name: &'n str,
@@ -30,7 +32,8 @@ pub fn moodle(text: &str) -> Option<MoodleName<'_>> {
     is_number.then_some(MoodleName { name, number, file })
 }
 
-/// What a student is called whose folder has no other name: without the `assignment-` that GitHub Classroom puts in front.
+/// What a student is called whose folder has no other name: without the `assignment-` that GitHub
+/// Classroom puts in front.
 pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     let own = slug.and_then(|slug| folder.strip_prefix(slug)?.strip_prefix('-'));
     let own = own.filter(|own| !own.is_empty()).unwrap_or(folder);

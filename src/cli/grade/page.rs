@@ -1,4 +1,5 @@
-//! What is said of a class as one page of HTML: its small pictures stand in it, and the whole ones beside it.
+//! What is said of a class as one page of HTML: its small pictures stand in it, and the whole ones
+//! beside it.
 
 use std::collections::BTreeMap;
 

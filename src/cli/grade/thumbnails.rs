@@ -1,4 +1,5 @@
-//! A picture, and where it differs from the exact one: small ones that stand in a page, and whole ones beside it.
+//! A picture, and where it differs from the exact one: small ones that stand in a page, and whole
+//! ones beside it.
 
 use std::io;
 

@@ -1,7 +1,8 @@
-//! Fields that a block does not have: what was probably meant, and the field with its value as it should be.
+//! Fields that a block does not have: what was probably meant, and the field with its value as it
+//! should be.
 //!
-//! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
-//! or can be made to be.
+//! A field is renamed only where its value will do: in the block there is a place for it, and the
+//! value is of the type that it takes, or can be made to be.
 
 use super::{
     block::{Block, Given},

@@ -30,8 +30,9 @@ fn a_heap_in_one_pixel() {
     ));
 }
 
-/// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan share: a pixel that they pass through
-/// is not cut any further, whose pieces would be without number.
+/// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan
+/// share: a pixel that they pass through is not cut any further, whose pieces would be without
+/// number.
 #[test]
 fn many_lines_that_are_one() {
     let view = "image { width 48 height 27 }
@@ -78,7 +79,8 @@ fn outlines_that_nearly_coincide() {
     }
 }
 
-/// A heap of boxes that is seen in a small part of one pixel, far away or in a wide view, is cut where it is, not all of the pixel.
+/// A heap of boxes that is seen in a small part of one pixel, far away or in a wide view, is cut
+/// where it is, not all of the pixel.
 #[test]
 fn heaps_in_a_small_part_of_a_pixel() {
     for (distance, count) in [(1e3, 40), (1e5, 40), (1e5, 100)] {
@@ -117,8 +119,8 @@ fn memory(scene: &str, crop: &str) -> u64 {
 }
 
 /// The first is a pixel in the middle of which nearly everything is seen at once, so that ever more
-/// pieces of it are open: it takes twenty gigabytes without a limit. The other shows 65 536 objects,
-/// whose scene takes its own memory, as a pixel beside them shows.
+/// pieces of it are open: it takes twenty gigabytes without a limit. The other shows 65 536
+/// objects, whose scene takes its own memory, as a pixel beside them shows.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -192,7 +194,8 @@ fn a_pixel_takes_bounded_time() {
     }
 }
 
-/// The scenes of `tests/exact`: the pixels of the crop that a comment asks for, or all, are known to a thousand-millionth, and their quarters are they.
+/// The scenes of `tests/exact`: the pixels of the crop that a comment asks for, or all, are known
+/// to a thousand-millionth, and their quarters are they.
 #[test]
 fn hard_scenes_are_known() {
     for path in scenes("tests/exact") {
