@@ -42,6 +42,9 @@ impl<'s> Lowering<'s> {
         if field.value.span.source == SourceId::File {
             self.unknown.push(field.value.span);
         }
+        if self.problems.is_full() {
+            return;
+        }
         let meant = self.unknown(block, &field.name, &field.value);
         for field in meant {
             if !block.meant.contains(&field) {
