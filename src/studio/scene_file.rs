@@ -1,4 +1,4 @@
-//! The scene's own file, which is the only one that Studio reads or writes, except for its draft.
+//! The scene's own file. Studio reads and writes no others, except for its draft and new scenes beside it.
 
 use std::{
     io,
@@ -32,6 +32,8 @@ pub struct SceneFile {
     /// Tells when the file has changed. Without it, that is found when it is saved.
     watch: Option<Arc<Latest<Content>>>,
     draft: Draft,
+    /// The new scenes beside the file that pages have saved, which they may save again.
+    beside: Vec<PathBuf>,
 }
 
 /// The file that pages share. A page that broke while it had it has left no half of a change.
@@ -80,7 +82,8 @@ impl SceneFile {
         let text = text(read(path)).map_err(|error| error.to_string())?;
         Ok(Self {
             read,
-            folder: PathBuf::new(),
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            beside: Vec::new(),
             path: Some(path.to_owned()),
             held: Ok(Some(text)),
             version: 1,
@@ -95,6 +98,7 @@ impl SceneFile {
             read,
             draft: Draft::of(&folder),
             folder,
+            beside: Vec::new(),
             path: None,
             held: Ok(Some(SMALLEST.to_owned())),
             version: 1,
@@ -165,7 +169,7 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has. Returns the version that it is.
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene, also one beside the file, under a name that no file has. Returns the version that it is.
     ///
     /// # Errors
     ///
@@ -176,12 +180,23 @@ impl SceneFile {
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
-        match &self.path {
-            Some(path) => {
-                let own = self.name();
-                if name.is_some_and(|name| name != own) {
-                    return Err(NotSaved::Refused(format!("this scene is in {own}")));
-                }
+        let own = self.name();
+        let other = name.filter(|name| *name != own && self.path.is_some());
+        let other = other.map(|name| (name, self.folder.join(name)));
+        let is_new = |path: &PathBuf| !self.beside.contains(path);
+        match (&self.path, other) {
+            (Some(_), Some((name, path))) if is_new(&path) => {
+                create(name, &path, new)?;
+                self.beside.push(path);
+                self.draft.forget();
+                return Ok(self.version);
+            }
+            (Some(own_path), other) => {
+                let is_other = other.is_some();
+                let (own, path) = other.map_or((own, own_path.clone()), |(name, path)| {
+                    (name.to_owned(), path)
+                });
+                let path = path.as_path();
                 let unread = |why| NotSaved::Refused(format!("{own} cannot be read: {why}"));
                 let original = match Original::read(path, self.read) {
                     Ok(original) => original,
@@ -204,12 +219,15 @@ impl SceneFile {
                         written => written.map_err(|error| refused(&own, path, &error))?,
                     }
                 }
+                if is_other {
+                    self.draft.forget();
+                    return Ok(self.version);
+                }
             }
-            None => {
+            (None, _) => {
                 let name = name.unwrap_or_default();
-                check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
-                write(&path, new, Purpose::New).map_err(|error| refused(name, &path, &error))?;
+                create(name, &path, new)?;
                 self.watch = preview::watch(&path, self.read).ok();
                 self.draft.forget();
                 self.draft = Draft::of(&path);
@@ -221,6 +239,12 @@ impl SceneFile {
         self.hold(Ok(Some(new.to_owned())));
         Ok(self.version)
     }
+}
+
+/// Makes a file for a new scene.
+fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
+    check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
+    write(path, text, Purpose::New).map_err(|error| refused(name, path, &error))
 }
 
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {

@@ -4,8 +4,9 @@
 //! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
 //!
 //! `lines` says where lines of the world are seen. `handles` knows where an object's handles are and how one moves the object, `camera`
-//! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together.
+//! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together. `add` writes blocks that are new.
 
+mod add;
 mod camera;
 mod drag;
 mod edits;
@@ -20,6 +21,7 @@ use crate::{
     source::Span,
 };
 
+pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, drag};
 pub use handles::Along;
 pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};

@@ -75,10 +75,11 @@ export function changesDiagnostics(update: ViewUpdate): boolean {
     it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** The list of all that is wrong: each message leads to its place, and has its fixes. */
+/** What is wrong: the first of it under the text, and a list of all. */
 export class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");
+  private readonly first = byId("first-problem");
 
   constructor(private readonly view: () => EditorView) {
     this.button.addEventListener("click", () => {
@@ -90,26 +91,33 @@ export class Problems {
 
   update(): void {
     const view = this.view();
-    const items: HTMLLIElement[] = [];
-    forEachDiagnostic(view.state, (diagnostic, from, to) => {
-      const item = create("li", diagnostic.severity);
-      const jump = () => {
-        view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
-        view.focus();
-      };
-      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
-        "place", jump));
-      for (const { name, apply } of diagnostic.actions ?? []) {
-        item.append(createButton(name, "fix", () => apply(view, from, to)));
-      }
-      items.push(item);
-    });
-    const count = items.length;
+    const found: [Diagnostic, number, number][] = [];
+    forEachDiagnostic(view.state, (...it) => found.push(it));
+    const count = found.length;
     setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem"
       : `${count} problems`);
     this.button.toggleAttribute("data-some", count > 0);
-    // While it is closed nobody sees it: a drag changes the text many times a second.
-    this.list.replaceChildren(...(this.list.hidden ? [] : items));
+    // What is closed nobody sees: a drag changes the text many times a second.
+    this.list.replaceChildren(...(this.list.hidden ? [] : found.map(it => this.item(...it))));
+    const first = this.list.hidden ? found.slice(0, 1) : [];
+    this.first.hidden = first.length === 0;
+    this.first.replaceChildren(...first.map(it => this.item(...it)));
+  }
+
+  /** A message, which leads to its place, with its fixes. */
+  private item(diagnostic: Diagnostic, from: number, to: number): HTMLLIElement {
+    const view = this.view();
+    const item = create("li", diagnostic.severity);
+    const jump = () => {
+      view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
+      view.focus();
+    };
+    item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
+      "place", jump));
+    for (const { name, apply } of diagnostic.actions ?? []) {
+      item.append(createButton(name, "fix", () => apply(view, from, to)));
+    }
+    return item;
   }
 }
 

@@ -8,7 +8,8 @@ import type { SceneEditor } from "./editor";
 import type { Frames } from "./frames";
 import { Gesture } from "./gesture";
 import type { Picture } from "./picture";
-import { isSuperseded, Refusal, type Along, type Dragged, type Point } from "./protocol";
+import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
+import type { Tools } from "./tools";
 import { setText } from "./visible";
 
 /** What is held, and where it was seen at the press; without an object it is the camera. */
@@ -24,7 +25,7 @@ export interface Workbench {
   editor: SceneEditor;
   frames: Frames;
   picture: Picture;
-  along(): Along | undefined;
+  tools: Tools;
   rested(): void;
 }
 
@@ -138,14 +139,15 @@ export class Drag {
   }
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
-    const { editor, frames, along } = this.bench;
+    const { editor, frames, picture, tools } = this.bench;
     const { base, press, uri } = this;
     this.asked = place;
     if (!this.isOpen) editor.openAside(uri, base.toString());
     this.isOpen = true;
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
-    const about = { textDocument: { uri }, object, handle, from: press, to, along: along() };
+    const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
+      step: tools.step(picture.zoom) };
     try {
       const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (this.over) return;

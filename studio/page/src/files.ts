@@ -1,7 +1,9 @@
 // Where the scene is kept: the host's file, which other editors may change at the same time, or a
 // file of this computer that the browser opens and saves.
 
-import example from "../../../examples/figure_9_9.scn";
+import { diffArrays } from "diff";
+import { invertedEffects, isolateHistory } from "@codemirror/commands";
+import { StateEffect, type Extension, type Transaction } from "@codemirror/state";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
@@ -21,8 +23,30 @@ interface FilePickers {
   showSaveFilePicker?(options: object): Promise<FileHandle>;
 }
 
+/** The scene of a page without a file. */
+const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
+
+/** A scene, and where it is kept. */
+interface Scene {
+  name: string;
+  /** What its file held when it was last seen; null where there was none. */
+  seen: string | null;
+  /** Whether the file has gone since. */
+  isGone: boolean;
+  handle: FileHandle | null;
+  /** Whether the host is still to make a file of it, under a name that Save asks for. */
+  isNew: boolean;
+  /** The text that it starts with, which is not worth saving; null for a file. */
+  untouched: string | null;
+}
+
+/** Another scene comes in the place of one, and goes again by Undo. */
+const turns = StateEffect.define<{ from: Scene; to: Scene }>();
+
+export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
+  .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
@@ -30,48 +54,66 @@ const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
-/** More lines than these are not compared: the table has two bytes for each pair, 18 MB here. */
-const MOST_LINES = 3000;
+/** Texts that differ in more lines than these are not compared line by line: it takes too long. */
+const MOST_CHANGES = 3000;
 
 /** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
-  name = "scene.scn";
   onSaved: () => void = () => {};
-  /** What the file held when it was last seen; null where there was none. */
-  seen: string | null = null;
-  /** Whether the file has gone since. */
-  private isGone = false;
-  private handle: FileHandle | null = null;
-  /** Whether the host's file is still to be made, under a name that Save asks for. */
-  private isNew = false;
   private opened = false;
-  /** The text that a new scene starts with, which is not worth saving; null for a file. */
-  private untouched: string | null = null;
+  /** The host's scene, and the one that the page shows. */
+  private hosts: Scene = { name: "scene.scn", seen: null, isGone: false, handle: null,
+    isNew: false, untouched: null };
+  private at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
     private readonly status: Status, private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
-    byId("open").hidden = isServed;
+    byId("new").addEventListener("click", () => this.begin(EMPTY));
+    for (const [name, text] of EXAMPLES) byId("examples").append(
+      createButton(name.replaceAll("_", " "), "",
+        () => this.begin(text, { name: `${name}.scn` })));
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
+  get name(): string { return this.at.name; }
+  get seen(): string | null { return this.at.seen; }
+
+  /** Puts another scene in place, which has no file if nothing else is said. */
+  private begin(text: string, more: Partial<Scene> = {}): void {
+    const to: Scene = { name: "scene.scn", seen: null, isGone: false, handle: null,
+      isNew: this.isServed, untouched: withLf(text), ...more };
+    const { view } = this.editor;
+    view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
+      selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
+      effects: turns.of({ from: this.at, to }) });
+  }
+
+  /** Follows the text to the scene that it belongs to. */
+  follow(transactions: readonly Transaction[]): void {
+    for (const { effects } of transactions) for (const it of effects) {
+      if (it.is(turns)) this.at = it.value.to;
+    }
+  }
+
   /** The name as people may see it. */
-  private get shownName(): string { return visibleLine(this.name); }
+  private get shownName(): string { return visibleLine(this.at.name); }
 
   get isUnsaved(): boolean {
     const { text } = this.editor;
-    return this.opened && text !== this.untouched
-      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
+    const { isGone, seen, untouched } = this.at;
+    return this.opened && text !== untouched
+      && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
+  get textToSave(): string { return withEndsOf(this.at.seen ?? "", this.editor.text); }
 
   /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
   restore(draft: Draft): void {
-    if (this.isServed && this.seen !== null) this.seen = draft.base;
+    if (this.isServed && this.at.seen !== null) this.at.seen = draft.base;
     this.editor.replace(draft.text);
     this.show();
   }
@@ -79,21 +121,22 @@ export class Files {
   /** The host says what file it has: at first, after the connection was lost, when a new scene
    *  has got its name, and when the file has changed. */
   hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
-    this.name = name;
-    this.isNew = this.isServed && !saved;
+    Object.assign(this.hosts, { name, isNew: this.isServed && !saved });
+    // What becomes of the host's file is told when its scene is there again, and is saved.
+    if (this.at !== this.hosts) return this.show();
     if (!this.opened) {
       this.opened = true;
-      this.seen = saved ? text : null;
-      const start = this.isServed ? (text ?? "") : example;
-      this.untouched = saved ? null : withLf(start);
+      this.at.seen = saved ? text : null;
+      const start = this.isServed ? (text ?? "") : FIGURE;
+      this.at.untouched = saved ? null : withLf(start);
       this.editor.open(start);
       this.tellLone();
       if (linked !== null) this.editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
-      if (!this.isServed) this.untouched = this.editor.text;
+      if (!this.isServed) this.at.untouched = this.editor.text;
       if (text === null) this.tellGone(reason);
     } else if (this.isServed && saved) {
-      this.untouched = null;
+      this.at.untouched = null;
       this.changed(text, reason);
     }
     this.editor.start();
@@ -102,8 +145,8 @@ export class Files {
 
   /** The file was changed by somebody else, is gone, or is back. */
   private changed(text: string | null, reason?: string | null): void {
-    const { seen, isGone } = this;
-    this.isGone = text === null;
+    const { seen, isGone } = this.at;
+    this.at.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
@@ -112,7 +155,7 @@ export class Files {
     } else if (this.editor.text === withLf(text)
       || (seen !== null && this.editor.text === withLf(seen))) {
       this.conflict.close();
-      this.seen = text;
+      this.at.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
@@ -122,12 +165,12 @@ export class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
-      + "which end no line in a scene; Save writes line feeds in their place.", "warning");
+    if (LONE.test(this.at.seen ?? "")) this.status.say(`${this.shownName} has carriage returns `
+      + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
   private tellGone(reason?: string | null): void {
-    this.isGone = true;
+    this.at.isGone = true;
     this.status.say(reason ? `${this.shownName} cannot be read: ${reason}`
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
@@ -144,8 +187,8 @@ export class Files {
   async save(): Promise<void> {
     try {
       if (!this.isServed) await this.saveLocal();
-      else if (this.isNew) this.askName();
-      else await this.saveAs(this.name);
+      else if (this.at.isNew) this.askName();
+      else await this.saveAs(this.at.name);
     } catch (error) { this.failed(error as Error); }
     this.show();
   }
@@ -158,13 +201,15 @@ export class Files {
   private async saveAs(name: string): Promise<void> {
     if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
+    const isHosts = this.at === this.hosts && !this.at.isNew;
+    const base = this.at.isGone ? null : this.at.seen;
+    const about = { text, base, ...(isHosts ? {} : { name }) };
     const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await this.connection.request<Saved>("studio/save", about);
       if (answer.ok) {
         this.saved(name, text);
-        this.isNew = false;
+        this.at.isNew = false;
       } else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
@@ -173,10 +218,9 @@ export class Files {
   }
 
   private saved(name: string, text: string): void {
-    this.name = name;
-    this.seen = text;
-    this.isGone = false;
-    this.untouched = null;
+    Object.assign(this.at, { name, seen: text, isGone: false, untouched: null });
+    // A host without a file has that one from now on.
+    if (this.hosts.isNew) this.hosts = this.at;
     this.status.say(`${this.shownName} is saved.`);
     this.onSaved();
   }
@@ -187,7 +231,7 @@ export class Files {
     const field = byId<HTMLInputElement>("name-field");
     const problem = byId("name-problem");
     setText(problem, "");
-    field.value = this.name;
+    field.value = this.at.name;
     byId("name-form").onsubmit = async event => {
       if ((event.submitter as HTMLButtonElement | null)?.value === "") return;
       event.preventDefault();
@@ -207,24 +251,23 @@ export class Files {
 
   private async saveLocal(): Promise<void> {
     const text = this.textToSave;
-    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name }))
+    this.at.handle ??= (await pickers.showSaveFilePicker?.(
+      { ...SCENES, suggestedName: this.at.name }))
       ?? null;
-    if (this.handle === null) {
-      download(this.name, text, "text/plain");
+    if (this.at.handle === null) {
+      download(this.at.name, text, "text/plain");
     } else {
       // The browser writes into a copy, which takes the file's place as a whole on closing.
-      const file = await this.handle.createWritable();
+      const file = await this.at.handle.createWritable();
       await file.write(text);
       await file.close();
     }
-    this.saved(this.handle?.name ?? this.name, text);
+    this.saved(this.at.handle?.name ?? this.at.name, text);
   }
 
   private async open(): Promise<void> {
-    const question = "The scene on the page is not saved. Open another one in its place?";
-    if (this.isUnsaved && !confirm(question)) return;
     try {
-      if (pickers.showOpenFilePicker !== undefined) {
+      if (!this.isServed && pickers.showOpenFilePicker !== undefined) {
         const [handle] = await pickers.showOpenFilePicker(SCENES);
         if (handle !== undefined) await this.take(await handle.getFile(), handle);
         return;
@@ -245,11 +288,8 @@ export class Files {
       // Other encodings would come back from Save as another text.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
-      this.editor.open(text);
-      this.handle = handle;
-      this.name = file.name;
-      this.seen = text;
-      this.untouched = null;
+      const seen = this.isServed ? null : text;
+      this.begin(text, { name: file.name, handle, seen, untouched: seen === null ? text : null });
       this.tellLone();
     } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
@@ -268,11 +308,11 @@ export class Files {
     };
     byId("conflict-choices").replaceChildren(
       createButton("Keep the page's text and save it", "primary", choose(() => {
-        this.seen = theirs;
+        this.at.seen = theirs;
         void this.save();
       })),
       createButton("Take the file's text", "", choose(() => {
-        this.seen = theirs;
+        this.at.seen = theirs;
         this.editor.replace(theirs);
       })),
       // Saving will ask again, because the page's text is still made from an older one.
@@ -309,34 +349,8 @@ export function difference(one: string, other: string): DifferenceLine[] {
 
 /** The lines of two texts: those of the first alone by -, those of the second alone by +. */
 function compared(a: string[], b: string[]): DifferenceLine[] {
-  let [start, end] = [0, 0];
-  while (start < a.length && start < b.length && a[start] === b[start]) start++;
-  while (end < a.length - start && end < b.length - start
-    && a.at(-1 - end) === b.at(-1 - end)) end++;
-  const kept = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
-  const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...kept(a.slice(0, start)), ...middle, ...kept(a.slice(a.length - end))];
-}
-
-/** The same of what is between them (longest common subsequence). */
-function changedLines(a: string[], b: string[]): DifferenceLine[] {
-  const lines: DifferenceLine[] = [];
-  const [n, m] = [a.length, b.length];
-  // lengths[i * (m + 1) + j]: of the longest common subsequence of a from i on and b from j on.
-  const isLong = n > MOST_LINES || m > MOST_LINES;
-  const lengths = isLong ? new Uint16Array(0) : new Uint16Array((n + 1) * (m + 1));
-  const at = (i: number, j: number) => lengths[i * (m + 1) + j] ?? 0;
-  const rows = isLong ? 0 : n;
-  for (let i = rows - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
-    a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
-  let [i, j] = [0, 0];
-  while (i < n || j < m) {
-    if (!isLong && i < n && j < m && a[i] === b[j]) {
-      lines.push({ sign: " ", text: a[i++] ?? "" });
-      j++;
-    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push(
-      { sign: "-", text: a[i++] ?? "" });
-    else lines.push({ sign: "+", text: b[j++] ?? "" });
-  }
-  return lines;
+  const parts = diffArrays(a, b, { maxEditLength: MOST_CHANGES })
+    ?? [{ value: a, removed: true, added: false }, { value: b, removed: false, added: true }];
+  return parts.flatMap(({ value, added, removed }) =>
+    value.map((text): DifferenceLine => ({ sign: added ? "+" : removed ? "-" : " ", text })));
 }

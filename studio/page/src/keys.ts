@@ -1,31 +1,51 @@
 // The keys of the picture: what arrows move, and the choice of tools, views and what drags are held
-// to.
+// to. They work wherever the focus is not in a text field.
 
+import type { Blocks } from "./blocks";
 import { Drag, type Workbench } from "./drag";
-import type { Along, Point } from "./protocol";
+import type { Point } from "./protocol";
 import type { Selection } from "./selection";
 import type { Status } from "./status";
-import { TOOLS, type Tools } from "./tools";
+import { TOOLS, type Tool } from "./tools";
 
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
 const KEY_STEP = 10;
 
-/** A pause after which the next arrow key begins another drag, in milliseconds. */
+/** A pause after which the next arrow key, or turn of the wheel, begins another drag, in ms. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
+/** Where keys mean something of their own: all of them, or those that arrows and Space are. */
+const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
+const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
+
 export class Keys {
   space = false;
   private drag: Drag | null = null;
   private pause = 0;
+  private readonly actions: Record<string, () => void>;
 
   constructor(private readonly bench: Workbench, private readonly selection: Selection,
-    private readonly tools: Tools, private readonly status: Status) {
-    const { stage } = bench.picture;
-    stage.addEventListener("keydown", event => this.down(event));
-    stage.addEventListener("keyup", event => this.up(event));
+    private readonly blocks: Blocks, private readonly status: Status) {
+    const { picture, picture: { stage }, tools } = bench;
+    this.actions = {
+      x: () => tools.toggle("x"), y: () => tools.toggle("y"), z: () => tools.toggle("z"),
+      f: () => tools.toggle("floor"),
+      "+": () => picture.zoomBy(2), "=": () => picture.zoomBy(2), "-": () => picture.zoomBy(0.5),
+      "0": () => picture.fit(), "1": () => picture.actualSize(),
+      Delete: () => blocks.remove(),
+      ...Object.fromEntries(Object.entries(TOOLS).map(([key, tool]) =>
+        [key, () => tools.choose(tool)])),
+    };
+    document.addEventListener("keydown", event => this.down(event));
+    document.addEventListener("keyup", event => this.up(event));
+    picture.onDolly = turned => {
+      this.drag ??= this.ofCamera("dolly");
+      this.drag.by([0, -turned * 60]);
+      this.rest();
+    };
     stage.addEventListener("focusout", event => {
       // From handle to handle the hands stay on the picture.
       if (event.relatedTarget instanceof Node && stage.contains(event.relatedTarget)) return;
@@ -42,15 +62,23 @@ export class Keys {
 
   private down(event: KeyboardEvent): void {
     const { key } = event;
-    const { picture } = this.bench;
+    const { picture, tools } = this.bench;
     const arrow = ARROWS[key];
-    this.tools.shift = event.shiftKey;
+    const on = event.target as Element;
+    if (event.defaultPrevented || on.closest(TEXT) !== null) return;
+    const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage") === null;
+    if (isOfControl && (arrow !== undefined || key === " " || key === "Escape")) return;
+    tools.held = event;
     clearTimeout(this.pause);
     if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) this.end();
+    if (event.ctrlKey && key === "d") {
+      void this.blocks.duplicate();
+      return event.preventDefault();
+    }
     if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
     if (arrow !== undefined) {
       const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
-      this.drag ??= this.begin(event.target as Element);
+      this.drag ??= this.begin(on);
       this.drag?.by([arrow[0] * step, arrow[1] * step]);
     } else if (key === "Escape") {
       if (this.drag === null) this.selection.select(null);
@@ -59,22 +87,21 @@ export class Keys {
     } else if (key === " ") {
       this.space = true;
       picture.stage.dataset["space"] = "";
-    } else if (key in TOOLS) this.tools.choose(TOOLS[key as keyof typeof TOOLS]);
-    else if ("xyz".includes(key)) this.tools.hold(key as Along);
-    else if (key === "f") this.tools.hold("floor");
-    else if (key === "+" || key === "=") picture.zoomBy(2);
-    else if (key === "-") picture.zoomBy(0.5);
-    else if (key === "0") picture.fit();
-    else if (key === "1") picture.actualSize();
+    } else if (this.actions[key] !== undefined) this.actions[key]();
     else return;
     event.preventDefault();
   }
 
   private up(event: KeyboardEvent): void {
-    this.tools.shift = event.shiftKey;
+    this.bench.tools.held = event;
     if (event.key === " ") this.freeSpace();
-    // Taps that follow each other are one drag.
-    if (event.key in ARROWS) this.pause = setTimeout(() => this.end(), KEY_PAUSE);
+    if (event.key in ARROWS) this.rest();
+  }
+
+  /** Taps that follow each other are one drag. */
+  private rest(): void {
+    clearTimeout(this.pause);
+    this.pause = setTimeout(() => this.end(), KEY_PAUSE);
   }
 
   private freeSpace(): void {
@@ -82,16 +109,18 @@ export class Keys {
     delete this.bench.picture.stage.dataset["space"];
   }
 
+  private ofCamera(handle: Tool): Drag {
+    const { size: [width, height] } = this.bench.picture;
+    // Roll turns about the middle: one has to take hold beside of it.
+    const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
+    return new Drag(this.bench, at, () => ({ object: null, handle, at }));
+  }
+
   /** What an arrow key drags: the focused handle, else the selected object or the camera. */
   private begin(focused: Element): Drag | null {
-    const { tool } = this.tools;
-    const { size: [width, height] } = this.bench.picture;
+    const { tool } = this.bench.tools;
     const isHandle = focused.closest(".handle") !== null;
-    if (!isHandle && tool !== "move") {
-      // Roll turns about the middle: one has to take hold beside of it.
-      const at: Point = [tool === "roll" ? 0.75 * width : width / 2, height / 2];
-      return new Drag(this.bench, at, () => ({ object: null, handle: tool, at }));
-    }
+    if (!isHandle && tool !== "move") return this.ofCamera(tool);
     const held = this.selection.held(isHandle ? focused : null);
     if (held !== null) return new Drag(this.bench, held.at, () => held);
     this.status.say("Select an object, or choose what the camera does.", "warning");

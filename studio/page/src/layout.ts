@@ -44,7 +44,9 @@ export function layOut(picture: Picture): void {
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());
   byId("zoom-actual").addEventListener("click", () => picture.actualSize());
-  byId("keys").addEventListener("click", () => byId<HTMLDialogElement>("keys-dialog").showModal());
+  for (const id of ["keys", "language"]) {
+    byId(id).addEventListener("click", () => byId<HTMLDialogElement>(`${id}-dialog`).showModal());
+  }
 
   // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
   for (const menu of document.querySelectorAll<HTMLDetailsElement>("details.menu")) {
@@ -56,8 +58,9 @@ export function layOut(picture: Picture): void {
       menu.open = false;
       menu.querySelector("summary")?.focus();
     });
-    const close = () => (menu.open = false);
-    for (const button of menu.querySelectorAll("button")) button.addEventListener("click", close);
+    menu.addEventListener("click", event => {
+      if ((event.target as Element).closest("button, [type=radio]")) menu.open = false;
+    });
   }
 }
 

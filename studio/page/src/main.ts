@@ -4,12 +4,13 @@
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
 import { keymap, type ViewUpdate } from "@codemirror/view";
+import { Blocks } from "./blocks";
 import { Connection, webSocket, worker } from "./connection";
 import { changesDiagnostics, fixKey, Problems, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
 import { Drafts } from "./drafts";
 import { SceneEditor } from "./editor";
-import { Files } from "./files";
+import { Files, sceneHistory } from "./files";
 import { Frames } from "./frames";
 import { Hover } from "./hover";
 import { hintField, Hints, openSwatch } from "./hints";
@@ -19,10 +20,12 @@ import { numberControls } from "./numbers";
 import { Outlines } from "./outlines";
 import { OverlayLayer } from "./overlays";
 import { Picture } from "./picture";
+import { feedProjectors, isProjector, project } from "./projector";
 import { Pointers } from "./pointers";
 import type { HostedFile, Limits } from "./protocol";
 import { Selection } from "./selection";
 import { offerSharing, sceneInAddress } from "./share";
+import { Sliders } from "./sliders";
 import { Status } from "./status";
 import { followTheme, themeExtension } from "./theme";
 import { Tools } from "./tools";
@@ -41,9 +44,13 @@ const limitsAt = (at: number) =>
 const editor: SceneEditor = new SceneEditor(
   byId("editor"), connection, meta("nonce"),
   [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField,
-    themeExtension()],
+    themeExtension(), sceneHistory],
   update => {
-    if (update.docChanged) selection.mapped(update.changes);
+    if (update.docChanged) {
+      selection.mapped(update.changes);
+      sliders.mapped(update.changes);
+      files.follow(update.transactions);
+    }
     if (update.selectionSet) selection.cursorMoved();
     if (update.docChanged) changed();
     if (changesDiagnostics(update)) problems.update();
@@ -56,6 +63,7 @@ const hints = new Hints(editor);
 const frames = new Frames(editor, connection,
   shown => {
     status.picture(shown.size, shown.fineness);
+    feedProjectors(shown);
     picture.show(shown);
   },
   state => {
@@ -66,16 +74,18 @@ const frames = new Frames(editor, connection,
     else status.stale(`No picture of the newest text: ${state.message}`);
   },
 );
-const selection = new Selection(editor, picture, overlays);
+const tools = new Tools(picture.stage);
+const selection = new Selection(editor, picture, overlays, tools);
 const outlines = new Outlines(editor, connection, frames, overlays, selection);
-const tools = new Tools(picture.stage, status);
 const bench = {
-  editor, frames, picture, along: () => tools.along, rested: () => {
+  editor, frames, picture, tools, rested: () => {
     void outlines.rested();
     rested();
   },
 };
-new Pointers(bench, selection, tools, new Keys(bench, selection, tools, status));
+const blocks = new Blocks(editor, selection, status);
+const sliders = new Sliders(editor, frames, rested);
+new Pointers(bench, selection, new Keys(bench, selection, blocks, status));
 const hover = new Hover(editor, picture, overlays, status);
 outlines.onRest = () => hover.again();
 const files = new Files(editor, connection, status, isServed);
@@ -94,6 +104,7 @@ function changed(): void {
 
 function rested(): void {
   hints.changed();
+  sliders.changed();
   drafts.changed();
 }
 
@@ -162,4 +173,5 @@ addEventListener("beforeprint", () => {
 layOut(picture);
 offerLayers(overlays);
 offerSharing(editor, connection, status, files);
-connection.open();
+project(picture);
+if (!isProjector) connection.open();

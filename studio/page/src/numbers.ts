@@ -12,7 +12,7 @@ import { endsInWholeField, NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
 /** A number literal, with the sign that belongs to it. */
-interface Literal { from: number; to: number; value: number; step: number }
+export interface Literal { from: number; to: number; value: number; step: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
@@ -20,7 +20,7 @@ const DRAG_PIXELS = 4;
 /** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
-function literalAt(state: EditorState, at: number): Literal | null {
+export function literalAt(state: EditorState, at: number): Literal | null {
   const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1))
     .find(it => it.name === "number");
   if (node === undefined) return null;
@@ -44,7 +44,7 @@ function stepOf(value: number, written: string, isWhole: boolean): number {
   return 10 ** (lastDigit < 0 ? Math.min(exponent, lastDigit) : exponent);
 }
 
-function format(value: number, step: number): string {
+export function format(value: number, step: number): string {
   const decimals = Math.max(0, Math.round(-Math.log10(step)));
   const rounded = Number(value.toFixed(Math.min(decimals, 100)));
   return String(Object.is(rounded, -0) ? 0 : rounded);
@@ -63,13 +63,22 @@ function bounds({ step }: Literal, limits: Limits | null): [number, number] {
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
+/** The same for a slider, which has to end somewhere: about the value that is there. */
+export function offered(literal: Literal, limits: Limits | null): [number, number] {
+  const span = Math.max(Math.abs(literal.value), 50 * literal.step);
+  const [least, most] = bounds(literal, limits);
+  return [Math.max(least, literal.value - span), Math.min(most, literal.value + span)];
+}
+
 /** Turns one number through a gesture, as far as its limits allow, which the server knows. */
-class Turn {
+export class Turn {
   private readonly gesture: Gesture;
   private to: number;
   private written: string;
   private readonly bounds: Promise<[number, number]>;
   private wanted = 0;
+  /** Whether somebody else has changed the number. */
+  isOver = false;
 
   constructor(private readonly view: EditorView, private readonly literal: Literal) {
     this.gesture = new Gesture(view);
@@ -85,7 +94,8 @@ class Turn {
     const text = format(Math.min(most, Math.max(least, this.wanted)), step);
     const now = this.view.state.sliceDoc(from, this.to);
     // Whoever has changed the number otherwise keeps it.
-    if (text === now || now !== this.written) return;
+    this.isOver ||= now !== this.written;
+    if (text === now || this.isOver) return;
     this.gesture.apply({ from, to: this.to, insert: text });
     this.to = from + text.length;
     this.written = text;
@@ -124,13 +134,9 @@ function createSlider(view: EditorView): TooltipView {
   const adapt = () => {
     const found = literal();
     if (found === null || turn !== null || found.value === shown) return;
-    const span = Math.max(Math.abs(found.value), 50 * found.step);
     const offer = (limits: Limits | null) => {
-      const [least, most] = bounds(found, limits);
-      range.min = String(Math.max(least, found.value - span));
-      range.max = String(Math.min(most, found.value + span));
-      range.step = String(found.step);
-      range.value = String(found.value);
+      const [least, most] = offered(found, limits);
+      Object.assign(range, { min: least, max: most, step: found.step, value: found.value });
     };
     range.setAttribute("aria-label", `Value ${found.value}`);
     shown = found.value;

@@ -1,7 +1,7 @@
 // What is drawn over the picture: outlines, vanishing points with the lines that lead there, the
 // horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
 
-import { createSvg, remember, remembered } from "./dom";
+import { byId, createSvg, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
@@ -19,8 +19,12 @@ export const LAYERS = {
 
 export type Layer = keyof typeof LAYERS;
 
-/** From this zoom on a grid of pixels can be seen. */
+/** From this zoom on a grid of pixels can be seen, and samples in a pixel. */
 const GRID_ZOOM = 6;
+const SAMPLES_ZOOM = 4;
+
+/** So far from the stage's border arrows end, in screen pixels. */
+const EDGE = 14;
 
 export class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
@@ -78,6 +82,7 @@ export class OverlayLayer {
   draw(): void {
     const { data, picture, svg } = this;
     svg.replaceChildren();
+    setText(byId("unseen"), data === null ? "" : [...this.unseen(data)].join(" "));
     if (data === null) return;
     const group = createSvg("g", { transform: picture.matrix });
     svg.append(group);
@@ -110,14 +115,40 @@ export class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
+  /** Marks a point with its coordinates; one that is outside of the stage by an arrow at its
+   *  border. */
   private mark(point: Point, name: string, text: string): void {
     const [x, y] = this.picture.toScreen(point);
-    if (Math.abs(x) > 1e6 || Math.abs(y) > 1e6) return;
-    const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
-    const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
-    setText(label, text);
-    this.svg.append(createSvg("path", { d, class: `line under ${name}` }),
-      createSvg("path", { d, class: `line ${name}` }), label);
+    const { clientWidth: width, clientHeight: height } = this.picture.stage;
+    const [middleX, middleY] = [width / 2, height / 2];
+    // How far out it is: 1 is the border.
+    const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
+      Math.abs(y - middleY) / (middleY - EDGE));
+    const part = Math.max(1, out);
+    const [atX, atY] = [middleX + (x - middleX) / part, middleY + (y - middleY) / part];
+    const turn = Math.atan2(y - middleY, x - middleX) * 180 / Math.PI;
+    const shape = out > 1 ? { d: "M-16 0H0M-7 -6L0 0L-7 6", transform:
+      `translate(${atX} ${atY}) rotate(${turn})` }
+      : { d: `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`, transform: "" };
+    const isRight = atX > width - 200;
+    const label = createSvg("text", { x: atX + (isRight ? -12 : 12), class: `mark ${name}`,
+      y: Math.max(16, atY - 9), "text-anchor": isRight ? "end" : "start" });
+    setText(label, `${text} (${point.map(it => Math.round(it)).join(", ")})`);
+    this.svg.append(createSvg("path", { ...shape, class: `line under ${name}` }),
+      createSvg("path", { ...shape, class: `line ${name}` }), label);
+  }
+
+  /** Why something that is switched on is not to be seen. */
+  private *unseen(data: Overlays): Generator<string> {
+    const { zoom } = this.picture;
+    if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
+    if (this.isOn("horizon") && data.horizon === null) yield "The horizon is not near the picture.";
+    if (this.isOn("near") && data.near.length + data.far.length === 0) {
+      yield "Near and far cut no checkerboard that is seen.";
+    }
+    const parallel = this.isOn("vanishing") ? data.vanishing.filter(it => it.point === null) : [];
+    for (const { axis } of parallel) yield `Lines along ${axis} stay parallel in this picture.`;
+    if (this.isOn("samples") && zoom < SAMPLES_ZOOM) yield "Samples show when you zoom in.";
   }
 
   private drawSamples(): void {

@@ -12,6 +12,8 @@ const MARGIN = 12;
 export class Picture {
   /** Called when the view or the size of the picture has changed. */
   onView: () => void = () => {};
+  /** Called when the wheel is to move the camera: 1 is 300 pixels of it. */
+  onDolly: (turned: number) => void = () => {};
   size: [number, number] = [1280, 720];
   zoom = 1;
 
@@ -29,7 +31,10 @@ export class Picture {
       "wheel",
       event => {
         event.preventDefault();
-        this.zoomBy(2 ** (-event.deltaY / (event.deltaMode === 0 ? 300 : 10)), this.local(event));
+        // With the shift key browsers turn the wheel to the side.
+        const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
+        if (event.shiftKey) this.onDolly(turned);
+        else this.zoomBy(2 ** -turned, this.local(event));
       },
       { passive: false },
     );
@@ -47,6 +52,7 @@ export class Picture {
     canvas.dataset["version"] = String(version);
     if (size[0] !== this.size[0] || size[1] !== this.size[1]) {
       this.size = size;
+      this.stage.style.setProperty("--aspect", String(size[0] / size[1]));
       this.fit();
     }
     canvas.dispatchEvent(new CustomEvent("pinhole-frame",

@@ -1,22 +1,27 @@
-// Hands on the picture by mouse, pen and fingers: a press begins a drag, two fingers zoom, and the
-// middle button or the space bar shifts the picture.
+// Hands on the picture by mouse, pen and fingers: a press begins a drag, two fingers zoom, and with
+// the space bar a drag shifts the picture.
 
 import { followPointer } from "./dom";
 import { Drag, type Held, type Workbench } from "./drag";
 import type { Keys } from "./keys";
 import type { Overlays, Pick, Point } from "./protocol";
 import type { Selection } from "./selection";
-import type { Tools } from "./tools";
+import type { Tool, Tools } from "./tools";
 
 /** So many screen pixels a pointer may wander before it is a drag. */
 const CLICK = 4;
 
+/** What other buttons than the left one do. */
+const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
+
 export class Pointers {
   private drag: Drag | null = null;
   private readonly places = new Map<number, Point>();
+  private readonly tools: Tools;
 
   constructor(private readonly bench: Workbench, private readonly selection: Selection,
-    private readonly tools: Tools, private readonly keys: Keys) {
+    private readonly keys: Keys) {
+    this.tools = bench.tools;
     const { stage } = bench.picture;
     stage.addEventListener("pointerdown", event => this.press(event));
     stage.addEventListener("pointermove", event => this.shift(event));
@@ -46,13 +51,13 @@ export class Pointers {
     this.keys.end();
     // A second finger zooms: what the first one has begun does not count.
     if (this.places.size > 1) return this.giveUp();
-    if (event.button !== 0 || this.keys.space) return;
-    this.tools.shift = event.shiftKey;
+    if (this.keys.space) return;
+    this.tools.held = event;
     const start = picture.toPicture(at);
-    const { tool } = this.tools;
+    const tool = BUTTONS[event.button] ?? this.tools.tool;
     const button = (event.target as Element).closest(".handle");
     const held = button === null ? null : this.selection.held(button);
-    if (held !== null) this.follow(event, start, () => held);
+    if (held !== null && event.button === 0) this.follow(event, start, () => held);
     else if (tool === "move") this.follow(event, start, () => this.grab(start));
     else this.follow(event, start, () => ({ object: null, handle: tool, at: start }));
   }
@@ -65,7 +70,7 @@ export class Pointers {
     let moved = false;
     const move = (next: PointerEvent) => {
       if (this.drag !== drag) return;
-      this.tools.shift = next.shiftKey;
+      this.tools.held = next;
       const [x, y] = picture.toPicture(picture.local(next));
       moved ||= Math.hypot(x - start[0], y - start[1]) * picture.zoom > CLICK;
       if (moved) drag.to([x, y]);
@@ -103,7 +108,7 @@ export class Pointers {
       const distance = ([x, y]: Point) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
       picture.zoomBy(distance(at) / distance(before), other);
       picture.panBy((at[0] - before[0]) / 2, (at[1] - before[1]) / 2);
-    } else if (event.buttons === 4 || (this.keys.space && event.buttons === 1)) {
+    } else if (this.keys.space && event.buttons === 1) {
       picture.panBy(at[0] - before[0], at[1] - before[1]);
     }
     this.places.set(event.pointerId, at);

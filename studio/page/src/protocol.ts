@@ -61,6 +61,11 @@ export interface Dragged {
 
 /** Between which numbers a number may be; `open` excludes the bounds themselves. */
 export interface Limits { least: number | null; most: number | null; open: boolean; whole: boolean }
+/** A number or angle that a `let` is, and what a slider of it may be turned to. */
+export interface Slider { name: string; range: Range; limits: Limits; step: number | null }
+
+/** A block that is new: what writes it, and the offset at which it begins. */
+export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
 /** The file that a served page edits: its text is null while there is none. */

@@ -1,5 +1,4 @@
-/** A scene of the examples, as text. */
-declare module "*.scn" {
-  const text: string;
-  export default text;
-}
+/** The scenes of Pinhole's folder of examples: names and texts, put in when the page is built. */
+declare const EXAMPLES: [string, string][];
+/** The scene that one starts from. */
+declare const EMPTY: string;

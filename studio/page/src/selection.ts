@@ -7,6 +7,7 @@ import type { Held } from "./drag";
 import type { SceneEditor } from "./editor";
 import type { OverlayLayer } from "./overlays";
 import type { Picture } from "./picture";
+import type { Tools } from "./tools";
 import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
 
 /** The least distance of two targets, in screen pixels, to the side or in height. */
@@ -29,11 +30,12 @@ export class Selection {
   private placed: Placed[] = [];
   /** Whether the object at the cursor is not to be selected, until the cursor moves. */
   private deselected = false;
+  private offered = 0;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
 
   constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer) {
+    private readonly overlays: OverlayLayer, private readonly tools: Tools) {
     this.menu.addEventListener("change", () => {
       const chosen = this.placed.find(it => String(it.object.index) === this.menu.value);
       this.select(chosen?.object ?? null);
@@ -90,11 +92,29 @@ export class Selection {
     const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
     const index = found?.object.index ?? null;
     this.menu.value = index === null ? "" : String(index);
+    if (index !== this.index || this.placed.length !== this.offered) {
+      this.offered = this.placed.length;
+      queueMicrotask(() => this.offer());
+    }
     if (index === this.index) return;
     this.index = index;
     this.overlays.select(index);
     this.draw();
     this.onChange();
+  }
+
+  /** Where the selected object's block stands in the text. */
+  get block(): { from: number; to: number } | undefined {
+    const found = this.placed.find(it => it.object.index === this.index);
+    return found && { from: found.from, to: found.to };
+  }
+
+  private offer(): void {
+    for (const id of ["duplicate", "delete"]) {
+      byId<HTMLButtonElement>(id).disabled = this.index === null;
+    }
+    const hasFloor = this.placed.some(it => it.object.kind === "checkerboard");
+    this.tools.offer(this.index !== null, hasFloor);
   }
 
   /** The selected object as it is drawn; none while that is not known of this text. */

@@ -2,7 +2,7 @@
 
 import { byId } from "./dom";
 import type { Along } from "./protocol";
-import type { Status } from "./status";
+import { setText } from "./visible";
 
 /** The tools, by the keys that choose them. All but the first move the camera. */
 export const TOOLS = {
@@ -11,32 +11,59 @@ export const TOOLS = {
 
 export type Tool = (typeof TOOLS)[keyof typeof TOOLS];
 
+/** A handle goes so many screen pixels at once, unless the control key is held. */
+const STEP = 8;
+const radios = (name: string) =>
+  [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
+
 export class Tools {
   tool: Tool = "move";
-  shift = false;
-  private readonly menu = byId<HTMLSelectElement>("along");
-  private readonly inputs = document.querySelectorAll<HTMLInputElement>("input[name=tool]");
+  /** The keys that are held, which free drags of objects. */
+  held = { shiftKey: false, ctrlKey: false };
+  /** What is held to; undefined as long as nobody has chosen. */
+  private chosen: Along | "" | undefined;
+  private hasFloor = false;
 
-  constructor(private readonly stage: HTMLElement, private readonly status: Status) {
-    for (const input of this.inputs) {
+  constructor(private readonly stage: HTMLElement) {
+    for (const input of radios("tool")) {
       input.addEventListener("change", () => this.choose(input.value as Tool));
+    }
+    for (const input of radios("along")) {
+      input.addEventListener("change", () => this.hold(input.value as Along | ""));
     }
   }
 
   choose(tool: Tool): void {
     this.tool = tool;
     this.stage.dataset["tool"] = tool;
-    for (const input of this.inputs) input.checked = input.value === tool;
+    for (const input of radios("tool")) input.checked = input.value === tool;
+    const name = tool.replace("_", " ");
+    const summary = document.querySelector("#camera-menu summary") as Element;
+    if (tool !== "move") setText(summary, `Camera: ${name}`);
   }
+
+  /** Offers what is of use: there is an object to drag, and there may be a floor under it. */
+  offer(isSelected: boolean, hasFloor: boolean): void {
+    this.hasFloor = hasFloor;
+    byId("along").hidden = !isSelected;
+    this.hold(this.chosen);
+  }
+
+  /** What drags are held to, if no key frees them. */
+  private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
   get along(): Along | undefined {
-    if (this.shift) return "floor";
-    return (this.menu.value || undefined) as Along | undefined;
+    return this.held.shiftKey ? undefined : this.kept || undefined;
   }
 
-  hold(along: Along): void {
-    this.menu.value = this.menu.value === along ? "" : along;
-    const chosen = this.menu.selectedOptions[0]?.text.toLowerCase() ?? "";
-    this.status.say(`Drags of objects: ${chosen}.`);
+  /** So far something goes at once, in pixels of a picture that is shown at a zoom. */
+  step(zoom: number): number | undefined { return this.held.ctrlKey ? undefined : STEP / zoom; }
+
+  hold(along: Along | "" | undefined): void {
+    this.chosen = along;
+    for (const input of radios("along")) input.checked = input.value === this.kept;
   }
+
+  /** The same by a key, which frees if it is pressed again. */
+  toggle(along: Along): void { this.hold(this.kept === along ? "" : along); }
 }

@@ -1,0 +1,44 @@
+// The picture alone in a window of its own, for a projector. This page feeds it: it asks no server.
+
+import { inAddress } from "./address";
+import { byId } from "./dom";
+import type { Fineness, Shown } from "./frames";
+import type { Picture } from "./picture";
+
+/** What goes to the windows: a picture, as the bytes of an image. */
+interface Fed { image: ImageBitmap | Blob; size: [number, number]; fineness: Fineness }
+
+const KEY = "projector";
+const of = inAddress(KEY);
+export const isProjector = of !== null;
+
+/** Other pages of Studio, also of this host, have channels of their own. */
+const name = of ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
+const channel = new BroadcastChannel(`pinhole-${name}`);
+let isFed = false;
+
+/** Hands a picture on, as long as anybody has asked for one. */
+export function feedProjectors({ bitmap, size, fineness }: Pick<Shown, "bitmap" | "size"
+  | "fineness">): void {
+  if (!isProjector && isFed) channel.postMessage({ image: bitmap, size, fineness });
+}
+
+/** Offers the window; in it, shows what comes. */
+export function project(picture: Picture): void {
+  if (isProjector) {
+    document.body.classList.add("projector");
+    channel.onmessage = async ({ data: { image, size, fineness } }: MessageEvent<Fed>) => {
+      picture.show({ bitmap: await createImageBitmap(image), size, fineness, version: 0 });
+    };
+    channel.postMessage("ready");
+    return;
+  }
+  channel.onmessage = async () => {
+    isFed = true;
+    const { canvas, size, isEmpty } = picture;
+    const fineness = canvas.dataset["fineness"] as Fineness;
+    if (!isEmpty) feedProjectors({ bitmap: await createImageBitmap(canvas), size, fineness });
+  };
+  byId("projector").addEventListener("click", () =>
+    open(`${location.pathname}#${KEY}=${name}`, "_blank", "popup,width=1280,height=720"));
+}
