@@ -102,6 +102,9 @@ export class Problems {
     const first = this.list.hidden ? found.slice(0, 1) : [];
     this.first.hidden = first.length === 0;
     this.first.replaceChildren(...first.map(it => this.item(...it)));
+    // What a message helps with is in the list.
+    const button = this.first.querySelector(".place");
+    if (button !== null) setText(button, button.textContent?.split("\n")[0] ?? "");
   }
 
   /** A message, which leads to its place, with its fixes. */

@@ -73,7 +73,7 @@ export class Files {
     byId("open").addEventListener("click", () => void this.open());
     byId("new").addEventListener("click", () => this.begin(EMPTY));
     for (const [name, text] of EXAMPLES) byId("examples").append(
-      createButton(name.replaceAll("_", " "), "",
+      createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
         () => this.begin(text, { name: `${name}.scn` })));
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }

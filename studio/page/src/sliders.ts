@@ -19,6 +19,7 @@ interface Row {
   at: number;
   bounds: [number, number];
   step: number | null;
+  unit: string;
   element: HTMLElement;
   range: HTMLInputElement;
   value: HTMLElement;
@@ -73,7 +74,8 @@ export class Sliders {
       const [min, max] = row.bounds;
       row.step = step ?? literal.step;
       Object.assign(row.range, { min, max, step: row.step, value: literal.value });
-      setText(row.value, editor.view.state.sliceDoc(literal.from, literal.to));
+      row.unit = doc.sliceString(literal.to, editor.offset(range.end)).trim();
+      setText(row.value, doc.sliceString(row.at, literal.to) + row.unit);
     });
   }
 
@@ -86,8 +88,8 @@ export class Sliders {
     const play = createButton("▶", "", () => this.play(row));
     play.setAttribute("aria-label", `Play ${name}`);
     element.append(create("span", "", name), range, value, play);
-    const row: Row = { name, at: 0, bounds: [0, 1], step: null, element, range, value, play,
-      turn: null };
+    const row: Row = { name, at: 0, bounds: [0, 1], step: null, unit: "", turn: null,
+      element, range, value, play };
     range.addEventListener("input", () => {
       if (this.playing === row) this.stop();
       void this.set(row, Number(range.value));
@@ -104,7 +106,7 @@ export class Sliders {
     this.frames.dragging ??= row;
     await row.turn.set(to);
     const now = this.literal(row);
-    if (now !== null) setText(row.value, view.state.sliceDoc(now.from, now.to));
+    if (now !== null) setText(row.value, view.state.sliceDoc(now.from, now.to) + row.unit);
   }
 
   private end(row: Row): void {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { andFinished, drag, FIGURE, host, launch, onPage, open } from "./helpers.mjs";
+import { andFinished, choose, drag, FIGURE, host, launch, onPage, open } from "./helpers.mjs";
 
 const BOXES = readFileSync(new URL("../../../examples/three_vanishing_points.scn", import.meta.url), "utf8");
 
@@ -23,7 +23,7 @@ test("the lines of the boxes lead to the vanishing points, which follow the came
   assert.deepEqual((await marked(page)).sort(), ["x", "y", "z"]);
   const place = () => page.getAttribute("#lines text.axis-z", "x");
   const before = await place();
-  await page.check('input[value="orbit"]', { force: true });
+  await choose(page, "orbit");
   await andFinished(page, () => drag(page, [400, 300], [450, 300]));
   assert.notEqual(await place(), before);
   // The menu's choice is remembered.

@@ -42,7 +42,7 @@ test("the static page opens a file of this computer", { skip }, async t => {
   // What browsers without access to files do.
   await page.evaluate(() => (window.showOpenFilePicker = undefined));
   const scene = FIGURE.replace("radius 1", "radius 1.5");
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("#open")]);
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("summary:text('File')").then(() => page.click("#open"))]);
   await andFinished(page, () => chooser.setFiles({ name: "other.scn", mimeType: "text/plain", buffer: Buffer.from(scene) }));
   assert.equal(await text(page), scene);
   assert.equal(await page.textContent("#file-name"), "other.scn");
@@ -54,7 +54,7 @@ test("the static page opens a file of this computer", { skip }, async t => {
   assert.equal(await page.textContent("#file-state"), "not saved");
   // Whoever has not saved is asked, and a file in another encoding is not opened.
   page.once("dialog", dialog => dialog.accept());
-  const [again] = await Promise.all([page.waitForEvent("filechooser"), page.click("#open")]);
+  const [again] = await Promise.all([page.waitForEvent("filechooser"), page.click("summary:text('File')").then(() => page.click("#open"))]);
   await again.setFiles({ name: "latin1.scn", mimeType: "text/plain", buffer: Buffer.from("// caf\xe9\n", "latin1") });
   await page.waitForFunction(() => /no text in UTF-8/.test(document.querySelector("#said").textContent));
   assert.equal(await page.textContent("#file-name"), "other.scn");
