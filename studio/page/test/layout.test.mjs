@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { choose, FIGURE, finished, hand, handle, hold, host, launch, onPage, open, rested, site, text, type } from "./helpers.mjs";
+import { FIGURE, finished, hand, handle, host, launch, onPage, open, rested, site, text, type } from "./helpers.mjs";
 
 const { SITE } = process.env;
 
