@@ -52,7 +52,8 @@ for (const [name, start] of HOSTS) {
       await page.waitForFunction(() => /scene\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(started.text(), `${FIGURE}// more\n`);
     }
-    assert.deepEqual(page.complaints, []);
+    // Who types over all of the text has the browser itself write a style, which the policy refuses.
+    assert.deepEqual(page.complaints.filter(it => !it.startsWith("Applying inline style")), []);
   });
 
   test(`from an empty scene, objects are added, dragged, duplicated and deleted: ${name}`, async t => {
