@@ -162,6 +162,23 @@ impl Source {
         &self.invalid
     }
 
+    /// Whether the file is UTF-16, with its mark or without: what people write is mostly ASCII, of
+    /// which every second byte is zero, and no other one.
+    pub fn is_utf16(&self) -> bool {
+        const LOOKED_AT: usize = 256;
+        let bytes = self.text.as_bytes();
+        let has_mark = self.invalid.starts_with(&[0, 1]);
+        let first = if has_mark { 2 } else { 0 };
+        let end = bytes.len().min(first + LOOKED_AT);
+        let start = bytes.get(first..end).unwrap_or_default();
+        let zeros = |first| {
+            let every_second = start.iter().skip(first).step_by(2);
+            every_second.filter(|&&byte| byte == 0).count()
+        };
+        let (even, odd) = (zeros(0), zeros(1));
+        start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
+    }
+
     /// The bytes that a byte order mark takes at the start of the text: 3 or 0.
     pub fn bom_len(&self) -> usize {
         if self.text.starts_with(BOM) {

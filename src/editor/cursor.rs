@@ -98,7 +98,7 @@ fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool
         let is_closed = comment.end == at && analysis.slice(*comment).ends_with("*/");
         comment.start < at && !is_closed
     });
-    let tokens = &analysis.tokens;
+    let tokens = analysis.tokens();
     let first = tokens.partition_point(|token| token.span.end < at);
     let mut touching = tokens.iter().skip(first);
     let token = touching
@@ -139,7 +139,7 @@ fn with_cursor<T>(
 
 /// How many lists are open at a place.
 fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
-    let before = analysis.tokens.iter();
+    let before = analysis.tokens().iter();
     let before = before.take_while(|token| token.span.end <= at);
     before.fold(0, |open, token| match analysis.slice(token.span) {
         "(" => open + 1,

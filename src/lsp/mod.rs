@@ -16,6 +16,6 @@ mod server;
 pub mod stdio;
 mod text_requests;
 
-pub use params::{Answer, Refusal, response};
+pub use params::{Answer, Refusal, optional, response};
 pub use server::Server;
 pub(crate) use server::unharmed;

@@ -5,9 +5,12 @@
 use std::collections::VecDeque;
 
 use crate::{
-    editor::{Analysis, viewport::selections},
+    editor::{
+        Analysis,
+        viewport::{self, selections},
+    },
     scene::Scene,
-    source::Span,
+    source::{Sources, Span},
     tracer::World,
 };
 
@@ -24,6 +27,8 @@ pub struct SceneVersion {
     /// For each object the name or the keyword that stands for it.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
+    /// The text with the object that was dragged last alone.
+    alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
@@ -35,6 +40,7 @@ impl SceneVersion {
             selections: selections(analysis, &scene),
             scene,
             worlds: VecDeque::new(),
+            alone: None,
         })
     }
 
@@ -57,6 +63,14 @@ impl SceneVersion {
             self.worlds.len() - 1
         });
         (&self.scene, &self.worlds[index].1)
+    }
+
+    /// The text with an object alone, or with none, by which drags are read: each step asks for it.
+    pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
+        let known = self.alone.take_if(|(known, _)| *known == object);
+        let made = || (object, viewport::alone(sources, &self.scene, object));
+        let (_, alone) = self.alone.insert(known.unwrap_or_else(made));
+        (&self.scene, alone)
     }
 
     /// Width and height divided by `scale`, rounded up.

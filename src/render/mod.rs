@@ -4,12 +4,13 @@
 //! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
 //! of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without. Which of them a scene asks for is decided here, and what both
+//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without; `slices` makes a picture of either kind step by step. Which of them a scene asks for is decided here, and what both
 //! have in common is here.
 
 mod exact;
 mod renderer;
 mod sampled;
+mod slices;
 mod tally;
 mod tile;
 
@@ -34,6 +35,7 @@ use crate::{
 pub use self::{
     exact::{Exact, render_exact, render_numbers},
     sampled::render,
+    slices::{SLICE, Slices, pixel_work},
 };
 
 /// How a render is watched, and by how many it is done.

@@ -6,13 +6,10 @@
 use std::{
     convert::Infallible,
     pin::pin,
-    sync::{
-        Arc, Mutex, TryLockError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, Mutex, TryLockError, atomic::Ordering},
     task::{Context, Poll, Waker},
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use axum::extract::ws::{CloseCode, CloseFrame, Message as SocketMessage, WebSocket, close_code};
@@ -23,13 +20,15 @@ use tokio::{runtime::Handle, sync::watch, time::timeout};
 use super::{
     access::{NotAdmitted, Pass},
     download,
+    draft::{Kept, Unsaved},
     scene_file::{NotSaved, SceneFile, lock},
+    watched::{self, Watch},
 };
 use crate::{
     lsp::{
         Refusal, Server,
         messages::{self, Malformed},
-        response,
+        optional, response,
     },
     threads,
 };
@@ -42,6 +41,9 @@ const WAIT: Duration = Duration::from_millis(50);
 
 /// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// How long passes between two messages of how far a picture's file is.
+const PROGRESS: Duration = Duration::from_millis(200);
 
 /// How long the page has to answer a goodbye: less than the host waits for its conversations when it ends.
 const FAREWELL: Duration = Duration::from_millis(200);
@@ -91,7 +93,9 @@ struct Conversation<'a> {
 /// A picture's file that is being made.
 struct Download {
     request: Value,
-    cancel: Arc<AtomicBool>,
+    watch: Arc<Watch>,
+    /// When the page was told of it last.
+    told: Instant,
     thread: JoinHandle<Message>,
 }
 
@@ -114,6 +118,7 @@ impl Conversation<'_> {
             {
                 self.say(vec![answer])?;
             }
+            self.tell_progress()?;
             match self.read()? {
                 Some(SocketMessage::Text(text)) => self.hear(&text)?,
                 Some(SocketMessage::Binary(_)) => return Err(End(Some(close_code::UNSUPPORTED))),
@@ -204,12 +209,25 @@ impl Conversation<'_> {
             "saved": file.path().is_some(),
         });
         if let Some(draft) = draft {
-            params["draft"] = draft;
+            params["draft"] = json!(draft);
         }
         drop(file);
         self.say(vec![
             Notification::new("studio/file".to_owned(), params).into(),
         ])
+    }
+
+    /// Tells the page which part of the picture's file is made, a few times a second.
+    fn tell_progress(&mut self) -> Result<(), End> {
+        let now = Instant::now();
+        match &mut self.download {
+            Some(download) if now.duration_since(download.told) > PROGRESS => {
+                download.told = now;
+                let share = download.watch.share();
+                self.say(vec![download::progress(share)])
+            }
+            _ => Ok(()),
+        }
     }
 
     fn hear(&mut self, text: &str) -> Result<(), End> {
@@ -257,8 +275,13 @@ impl Conversation<'_> {
                 }
             }
             ("studio/draft", text) => {
-                let kept = lock(self.file).keep_draft(text, field("base"));
-                let kept = kept.map_err(Refusal::failed);
+                let newest = text.map(|text| Unsaved::new(text, field("base")));
+                let keep = |earlier: Option<Vec<Unsaved>>| {
+                    let texts = newest.into_iter().chain(earlier.into_iter().flatten());
+                    let kept = lock(self.file).keep_draft(Kept::new(texts).as_ref());
+                    kept.map_err(Refusal::failed)
+                };
+                let kept = optional(&params, "earlier").and_then(keep);
                 kept.map(|()| json!({ "ok": true }))
             }
             ("studio/alive", _) => Ok(json!({ "ok": true })),
@@ -275,14 +298,15 @@ impl Conversation<'_> {
         if self.download.is_some() {
             return self.say(failed("another picture is being made"));
         }
-        let cancel = Arc::new(AtomicBool::new(false));
-        let cancelled = Arc::clone(&cancel);
+        let watch = Arc::new(Watch::default());
+        let watched = Arc::clone(&watch);
         let thread = thread::Builder::new().name("picture".to_owned());
-        match thread.spawn(move || download::answer(request, &cancelled)) {
+        match thread.spawn(move || watched::answer(request, &watched)) {
             Ok(thread) => {
                 self.download = Some(Download {
                     request: json!(id),
-                    cancel,
+                    watch,
+                    told: Instant::now(),
                     thread,
                 });
                 Ok(())
@@ -296,7 +320,7 @@ impl Conversation<'_> {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
         {
-            download.cancel.store(true, Ordering::SeqCst);
+            download.watch.cancel.store(true, Ordering::SeqCst);
         }
     }
 }

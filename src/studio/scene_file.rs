@@ -6,13 +6,12 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
-use super::draft::{Draft, Read};
-use serde_json::Value;
-
+use super::draft::{Draft, Kept, Read};
 use crate::{
     files::{self, Original, Purpose},
     preview::{self, Content, Latest},
     scene::SMALLEST,
+    source::Source,
 };
 
 /// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
@@ -123,26 +122,20 @@ impl SceneFile {
         &self.held
     }
 
-    /// What was written and not saved, if it is kept and differs from what is there.
-    pub fn draft(&self) -> Option<Value> {
-        let draft = self.draft.kept(self.read)?;
+    /// What was written and not saved, if any is kept that differs from what is there.
+    pub fn draft(&self) -> Option<Kept> {
         let held = self.held.as_ref().ok().and_then(Option::as_deref);
-        (draft["text"].as_str() != held).then_some(draft)
+        let texts = self.draft.kept(self.read)?.texts();
+        Kept::new(texts.filter(|it| Some(&*it.text) != held))
     }
 
-    /// Keeps what is written and not saved; nothing any more if there is no text.
+    /// Keeps what is written and not saved in the place of what was kept; nothing for none.
     ///
     /// # Errors
     ///
     /// Why it is not kept, in words.
-    pub fn keep_draft(&self, text: Option<&str>, base: Option<&str>) -> Result<(), String> {
-        match text {
-            Some(text) => self.draft.keep(text, base),
-            None => {
-                self.draft.forget();
-                Ok(())
-            }
-        }
+    pub fn keep_draft(&self, kept: Option<&Kept>) -> Result<(), String> {
+        self.draft.keep(kept)
     }
 
     /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
@@ -180,19 +173,18 @@ impl SceneFile {
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
+        let kept = self.draft.kept(self.read);
         let own = self.name();
         let other = name.filter(|name| *name != own && self.path.is_some());
         let other = other.map(|name| (name, self.folder.join(name)));
+        let is_other = other.is_some();
         let is_new = |path: &PathBuf| !self.beside.contains(path);
         match (&self.path, other) {
             (Some(_), Some((name, path))) if is_new(&path) => {
                 create(name, &path, new)?;
                 self.beside.push(path);
-                self.draft.forget();
-                return Ok(self.version);
             }
             (Some(own_path), other) => {
-                let is_other = other.is_some();
                 let (own, path) = other.map_or((own, own_path.clone()), |(name, path)| {
                     (name.to_owned(), path)
                 });
@@ -219,24 +211,24 @@ impl SceneFile {
                         written => written.map_err(|error| refused(&own, path, &error))?,
                     }
                 }
-                if is_other {
-                    self.draft.forget();
-                    return Ok(self.version);
-                }
             }
             (None, _) => {
                 let name = name.unwrap_or_default();
                 let path = self.folder.join(name);
                 create(name, &path, new)?;
                 self.watch = preview::watch(&path, self.read).ok();
-                self.draft.forget();
+                let _ = self.draft.keep(None);
                 self.draft = Draft::of(&path);
                 self.path = Some(path);
                 self.version += 1;
             }
         }
-        self.draft.forget();
-        self.hold(Ok(Some(new.to_owned())));
+        // What this page has written is saved; what earlier ones have is still to be offered.
+        let earlier = kept.into_iter().flat_map(Kept::texts).skip(1);
+        let _ = self.draft.keep(Kept::new(earlier).as_ref());
+        if !is_other {
+            self.hold(Ok(Some(new.to_owned())));
+        }
         Ok(self.version)
     }
 }
@@ -248,8 +240,13 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 }
 
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
-    let no_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
-    String::from_utf8(bytes?).map_err(no_text)
+    let bytes = bytes?;
+    let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
+    // Half of the bytes of such a text are zero.
+    if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
+        return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
+    }
+    String::from_utf8(bytes).map_err(|_| no_text("it is not a text in UTF-8"))
 }
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.

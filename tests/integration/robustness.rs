@@ -15,6 +15,7 @@ use pinhole::{
     diagnostic::{self, Diagnostic, Drawing, Edit, MOST_PROBLEMS, Report, Style},
     format::format,
     scene,
+    schema::BLOCKS,
     source::{Source, Sources, Span},
 };
 
@@ -107,6 +108,14 @@ fn one_thing_many_times(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
+    // Each field, misspelt, in a block that lacks it.
+    for block in BLOCKS {
+        for field in block.field_names() {
+            let piece = format!("x{field} 1\n");
+            let within = piece.repeat(4 * length / piece.len());
+            read(format!("{CAMERA} {} {{ {within} }}", block.name));
+        }
+    }
 }
 
 /// Of very many mistakes the first ten thousand are reported, and that there are others, however

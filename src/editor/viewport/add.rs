@@ -104,7 +104,7 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     let names = (1..).map(|number| format!("{capital}{number}"));
     let is_free = |name: &String| {
         !analysis
-            .tokens
+            .tokens()
             .iter()
             .any(|it| analysis.slice(it.span) == name)
     };

@@ -3,6 +3,8 @@
 //! The object or the camera is moved first, in real numbers. Then the fields that differ are written to one decimal after another, until the text means
 //! something that is seen within half a pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a condition of the language.
 
+use std::iter;
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -53,12 +55,38 @@ pub struct Dragged {
     pub also: Vec<String>,
 }
 
-/// What has to change in a text that means a scene where a handle is moved.
+/// The text of a scene with spaces in the place of all objects but one, so that what is left stands
+/// where it stood and is read quickly.
+pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
+    let source = &sources.file;
+    let mut text = String::with_capacity(source.text().len());
+    let objects = scene.objects.iter().enumerate();
+    for (_, other) in objects.filter(|(index, _)| Some(*index) != object) {
+        text.push_str(source.slice(text.len()..other.span.start));
+        for letter in source.slice(other.span.range()).chars() {
+            match letter {
+                '\n' => text.push('\n'),
+                _ => text.extend(iter::repeat_n(' ', letter.len_utf8())),
+            }
+        }
+    }
+    text.push_str(source.slice(text.len()..source.text().len()));
+    Sources::new(Source::from_text(source.name(), text))
+}
+
+/// What has to change in a text that means a scene where a handle is moved; `alone` is that text
+/// with the moved object [`alone`].
 ///
 /// # Errors
 ///
 /// Why it cannot be done, in a sentence.
-pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<Dragged, String> {
+pub fn drag(
+    sources: &Sources,
+    alone: &Sources,
+    scene: &Scene,
+    drag: &Drag<'_>,
+) -> Result<Dragged, String> {
+    let analysis = &Analysis::new(alone);
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
@@ -100,7 +128,6 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if view.agree(ideal, current, TOLERANCE) {
         return Ok(Dragged::default());
     }
-    // A text is read quickly without the other objects.
     let objects = scene.objects.iter().enumerate();
     let others = objects.filter(|(index, _)| Some(*index) != drag.object);
     let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
@@ -123,8 +150,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
             continue;
         };
-        let alone = read(analysis, [&edits, &without_others]);
-        match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
+        let read_alone = read(analysis.source(), [&edits, &without_others]);
+        match read_alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found, tolerance) => {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
@@ -134,8 +161,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
                 let also = match edits.iter().all(is_own) {
                     true => Vec::new(),
                     false => {
-                        let whole = read(analysis, [&edits, &[]])?;
-                        others_changed(analysis, drag.object, [scene, &whole])
+                        let whole = read(&sources.file, [&edits, &[]])?;
+                        others_changed(&Analysis::new(sources), drag.object, [scene, &whole])
                     }
                 };
                 let value = |change: &Change| {
@@ -249,8 +276,7 @@ fn others_changed(
 }
 
 /// The scene that a text means after some edits.
-fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
-    let source = analysis.source();
+fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
     let reading = scene::read(&Sources::new(Source::from_text(source.name(), text)));

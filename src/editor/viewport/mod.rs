@@ -22,7 +22,7 @@ use crate::{
 };
 
 pub use add::{Added, add, duplicate};
-pub use drag::{Drag, Dragged, drag};
+pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
 pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};

@@ -12,7 +12,7 @@ use crate::{
         overrides,
         semantic_model::{Parts, SemanticModel},
     },
-    source::{Source, SourceId, Sources, Span},
+    source::{SourceId, Sources, Span},
     syntax::{self, tree::Item},
 };
 
@@ -167,7 +167,7 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
 /// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
-    if is_utf16(&sources.file) {
+    if sources.file.is_utf16() {
         diagnostics.clear();
         diagnostics.push(syntax::utf16(Span::new(SourceId::File, 0, 2)));
         return;
@@ -182,25 +182,4 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let span = Span::new(SourceId::File, first, first + 1);
     diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
-}
-
-/// Whether a file is UTF-16, with its mark or without: what people write is mostly ASCII, of which
-/// every second byte is zero, and no other one.
-fn is_utf16(file: &Source) -> bool {
-    const LOOKED_AT: usize = 256;
-    let bytes = file.text().as_bytes();
-    let has_mark = file.invalid_utf8().starts_with(&[0, 1]);
-    let first = if has_mark { 2 } else { 0 };
-    let end = bytes.len().min(first + LOOKED_AT);
-    let start = bytes.get(first..end).unwrap_or_default();
-    let zeros = |first| {
-        start
-            .iter()
-            .skip(first)
-            .step_by(2)
-            .filter(|&&byte| byte == 0)
-            .count()
-    };
-    let (even, odd) = (zeros(0), zeros(1));
-    start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
 }

@@ -42,7 +42,11 @@ impl<'s> Lowering<'s> {
             self.unknown.push(field.value.span);
         }
         let meant = self.unknown(block, &field.name, &field.value);
-        block.meant.extend(meant);
+        for field in meant {
+            if !block.meant.contains(&field) {
+                block.meant.push(field);
+            }
+        }
     }
 
     /// Reports it, also of a `--set` argument, and tells what was probably meant.

@@ -33,6 +33,8 @@ interface Scene {
   name: string;
   /** What its file held when it was last seen; null where there was none. */
   seen: string | null;
+  /** What the page's text was made from: Save asks if the file holds something else. */
+  base: string | null;
   /** Whether the file has gone since. */
   isGone: boolean;
   handle: FileHandle | null;
@@ -62,7 +64,7 @@ export class Files {
   onSaved: () => void = () => {};
   private opened = false;
   /** The host's scene, and the one that the page shows. */
-  private hosts: Scene = { name: "scene.scn", seen: null, isGone: false, handle: null,
+  private hosts: Scene = { name: "scene.scn", seen: null, base: null, isGone: false, handle: null,
     isNew: false, untouched: null };
   private at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
@@ -79,12 +81,12 @@ export class Files {
   }
 
   get name(): string { return this.at.name; }
-  get seen(): string | null { return this.at.seen; }
+  get base(): string | null { return this.at.base; }
 
   /** Puts another scene in place, which has no file if nothing else is said. */
   private begin(text: string, more: Partial<Scene> = {}): void {
-    const to: Scene = { name: "scene.scn", seen: null, isGone: false, handle: null,
-      isNew: this.isServed, untouched: withLf(text), ...more };
+    const to: Scene = { name: "scene.scn", seen: null, base: more.seen ?? null, isGone: false,
+      handle: null, isNew: this.isServed, untouched: withLf(text), ...more };
     const { view } = this.editor;
     view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
       selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
@@ -108,12 +110,16 @@ export class Files {
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
+  /** What the file held when it was last seen; null where there was none. */
+  get seen(): string | null { return this.at.seen; }
+  private set seen(text: string | null) { this.at.seen = this.at.base = text; }
+
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.at.seen ?? "", this.editor.text); }
 
-  /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
+  /** Puts a draft in place. */
   restore(draft: Draft): void {
-    if (this.isServed && this.at.seen !== null) this.at.seen = draft.base;
+    if (this.at.seen !== null) this.at.base = draft.base;
     this.editor.replace(draft.text);
     this.show();
   }
@@ -126,7 +132,7 @@ export class Files {
     if (this.at !== this.hosts) return this.show();
     if (!this.opened) {
       this.opened = true;
-      this.at.seen = saved ? text : null;
+      this.seen = saved ? text : null;
       const start = this.isServed ? (text ?? "") : FIGURE;
       this.at.untouched = saved ? null : withLf(start);
       this.editor.open(start);
@@ -155,7 +161,7 @@ export class Files {
     } else if (this.editor.text === withLf(text)
       || (seen !== null && this.editor.text === withLf(seen))) {
       this.conflict.close();
-      this.at.seen = text;
+      this.seen = text;
       this.editor.replace(text);
       this.status.say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
@@ -201,9 +207,9 @@ export class Files {
   private async saveAs(name: string): Promise<void> {
     if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const isHosts = this.at === this.hosts && !this.at.isNew;
-    const base = this.at.isGone ? null : this.at.seen;
-    const about = { text, base, ...(isHosts ? {} : { name }) };
+    const { isGone, isNew, base } = this.at;
+    const isHosts = this.at === this.hosts && !isNew;
+    const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
     const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await this.connection.request<Saved>("studio/save", about);
@@ -218,7 +224,8 @@ export class Files {
   }
 
   private saved(name: string, text: string): void {
-    Object.assign(this.at, { name, seen: text, isGone: false, untouched: null });
+    this.seen = text;
+    Object.assign(this.at, { name, isGone: false, untouched: null });
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = this.at;
     this.status.say(`${this.shownName} is saved.`);
@@ -308,11 +315,11 @@ export class Files {
     };
     byId("conflict-choices").replaceChildren(
       createButton("Keep the page's text and save it", "primary", choose(() => {
-        this.at.seen = theirs;
+        this.seen = theirs;
         void this.save();
       })),
       createButton("Take the file's text", "", choose(() => {
-        this.at.seen = theirs;
+        this.seen = theirs;
         this.editor.replace(theirs);
       })),
       // Saving will ask again, because the page's text is still made from an older one.

@@ -40,6 +40,15 @@ export function layOut(picture: Picture): void {
     share(Number(divider.getAttribute("aria-valuenow")) + 2 * direction);
   });
 
+  // A phone has room for one of the two.
+  const tabs = document.querySelectorAll<HTMLButtonElement>("#tabs button");
+  const show = (tab: string) => {
+    panes.dataset["tab"] = tab;
+    for (const it of tabs) it.setAttribute("aria-pressed", String(it.dataset["tab"] === tab));
+  };
+  for (const it of tabs) it.addEventListener("click", () => show(it.dataset["tab"] ?? ""));
+  byId("problems").addEventListener("click", () => show("text"));
+
   byId("zoom-in").addEventListener("click", () => picture.zoomBy(2));
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
   byId("zoom-fit").addEventListener("click", () => picture.fit());

@@ -79,8 +79,9 @@ export interface HostedFile {
   draft?: Draft | null;
 }
 
-/** A text that was not saved: what it was made from, and when, in seconds since 1970. */
-export interface Draft { text: string; base: string | null; time: number }
+/** A text that was not saved: what it was made from, and when, in seconds since 1970; with those
+ *  before it that nobody has restored or forgotten. */
+export interface Draft { text: string; base: string | null; time: number; earlier?: Draft[] }
 
 /** Whether the file was saved; if not, what is in it now. */
 export type Saved = { ok: true } | { ok: false; text: string | null };

@@ -8,7 +8,7 @@ use pinhole::{
         Analysis, Completion, Piece, Symbol, completions, definition, fixes, folds, formatting,
         hints, hover, occurrences, presentations, renamable, rename, semantic_tokens, signature,
         swatches, symbols,
-        viewport::{Along, Drag, drag},
+        viewport::{Along, Drag, alone, drag},
     },
     source::{SourceId, Span},
 };
@@ -91,8 +91,9 @@ fn outline(symbols: &[Symbol]) -> String {
 
 /// The text after a handle was moved; or why it cannot be.
 pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
-    let sources = sources(text);
-    let dragged = drag(&Analysis::new(&sources), &read(text), moved)?;
+    let (sources, scene) = (sources(text), read(text));
+    let alone = alone(&sources, &scene, moved.object);
+    let dragged = drag(&sources, &alone, &scene, moved)?;
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
