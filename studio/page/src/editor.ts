@@ -73,6 +73,22 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
+/** Replaces several lines at once itself: a browser would give the new ones the style of the old,
+ *  which the page's policy refuses. */
+const replacedLines = EditorView.domEventHandlers({
+  beforeinput({ inputType, data, isComposing }, view) {
+    const { state } = view;
+    const { from, to } = state.selection.main;
+    if (inputType !== "insertText" || data === null || isComposing) return false;
+    if (!data.includes("\n") && to <= state.doc.lineAt(from).to) return false;
+    const insert = () => state.update(state.replaceSelection(data),
+      { userEvent: "input.type", scrollIntoView: true });
+    const handlers = state.facet(EditorView.inputHandler);
+    if (!handlers.some(handle => handle(view, from, to, data, insert))) view.dispatch(insert());
+    return true;
+  },
+});
+
 /** A brace that is typed takes over the one that its block has already, behind space alone. */
 const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
   const { doc } = view.state;
@@ -122,7 +138,7 @@ export class SceneEditor {
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        bracketMatching(), closeBrackets(), closingBrace,
+        bracketMatching(), closeBrackets(), closingBrace, replacedLines,
         gestureHistory(),
         sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",

@@ -45,7 +45,10 @@ function stepOf(value: number, written: string, isWhole: boolean): number {
 }
 
 export function format(value: number, step: number): string {
-  const decimals = Math.max(0, Math.round(-Math.log10(step)));
+  // A step of 0.25 has two decimals, one of 1e-7 seven.
+  const [, fraction = "", power = "0"] = /^\d+(?:\.(\d+))?(?:e(.*))?$/
+    .exec(String(Number(step.toPrecision(12)))) ?? [];
+  const decimals = Math.max(0, fraction.length - Number(power));
   const rounded = Number(value.toFixed(Math.min(decimals, 100)));
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }

@@ -52,8 +52,7 @@ for (const [name, start] of HOSTS) {
       await page.waitForFunction(() => /scene\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(started.text(), `${FIGURE}// more\n`);
     }
-    // TODO: find what writes a style here, which the policy refuses (seen since all of the text is typed over).
-    assert.deepEqual(page.complaints.filter(it => !it.startsWith("Applying inline style")), []);
+    assert.deepEqual(page.complaints, []);
   });
 
   test(`from an empty scene, objects are added, dragged, duplicated and deleted: ${name}`, async t => {
