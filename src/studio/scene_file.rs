@@ -313,6 +313,33 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_beside_the_file_is_new_and_saved_again_but_takes_the_place_of_none() {
+        let read: Read = |path| files::read(path, 99);
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("a.scn"), "own").unwrap();
+        fs::write(at("there.scn"), "theirs").unwrap();
+        let mut file = SceneFile::open(&at("a.scn"), read).unwrap();
+        let version = file.look();
+        for name in ["there.scn", "../b.scn", "b", "c/b.scn"] {
+            for base in [None, Some("theirs")] {
+                let saved = file.save("new", base, Some(name));
+                assert!(matches!(saved, Err(NotSaved::Refused(_))), "{name}");
+            }
+        }
+        let mut save = |text, base| file.save(text, base, Some("new.scn"));
+        assert_eq!(save("one", None), Ok(version));
+        let found = || Err(NotSaved::Changed(Some("one".to_owned())));
+        assert_eq!(save("two", None), found());
+        assert_eq!(save("two", Some("own")), found());
+        assert_eq!(save("two", Some("one")), Ok(version));
+        let texts = ["a.scn", "there.scn", "new.scn"].map(|name| fs::read(at(name)).unwrap());
+        assert_eq!(texts, [&b"own"[..], b"theirs", b"two"]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+        assert_eq!(file.held(), &Ok(Some("own".to_owned())));
+    }
+
+    #[test]
     fn a_name_leads_nowhere_else() {
         for right in ["a.scn", "my scene.scn", "ä.b.scn", "cone.scn", "com.scn"] {
             assert_eq!(check_name(right), Ok(()), "{right}");
