@@ -32,9 +32,14 @@ export async function publishDiagnostics(editor: SceneEditor, published: Publish
 }
 
 function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+  const mending = new Map<string, CodeAction[]>();
+  for (const action of actions) for (const it of action.diagnostics ?? []) {
+    mending.set(keyOf(it), [...mending.get(keyOf(it)) ?? [], action]);
+  }
+  const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
-    const fixes = actions.filter(action => action.diagnostics?.some(it => isSame(it, diagnostic)));
-    const all = fixes.length > 0 ? actions.filter(action => action.diagnostics === undefined) : [];
+    const fixes = mending.get(keyOf(diagnostic)) ?? [];
+    const all = fixes.length > 0 ? ofAll : [];
     return {
       from: editor.offset(diagnostic.range.start),
       to: editor.offset(diagnostic.range.end),
@@ -46,8 +51,9 @@ function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: Cod
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-function isSame(one: ServerDiagnostic, other: ServerDiagnostic): boolean {
-  return one.message === other.message && JSON.stringify(one.range) === JSON.stringify(other.range);
+/** What is the same of a diagnostic and of that which an action names. */
+function keyOf({ message, range: { start, end } }: ServerDiagnostic): string {
+  return `${start.line} ${start.character} ${end.line} ${end.character} ${message}`;
 }
 
 function fix(editor: SceneEditor, action: CodeAction): Action {
