@@ -1,14 +1,16 @@
 //! Texts and places in them.
 //!
-//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from one file and any
-//! number of `--set` arguments, and a diagnostic may point into each of them, so a [`Span`] names its source. Spans are
-//! byte ranges; lines and columns are computed here, when something is printed.
+//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from
+//! one file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
+//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed here, when
+//! something is printed.
 
 use std::{ops::Range, sync::OnceLock};
 
 use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 
-/// Which text a span points into. The file comes before the arguments, and they come in their order.
+/// Which text a span points into. The file comes before the arguments, and they come in their
+/// order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
     /// The scene file (or standard input).
@@ -122,8 +124,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and is remembered in
-    /// [`Source::invalid_utf8`].
+    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and
+    /// is remembered in [`Source::invalid_utf8`].
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let (text, invalid) = match String::from_utf8(bytes) {
             Ok(text) => (text, Vec::new()),
@@ -215,8 +217,8 @@ impl Source {
         self.line_col(offset).line as usize + 1
     }
 
-    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts as the end, one inside
-    /// a character as the start of that character.
+    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts
+    /// as the end, one inside a character as the start of that character.
     pub fn place(&self, offset: usize) -> Place {
         let place = self.line_col(offset);
         let characters = self.lines().to_wide(WideEncoding::Utf32, place);
@@ -231,7 +233,8 @@ impl Source {
         }
     }
 
-    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are none as [`Self::place`] has it.
+    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are
+    /// none as [`Self::place`] has it.
     pub fn line_col(&self, offset: usize) -> LineCol {
         let offset = self.floor_char_boundary(offset);
         let offset = u32::try_from(offset).ok().map(TextSize::from);

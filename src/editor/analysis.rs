@@ -11,8 +11,8 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Item},
 };
 
-/// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a thousand objects, so
-/// that nobody has to keep it.
+/// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a
+/// thousand objects, so that nobody has to keep it.
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// What is known of it.
@@ -93,8 +93,8 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// The word, number or sign that a place touches: of two that meet there a word before a sign, and the one behind it before the
-    /// one that ends there.
+    /// The word, number or sign that a place touches: of two that meet there a word before a sign,
+    /// and the one behind it before the one that ends there.
     pub(super) fn token_at(&self, at: usize) -> Option<Token> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);

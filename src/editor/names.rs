@@ -1,4 +1,5 @@
-//! The names that a text defines: where each is defined, where it is used, and what it could be called instead.
+//! The names that a text defines: where each is defined, where it is used, and what it could be
+//! called instead.
 //!
 //! A `let` and an object may have the same name, and have nothing to do with each other then.
 
@@ -34,7 +35,8 @@ pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     first.map(|occurrence| occurrence.span)
 }
 
-/// Every place where the name at a place stands, in order; nothing where there is no name of the scene's own.
+/// Every place where the name at a place stands, in order; nothing where there is no name of the
+/// scene's own.
 pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     let Some((name, space)) = name_at(analysis, at) else {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! Frames: pictures of an open text, made in slices, so that other messages are answered in between.
+//! Frames: pictures of an open text, made in slices, so that other messages are answered in
+//! between.
 //!
 //! A frame that is not wanted any more is dropped between two slices.
 

@@ -21,7 +21,8 @@ use crate::{
 /// What the names of our own requests begin with.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// The answer to a request but that for a frame; null where the text has errors. The analysis is not made where it is not asked.
+/// The answer to a request but that for a frame; null where the text has errors. The analysis is
+/// not made where it is not asked.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,

@@ -1,6 +1,8 @@
-//! A version of a text as its picture needs it: the scene, and the worlds that pictures and rays ask.
+//! A version of a text as its picture needs it: the scene, and the worlds that pictures and rays
+//! ask.
 //!
-//! All is made once for a version, so that a pick in a scene of 100 000 spheres reads none of them again.
+//! All is made once for a version, so that a pick in a scene of 100 000 spheres reads none of them
+//! again.
 
 use std::collections::VecDeque;
 
@@ -14,7 +16,8 @@ use crate::{
     tracer::World,
 };
 
-/// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown until it is done.
+/// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown
+/// until it is done.
 const WORLDS: usize = 4;
 
 /// A version of a text that has a picture.

@@ -1,11 +1,12 @@
 //! A world becomes a film: with samples, or exactly.
 //!
-//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the means of its pixels. The part is
-//! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
-//! of a pixel.
+//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the
+//! means of its pixels. The part is cut into tiles, which the threads take as they come; neither
+//! the number of threads nor the tiles nor the part asked for can change a bit of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without; `slices` makes a picture of either kind step by step. Which of them a scene asks for is decided here, and what both
-//! have in common is here.
+//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without; `slices`
+//! makes a picture of either kind step by step. Which of them a scene asks for is decided here, and
+//! what both have in common is here.
 
 mod exact;
 mod renderer;
@@ -103,8 +104,9 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or exactly. The film keeps light, or the bytes of sRGB of which
-/// a PNG file is made: the same file, and less memory to touch.
+/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or
+/// exactly. The film keeps light, or the bytes of sRGB of which a PNG file is made: the same file,
+/// and less memory to touch.
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
@@ -117,8 +119,8 @@ pub fn render_as_asked<P: Pixel>(
     }
 }
 
-/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long as they are wanted: to hand out millions that nobody
-/// renders would take a second.
+/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long
+/// as they are wanted: to hand out millions that nobody renders would take a second.
 fn wanted(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))

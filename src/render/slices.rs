@@ -1,8 +1,8 @@
 //! A picture that is made in slices, so that whoever makes it can do something else in between.
 //!
-//! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not
-//! depend on the rectangle that is asked for, and no clock is needed, which a web worker's Rust does
-//! not have.
+//! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does
+//! not depend on the rectangle that is asked for, and no clock is needed, which a web worker's Rust
+//! does not have.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{

@@ -20,8 +20,8 @@ pub struct Fixed {
     pub held_back: usize,
     /// Number of errors left whose fixes only make up a value.
     pub placeholders: usize,
-    /// Number of errors left whose fixes another call would apply: the text has too many of them for
-    /// one call, or bytes that are not UTF-8, which a fixed text would not keep.
+    /// Number of errors left whose fixes another call would apply: the text has too many of them
+    /// for one call, or bytes that are not UTF-8, which a fixed text would not keep.
     pub waiting: usize,
 }
 
@@ -40,8 +40,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
     /// A fix can show what another mistake hid; so many in a row are more than any text has.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that are read for it: of long texts with more mistakes than a reading
-    /// tells, some are left.
+    /// Maximum number of bytes that are read for it: of long texts with more mistakes than a
+    /// reading tells, some are left.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
@@ -117,7 +117,8 @@ impl Problem {
     }
 }
 
-/// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
+/// The first fixes of all errors as one, but for those that would change what another one changes:
+/// they wait for the next round.
 struct Round {
     fix: Fix,
     /// The edits that make the text longer, and the problems that offer them: where all of these

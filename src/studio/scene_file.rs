@@ -14,7 +14,8 @@ use crate::{
     source::Source,
 };
 
-/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
+/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it
+/// cannot be read as a text.
 pub type Held = Result<Option<String>, String>;
 
 /// A scene's file, or a new scene that has none yet.
@@ -51,8 +52,7 @@ pub enum NotSaved {
 
 /// Why a file could not be written, and what could be done.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
-    let folder = path.parent().filter(|it| *it != Path::new(""));
-    let is_gone = folder.is_some_and(|folder| !folder.exists());
+    let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
         io::ErrorKind::NotFound if is_gone => {
             return NotSaved::Refused(format!(
@@ -138,7 +138,8 @@ impl SceneFile {
         self.draft.keep(kept)
     }
 
-    /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
+    /// Looks at what is there now if the file has changed: what a watch has read may be older than
+    /// what a page has saved since. Returns the version.
     pub fn look(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -162,7 +163,8 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene, also one beside the file, under a name that no file has. Returns the version that it is.
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene, also one
+    /// beside the file, under a name that no file has. Returns the version that it is.
     ///
     /// # Errors
     ///

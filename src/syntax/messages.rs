@@ -93,8 +93,8 @@ pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
     ("a scene of POV-Ray", "", "light_source|#declare|#version|#include|pigment|global_settings|location <|look_at <", 3, ""),
     ("a scene of pbrt", "", "LookAt |WorldBegin|Shape \"|Film \"|Integrator \"|Sampler \"|AttributeBegin|Camera \"", 2, ""),
     ("YAML", "", ":\n|: ", 3, "{="),
-    ("a program in JavaScript", "", "new THREE.|new Vector3(|require('|require(\"|=> {|console.|document.|scene.add(", 3, ""),
+    ("a program in JavaScript", "const impor var let", "new THREE.|new Vector3(|require('|require(\"|=> {|console.|document.|scene.add(", 3, ""),
     ("a program in Python", "", "import |def |np.|self.|__name__|bpy.|print(|math.", 3, "{"),
-    ("a program in C#", "", "using |public |class |new Vector3(|void ", 3, ""),
+    ("a program in C#", "using publi names", "using |public |class |new Vector3(|void ", 3, ""),
     ("a mesh of Wavefront", "", "\nv |\nvn |\nf |\nmtllib |\nusemtl ", 3, "{="),
 ];

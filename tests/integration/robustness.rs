@@ -1,6 +1,8 @@
-//! Whatever the text, reading it ends soon, says something if there is no scene, and points into the text.
+//! Whatever the text, reading it ends soon, says something if there is no scene, and points into
+//! the text.
 //!
-//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the tests tries a sample, of shorter texts.
+//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the
+//! tests tries a sample, of shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -43,7 +45,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests are, up to four seconds.
+    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests
+    // are, up to four seconds.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {

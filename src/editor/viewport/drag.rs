@@ -1,7 +1,9 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are written to one decimal after another, until the text means
-//! something that is seen within half a pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a condition of the language.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are
+//! written to one decimal after another, until the text means something that is seen within half a
+//! pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a
+//! condition of the language.
 
 use std::iter;
 
@@ -44,7 +46,8 @@ pub struct Drag<'a> {
     pub step: Option<f64>,
 }
 
-/// What has to change in the text, and what becomes of the fields that do; nothing at all where nobody would see it.
+/// What has to change in the text, and what becomes of the fields that do; nothing at all where
+/// nobody would see it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
     /// The changes.
@@ -288,8 +291,8 @@ fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Points that a camera sees in the middle and in the corners of its picture, before and behind what it is moved about; none where numbers have too few digits
-/// for them.
+/// Points that a camera sees in the middle and in the corners of its picture, before and behind
+/// what it is moved about; none where numbers have too few digits for them.
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -313,8 +316,9 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// The number of decimals of the greatest power of ten that moves what is held by no more than `step` pixels, and that `step`; none of what is not
-    /// a handle's. Beyond the digits that numbers have, nothing snaps.
+    /// The number of decimals of the greatest power of ten that moves what is held by no more than
+    /// `step` pixels, and that `step`; none of what is not a handle's. Beyond the digits that
+    /// numbers have, nothing snaps.
     fn snapped(&self, part: Part, changes: &[Change], step: f64) -> Option<(i32, f64)> {
         let held = |part: Part| {
             let mut marks = self.marks(part).into_iter();
@@ -333,7 +337,8 @@ impl View<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Whether everything in the picture or near to it, and what is held, is seen no farther than this from where it should be.
+    /// Whether everything in the picture or near to it, and what is held, is seen no farther than
+    /// this from where it should be.
     fn agree(&self, ideal: Part, found: Part, tolerance: f64) -> bool {
         let size = self.projection.size;
         let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
@@ -347,7 +352,8 @@ impl View<'_> {
         })
     }
 
-    /// Where that is seen which tells a camera or an object from others, and whether it is what is held.
+    /// Where that is seen which tells a camera or an object from others, and whether it is what is
+    /// held.
     fn marks(&self, part: Part) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match part {
@@ -355,7 +361,8 @@ impl View<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
+            // The handle of a board stays where the view axis meets it: what moves is the point
+            // that it holds now.
             Part::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()

@@ -1,10 +1,14 @@
-//! What an interactive view of the picture needs: what is seen at a point, what to draw over it, and what moving a handle does to the text.
+//! What an interactive view of the picture needs: what is seen at a point, what to draw over it,
+//! and what moving a handle does to the text.
 //!
-//! In: a text and its scene, and points of the picture in pixels from its top left corner. Out: points, and edits of the text. Nothing here is told to anybody
-//! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
+//! In: a text and its scene, and points of the picture in pixels from its top left corner. Out:
+//! points, and edits of the text. Nothing here is told to anybody before it was computed from the
+//! scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
 //!
-//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are and how one moves the object, `camera`
-//! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together. `add` writes blocks that are new.
+//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are
+//! and how one moves the object, `camera` how the pointer moves the camera; `edits` writes the
+//! fields that change into the text. `drag` is all of that together. `add` writes blocks that
+//! are new.
 
 mod add;
 mod camera;

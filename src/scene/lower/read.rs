@@ -31,13 +31,14 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree takes little memory, and that soon
-/// none is read when nobody wants it.
+/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree
+/// takes little memory, and that soon none is read when nobody wants it.
 const PART: usize = 1 << 16;
 
-/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made sense of one after the other, so
-/// that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
-/// whole, for a report may tell of what stands elsewhere.
+/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made
+/// sense of one after the other, so that there is never a tree of the whole. The result does not
+/// depend on the parts: a file with mistakes is read again as a whole, for a report may tell of
+/// what stands elsewhere.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }
@@ -74,7 +75,8 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     lowering.is_right().then(|| lowering.reading())
 }
 
-/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
+/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite
+/// of errors.
 pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let (parts, diagnostics, names) = whole(sources, &parsed, &cancel::NEVER).finish();
@@ -164,7 +166,8 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
         && place.is_some_and(|place| place.start <= label.span.start)
 }
 
-/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.
+/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they
+/// are in.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
     if sources.file.is_utf16() {

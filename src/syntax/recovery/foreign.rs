@@ -1,6 +1,8 @@
 //! What other languages write and this one has not: statements, comments by `#` and `--`, and whole
 //! files.
 
+use memchr::memmem;
+
 use super::Recovery;
 use crate::{
     diagnostic::{Edit, Fix},
@@ -124,19 +126,20 @@ impl Recovery<'_, '_> {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');
-        let ink = text.chars().filter(|c| !c.is_whitespace());
+        let first = Lexer::past_comments(self.text, 0);
+        let ink = self.text.get(first.start..).unwrap_or_default();
+        let ink = ink.chars().filter(|c| !c.is_whitespace());
         let ink: String = ink.take(5).collect();
-        let times = |mark: &str| text.matches(mark).count();
+        let times = |mark: &str| memmem::find_iter(text.as_bytes(), mark).count();
         let count = |marks: &str| marks.split('|').map(times).sum::<usize>();
         let is_it = |row: &&(&str, &str, &str, usize, &str)| {
             row.1.split(' ').any(|start| ink.starts_with(start))
-                && count(row.2) >= row.3
                 && !row.4.chars().any(|other| text.contains(other))
+                && count(row.2) >= row.3
         };
         let Some((what, ..)) = FOREIGN_FILES.iter().find(is_it) else {
             return false;
         };
-        let first = Lexer::past_comments(self.text, 0);
         let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
         let is_left_handed = matches!(*what, "a scene of POV-Ray" | "a scene of pbrt");

@@ -142,6 +142,8 @@ impl<'w, 's> Recovery<'w, 's> {
     /// function of another language.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
+        let slips = |this: &Self| this.within.slips.values().map(Vec::len).sum::<usize>();
+        let slips_before = slips(self);
         let end = self.item(start);
         let is_better = match self.items.get(items..) {
             Some([Item::Block(block)]) => {
@@ -151,7 +153,9 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                new.all(|problem| problem.code == "pinhole::foreign_function")
+                // What is right already is not read once more.
+                let is_new = slips(self) > slips_before || self.problems.len() > problems;
+                is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
             _ => false,
         };

@@ -52,6 +52,7 @@ impl<'s> Recovery<'_, 's> {
         let next = self.word(0);
         let is_apart = unit.is_empty()
             && (next == "°" || (self.is_name(0) && !self.is_on_new_line(0)))
+            && !self.is_field_name(next)
             && !self.words.is_let(next);
         if is_apart && let Some(right) = unit_of(next) {
             let behind = self.bump();

@@ -1,4 +1,5 @@
-//! The engine in the browser: the conversation that `docs/protocol.md` describes, as texts that a web worker passes to and from the page.
+//! The engine in the browser: the conversation that `docs/protocol.md` describes, as texts that a
+//! web worker passes to and from the page.
 
 use lsp_server::{Message, Notification};
 use pinhole::{

@@ -38,11 +38,9 @@ const OWN = "page-";
 const ALIVE = "studio/alive";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
-/** The codes with which the host closes a web socket. */
-const ENDED = 1001;
+/** What the codes say with which the host closes a web socket. */
+const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
-const LATE = 4002;
-const TWICE = 4003;
 
 export class Connection implements Transport {
   state: ConnectionState = "connecting";
@@ -199,11 +197,8 @@ export function webSocket(path: string): Connector {
       session.keep(JSON.parse(String(event.data)).params.token);
       opened(socket);
     });
-    socket.addEventListener("close", ({ code }) => {
-      if (code === UNKNOWN) closed(session.isFresh ? "unknown" : "restarted");
-      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended"
-        : "lost");
-    });
+    socket.addEventListener("close", ({ code }) => closed(code === UNKNOWN
+      ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
   };
 }
 

@@ -2,6 +2,7 @@
 // crash, or a host that was lost. What is written before that is answered is kept beside what is
 // offered. The served host keeps drafts in a file; the static page the last ten in this browser.
 
+import { createStore, del, delMany, set, values } from "idb-keyval";
 import type { Connection } from "./connection";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
@@ -18,6 +19,8 @@ const MOST = 10;
 /** So many are offered at once. */
 const OFFERED = 3;
 interface Kept extends Draft { id: string }
+
+const store = () => createStore("pinhole-drafts", "drafts");
 
 export class Drafts {
   private timer = 0;
@@ -107,28 +110,14 @@ export class Drafts {
   }
 }
 
-/** Does something with the drafts in this browser. */
-async function inStore<T>(act: (store: IDBObjectStore) => IDBRequest<T>): Promise<T> {
-  const settled = <R>(request: IDBRequest<R>) => new Promise<R>((resolve, reject) => {
-    request.onsuccess = () => resolve(request.result);
-    request.onerror = () => reject(request.error as Error);
-  });
-  const opening = indexedDB.open("pinhole", 1);
-  opening.onupgradeneeded = () => opening.result.createObjectStore("drafts", { keyPath: "id" });
-  const database = await settled(opening);
-  try {
-    return await settled(act(database.transaction("drafts", "readwrite").objectStore("drafts")));
-  } finally { database.close(); }
-}
-
 async function all(): Promise<Kept[]> {
-  const drafts = await inStore<Kept[]>(store => store.getAll());
+  const drafts = await values<Kept>(store());
   return drafts.sort((a, b) => b.time - a.time);
 }
 
 /** Keeps a draft in this browser and forgets the oldest ones, or forgets one by its key. */
 async function stored(draft: Kept | string): Promise<void> {
-  if (typeof draft === "string") return inStore(store => store.delete(draft));
-  await inStore(store => store.put(draft));
-  for (const { id } of (await all()).slice(MOST)) await inStore(store => store.delete(id));
+  if (typeof draft === "string") return del(draft, store());
+  await set(draft.id, draft, store());
+  await delMany((await all()).slice(MOST).map(({ id }) => id), store());
 }

@@ -56,7 +56,7 @@ const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
-/** Texts that differ in more lines than these are not compared line by line: it takes too long. */
+/** Of texts with more changed lines than these it is not said which ones stay. */
 const MOST_CHANGES = 3000;
 
 /** The host's file as the page last saw it; a static page has local files alone. */

@@ -19,8 +19,7 @@ export function layOut(picture: Picture): void {
     divider.setAttribute("aria-valuenow", String(bounded));
     remember("text-share", String(bounded));
   };
-  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal"
-    : "vertical");
+  const orient = () => (divider.ariaOrientation = isNarrow.matches ? "horizontal" : "vertical");
   isNarrow.addEventListener("change", orient);
   orient();
   share(Number(remembered("text-share") ?? 42));

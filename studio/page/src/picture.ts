@@ -27,17 +27,13 @@ export class Picture {
     if (context === null) throw new Error("this browser has no canvas");
     this.context = context;
     new ResizeObserver(() => (this.fitted ? this.fit() : this.place())).observe(stage);
-    stage.addEventListener(
-      "wheel",
-      event => {
-        event.preventDefault();
-        // With the shift key browsers turn the wheel to the side.
-        const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
-        if (event.shiftKey) this.onDolly(turned);
-        else this.zoomBy(2 ** -turned, this.local(event));
-      },
-      { passive: false },
-    );
+    stage.addEventListener("wheel", event => {
+      event.preventDefault();
+      // With the shift key browsers turn the wheel to the side.
+      const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
+      if (event.shiftKey) this.onDolly(turned);
+      else this.zoomBy(2 ** -turned, this.local(event));
+    }, { passive: false });
   }
 
   show({ bitmap, size, fineness, version }: Shown): void {

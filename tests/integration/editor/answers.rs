@@ -49,7 +49,8 @@ pub fn inserted(text: &str, completion: &Completion) -> String {
     text
 }
 
-/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or why it has no other name.
+/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or
+/// why it has no other name.
 fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     let mut text = analysis.text().to_owned();
     let found = occurrences(analysis, at);
@@ -97,7 +98,8 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// The text behind a start of it, of which a handle was dragged as the words say: its name, the points, and along what.
+/// The text behind a start of it, of which a handle was dragged as the words say: its name, the
+/// points, and along what.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());

@@ -88,7 +88,10 @@ fn glued(word: &str, text: &str) -> Option<usize> {
     let is_value = |rest: &str| {
         rest.starts_with(|c: char| c.is_ascii_digit())
             || schema::css::color(rest).is_some()
-            || text.contains(&format!("let {rest} "))
+            || ["deg", "rad", "rgb"].contains(&rest)
+            || text
+                .split(|c: char| !is_letter(c) && !c.is_ascii_digit())
+                .any(|other| other == rest)
     };
     let mut fields = BLOCKS.iter().flat_map(|block| block.field_names());
     let found = fields.find(|field| word.strip_prefix(field).is_some_and(is_value));

@@ -99,7 +99,8 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Each way of protecting a file that this system and user have: whoever is root has the last alone.
+/// Each way of protecting a file that this system and user have: whoever is root has the last
+/// alone.
 #[cfg(unix)]
 #[test]
 fn a_save_that_is_not_allowed_names_the_file_and_a_way_out() {
@@ -262,8 +263,10 @@ fn what_cannot_be_edited_is_told_at_once() {
 #[cfg(unix)]
 #[test]
 fn a_browser_is_started_unless_it_is_not_wanted() {
+    use rustix::net::sockopt::set_socket_recv_buffer_size;
     use std::{
         env,
+        io::Read,
         os::unix::fs::PermissionsExt,
         process::Stdio,
         thread,
@@ -282,7 +285,10 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    for (arguments, is_opened) in [("studio --no-open", false), ("studio", true)] {
+    // More than the system takes for a page that does not read.
+    let long = "// a long scene\n".repeat(1 << 19);
+    folder.write("a.scn", &long);
+    for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
         let mut command = folder.command(arguments);
         command.env("PATH", &path).stdout(Stdio::null());
         let studio = Studio::start(command);
@@ -305,13 +311,25 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         // The page connects again with what it was given.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
+        // What is still on its way would come before the word that the session ends.
+        first.told("studio/file");
+        again.told("studio/file");
         let (mut other, _) = studio.page();
+        let mut silent = studio.socket();
+        set_socket_recv_buffer_size(silent.get_ref(), 1 << 16).unwrap();
+        silent.send(session.as_str().into()).unwrap();
+        silent.read().unwrap();
         // Whoever opens it a second time ends the session, and has none.
         let twice = CloseCode::from(4003);
         for token in [once, &session, once] {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
+        // Nor does one that does not read what it is sent go on with it.
+        thread::sleep(Duration::from_secs(1));
+        let mut rest = Vec::new();
+        let _ = silent.get_mut().read_to_end(&mut rest);
+        assert!(rest.len() < long.len(), "{} bytes", rest.len());
         // Pages with the printed address are not concerned.
         other.open(json!({}), SCENE);
         other.diagnostics();
