@@ -5,11 +5,10 @@ import { byId } from "./dom";
 import type { SceneEditor } from "./editor";
 import type { Added } from "./protocol";
 import type { Selection } from "./selection";
-import type { Status } from "./status";
+import { say } from "./status";
 
 export class Blocks {
-  constructor(private readonly editor: SceneEditor, private readonly selection: Selection,
-    private readonly status: Status) {
+  constructor(private readonly editor: SceneEditor, private readonly selection: Selection) {
     for (const button of document.querySelectorAll<HTMLElement>("[data-kind]")) {
       button.addEventListener("click", () => void this.add({ kind: button.dataset["kind"] }));
     }
@@ -24,13 +23,12 @@ export class Blocks {
 
   private async add(about: object): Promise<void> {
     const { editor, editor: { view } } = this;
-    const { doc } = view.state;
-    const added = await editor.ask<Added>("pinhole/add", about);
-    if (added === null || view.state.doc !== doc) return;
+    const added = await editor.askCurrent<Added>("pinhole/add", about);
+    if (added === null) return;
     // The cursor in it has it selected, as soon as it is known as an object.
     view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
       selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
-    this.status.say(`${added.name ?? "A copy"} is added.`);
+    say(`${added.name ?? "A copy"} is added.`);
   }
 
   /** Takes the selected block away, with its line if nothing else is there. */

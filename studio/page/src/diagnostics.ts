@@ -3,21 +3,14 @@
 import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
 import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
+import type { CodeAction, Diagnostic as ServerDiagnostic, PublishDiagnosticsParams } from
+  "vscode-languageserver-protocol";
 import { byId, create, createButton } from "./dom";
 import type { SceneEditor } from "./editor";
-import type { Published, ServerDiagnostic, TextEdit } from "./protocol";
 import { setText, visible } from "./visible";
 
-interface CodeAction {
-  title: string;
-  kind: string;
-  diagnostics?: ServerDiagnostic[];
-  edit: { changes?: Record<string, TextEdit[]> };
-  data?: { values: [number, number][] }; // made-up ones, in the text of the first edit
-}
-
 /** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
-export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
+export async function publishDiagnostics(editor: SceneEditor, published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
@@ -44,7 +37,7 @@ function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: Cod
       from: editor.offset(diagnostic.range.start),
       to: editor.offset(diagnostic.range.end),
       severity: diagnostic.severity === 2 ? "warning" : "error",
-      message: visible(diagnostic.message),
+      message: visible(String(diagnostic.message)),
       actions: [...fixes, ...all].map(action => fix(editor, action)),
     };
   });
@@ -58,8 +51,9 @@ function keyOf({ message, range: { start, end } }: ServerDiagnostic): string {
 
 function fix(editor: SceneEditor, action: CodeAction): Action {
   const { doc } = editor.view.state;
-  const edits = action.edit.changes?.[editor.uri] ?? [];
-  const [value] = action.data?.values ?? [];
+  const edits = action.edit?.changes?.[editor.uri] ?? [];
+  // Values that are made up are told of in the text of the first edit.
+  const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
@@ -81,36 +75,32 @@ export function changesDiagnostics(update: ViewUpdate): boolean {
     it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** What is wrong: the first of it under the text, and a list of all. */
+/** What is wrong, under the text: the first of it, or all. */
 export class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");
-  private readonly first = byId("first-problem");
 
   constructor(private readonly view: () => EditorView) {
     this.button.addEventListener("click", () => {
-      this.button.setAttribute("aria-expanded", String(this.list.hidden));
-      this.list.hidden = !this.list.hidden;
+      this.button.ariaExpanded = String(!this.showsAll);
       this.update();
     });
   }
 
+  private get showsAll(): boolean { return this.button.ariaExpanded === "true"; }
+
   update(): void {
-    const view = this.view();
     const found: [Diagnostic, number, number][] = [];
-    forEachDiagnostic(view.state, (...it) => found.push(it));
-    const count = found.length;
-    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem"
-      : `${count} problems`);
-    this.button.toggleAttribute("data-some", count > 0);
-    // What is closed nobody sees: a drag changes the text many times a second.
-    this.list.replaceChildren(...(this.list.hidden ? [] : found.map(it => this.item(...it))));
-    const first = this.list.hidden ? found.slice(0, 1) : [];
-    this.first.hidden = first.length === 0;
-    this.first.replaceChildren(...first.map(it => this.item(...it)));
-    // What a message helps with is in the list.
-    const button = this.first.querySelector(".place");
-    if (button !== null) setText(button, button.textContent?.split("\n")[0] ?? "");
+    forEachDiagnostic(this.view().state, (...it) => found.push(it));
+    const { length } = found;
+    setText(this.button, length === 0 ? "No problems" : length === 1 ? "1 problem"
+      : `${length} problems`);
+    this.button.toggleAttribute("data-some", length > 0);
+    this.list.hidden = length === 0;
+    this.list.toggleAttribute("data-all", this.showsAll);
+    // What is not shown is not made: a drag changes the text many times a second.
+    const shown = this.showsAll ? found : found.slice(0, 1);
+    this.list.replaceChildren(...shown.map(it => this.item(...it)));
   }
 
   /** A message, which leads to its place, with its fixes. */
@@ -135,12 +125,10 @@ export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {
     const { head } = view.state.selection.main;
-    const fixable: { diagnostic: Diagnostic; from: number; to: number }[] = [];
-    forEachDiagnostic(view.state, (diagnostic, from, to) => {
-      if (diagnostic.actions?.length) fixable.push({ diagnostic, from, to });
-    });
-    const chosen = fixable.find(({ from, to }) => from <= head && head <= to) ?? fixable[0];
-    chosen?.diagnostic.actions?.[0]?.apply(view, chosen.from, chosen.to);
+    const fixable: [Diagnostic, number, number][] = [];
+    forEachDiagnostic(view.state, (...it) => { if (it[0].actions?.length) fixable.push(it); });
+    const chosen = fixable.find(([, from, to]) => from <= head && head <= to) ?? fixable[0];
+    chosen?.[0].actions?.[0]?.apply(view, chosen[1], chosen[2]);
     return chosen !== undefined;
   },
 };

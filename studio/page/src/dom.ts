@@ -67,17 +67,19 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** A setting that this browser remembers; browsers that forbid it start anew each time. */
-export function remembered(key: string): string | null {
+/** A setting that this browser remembers, or this tab; browsers that forbid it start anew. */
+export function remembered(key: string, where: Store = "localStorage"): string | null {
   try {
-    return localStorage.getItem(`pinhole-${key}`);
+    return window[where].getItem(`pinhole-${key}`);
   } catch { return null; }
 }
 
-export function remember(key: string, value: string): void {
+export function remember(key: string, value: string, where: Store = "localStorage"): void {
   try {
-    localStorage.setItem(`pinhole-${key}`, value);
+    window[where].setItem(`pinhole-${key}`, value);
   } catch {
     // The page works without.
   }
 }
+
+type Store = "localStorage" | "sessionStorage";

@@ -40,12 +40,9 @@ class Note {
     this.element.hidden = text === "";
     this.element.dataset["tone"] = tone;
     setText(this.element, text);
-    const { clientWidth, clientHeight } = this.element.parentElement as HTMLElement;
-    const { offsetWidth, offsetHeight } = this.element;
-    const left = Math.max(4, Math.min(x + 18, clientWidth - offsetWidth - 4));
-    const above = y - offsetHeight - 14;
-    const top = Math.max(4, Math.min(above > 4 ? above : y + 22, clientHeight - offsetHeight - 4));
-    this.element.style.transform = `translate(${left}px, ${top}px)`;
+    const { style } = this.element.parentElement as HTMLElement;
+    style.setProperty("--x", `${x}px`);
+    style.setProperty("--y", `${y}px`);
   }
 
   /** A refusal stays until something else is done, or for a while. */

@@ -5,60 +5,24 @@ import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirro
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
-import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
-  serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
+import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, renameKeymap,
+  serverCompletion, signatureHelp } from "@codemirror/lsp-client";
+import { diff } from "@codemirror/merge";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension,
-  type Text } from "@codemirror/state";
+import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec,
+  type Extension } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
+import type { Position, PublishDiagnosticsParams, Range, TextEdit } from
+  "vscode-languageserver-protocol";
 import type { Connection } from "./connection";
 import { gestureHistory, rewrite } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
-import { isSuperseded, type Position, type Published, type Range, type TextEdit } from "./protocol";
+import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-class SceneFile implements WorkspaceFile {
-  constructor(readonly uri: string, readonly languageId: string, public version: number,
-    public doc: Text, readonly view: EditorView) {}
-
-  getView(): EditorView { return this.view; }
-}
-
-/** The one file that the page has open. */
-class SceneWorkspace extends Workspace {
-  override files: SceneFile[] = [];
-  private version = 0;
-
-  override syncFiles(): { file: SceneFile; prevDoc: Text; changes: ChangeSet }[] {
-    return this.files.flatMap(file => {
-      const plugin = LSPPlugin.get(file.view);
-      if (plugin === null || plugin.unsyncedChanges.empty) return [];
-      const update = { file, prevDoc: file.doc, changes: plugin.unsyncedChanges };
-      file.doc = file.view.state.doc;
-      file.version = ++this.version;
-      plugin.clear();
-      return [update];
-    });
-  }
-
-  override openFile(uri: string, languageId: string, view: EditorView): void {
-    const file = new SceneFile(uri, languageId, ++this.version, view.state.doc, view);
-    this.files = [file];
-    this.client.didOpen(file);
-  }
-
-  override closeFile(uri: string): void {
-    this.files = this.files.filter(file => file.uri !== uri);
-    this.client.didClose(uri);
-  }
-
-  /** A server that is new knows nothing yet. */
-  override connected(): void {
-    this.syncFiles();
-    super.connected();
-  }
-}
+/** So long it may take to find out where two texts differ, in milliseconds. */
+const DIFF_TIME = 100;
 
 /** Halves of surrogate pairs, which no file and no message can hold. */
 const HALVES = /\p{Surrogate}/gu;
@@ -112,12 +76,11 @@ export class SceneEditor {
   /** The address by which the server knows the scene; empty until it has been told. */
   uri = "";
   /** What to do with the diagnostics that the server publishes. */
-  diagnosed: (published: Published) => void = () => undefined;
+  diagnosed: (published: PublishDiagnosticsParams) => void = () => undefined;
 
   constructor(parent: HTMLElement, private readonly connection: Connection,
     nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
     this.client = new LSPClient({
-      workspace: client => new SceneWorkspace(client),
       // A busy machine may take its time; a lost connection is told by the connection.
       timeout: 60_000,
       sanitizeHTML: sanitized,
@@ -176,6 +139,13 @@ export class SceneEditor {
     }
   }
 
+  /** The same; null also where the text has changed meanwhile. */
+  async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
+    const { doc } = this.view.state;
+    const answer = await this.ask<Result>(method, params);
+    return this.view.state.doc === doc ? answer : null;
+  }
+
   /** The place of all the text. */
   get whole(): Range {
     return { start: { line: 0, character: 0 },
@@ -212,22 +182,17 @@ export class SceneEditor {
   /** Puts another text in place. No more changes than differs, so that the cursor stays. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
-    const shorter = Math.min(old.length, text.length);
-    let start = 0;
-    while (start < shorter && old[start] === text[start]) start++;
-    let end = 0;
-    while (end < shorter - start
-      && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
-    // Characters beyond the first 65536 have two units, and change as one.
-    if (/[\ud800-\udbff]/.test(text.charAt(start - 1))) start--;
-    if (/[\udc00-\udfff]/.test(text.charAt(text.length - end))) end--;
-    if (start < old.length - end || start < text.length - end) {
-      this.view.dispatch({ changes: { from: start, to: old.length - end,
-        insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
-    }
+    const changes = diff(old, text, { timeout: DIFF_TIME }).map(({ fromA, toA, fromB, toB }) =>
+      ({ from: fromA, to: toA, insert: text.slice(fromB, toB) }));
+    if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 
-  connected(): void { this.client.connect(this.connection); }
+  /** A server that is new knows nothing yet. */
+  connected(): void {
+    this.client.workspace.syncFiles();
+    this.client.connect(this.connection);
+  }
+
   disconnected(): void { this.client.disconnect(); }
 
   /** Moves the cursor to a place of the text, and shows it. */

@@ -8,19 +8,13 @@ import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { withLf, type SceneEditor } from "./editor";
 import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
-import type { Status } from "./status";
+import { say } from "./status";
 import { setText, visibleLine } from "./visible";
 
 /** What browsers that can save into files offer for it. */
-interface FileHandle {
-  name: string;
-  getFile(): Promise<File>;
-  createWritable(): Promise<{ write(text: string): Promise<void>; close(): Promise<void> }>;
-}
-
 interface FilePickers {
-  showOpenFilePicker?(options: object): Promise<FileHandle[]>;
-  showSaveFilePicker?(options: object): Promise<FileHandle>;
+  showOpenFilePicker?(options: object): Promise<FileSystemFileHandle[]>;
+  showSaveFilePicker?(options: object): Promise<FileSystemFileHandle>;
 }
 
 /** The scene of a page without a file. */
@@ -37,7 +31,7 @@ interface Scene {
   base: string | null;
   /** Whether the file has gone since. */
   isGone: boolean;
-  handle: FileHandle | null;
+  handle: FileSystemFileHandle | null;
   /** Whether the host is still to make a file of it, under a name that Save asks for. */
   isNew: boolean;
   /** The text that it starts with, which is not worth saving; null for a file. */
@@ -70,7 +64,7 @@ export class Files {
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly status: Status, private readonly isServed: boolean) {
+    private readonly isServed: boolean) {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
     byId("new").addEventListener("click", () => this.begin(EMPTY));
@@ -163,7 +157,7 @@ export class Files {
       this.conflict.close();
       this.seen = text;
       this.editor.replace(text);
-      this.status.say(`${this.shownName} was changed outside; the page follows.`);
+      say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
     } else this.ask(text);
     this.show();
@@ -171,13 +165,13 @@ export class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE.test(this.at.seen ?? "")) this.status.say(`${this.shownName} has carriage returns `
+    if (LONE.test(this.at.seen ?? "")) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
   private tellGone(reason?: string | null): void {
     this.at.isGone = true;
-    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}`
+    say(reason ? `${this.shownName} cannot be read: ${reason}`
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
@@ -201,7 +195,7 @@ export class Files {
 
   /** Says what kept a file from being saved or opened, unless that was the user. */
   private failed({ name, message }: Error): void {
-    if (name !== "AbortError") this.status.say(message, "warning");
+    if (name !== "AbortError") say(message, "warning");
   }
 
   private async saveAs(name: string): Promise<void> {
@@ -210,7 +204,7 @@ export class Files {
     const { isGone, isNew, base } = this.at;
     const isHosts = this.at === this.hosts && !isNew;
     const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
-    const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
+    const slow = setTimeout(() => say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await this.connection.request<Saved>("studio/save", about);
       if (answer.ok) {
@@ -228,7 +222,7 @@ export class Files {
     Object.assign(this.at, { name, isGone: false, untouched: null });
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = this.at;
-    this.status.say(`${this.shownName} is saved.`);
+    say(`${this.shownName} is saved.`);
     this.onSaved();
   }
 
@@ -290,7 +284,7 @@ export class Files {
     } catch (error) { this.failed(error as Error); }
   }
 
-  private async take(file: File, handle: FileHandle | null): Promise<void> {
+  private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {
     try {
       // Other encodings would come back from Save as another text.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
@@ -298,7 +292,7 @@ export class Files {
       const seen = this.isServed ? null : text;
       this.begin(text, { name: file.name, handle, seen, untouched: seen === null ? text : null });
       this.tellLone();
-    } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
+    } catch { say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
   }
 
@@ -308,23 +302,16 @@ export class Files {
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
     setText(byId("conflict-name"), this.shownName);
-    const choose = (act: () => void) => () => {
-      this.conflict.close();
-      act();
+    this.conflict.returnValue = "";
+    this.conflict.onclose = () => {
+      const { returnValue: choice } = this.conflict;
+      // Saving will ask again, because the page's text is still made from an older one.
+      if (choice === "") return;
+      this.seen = theirs;
+      if (choice === "page") void this.save();
+      else this.editor.replace(theirs);
       this.show();
     };
-    byId("conflict-choices").replaceChildren(
-      createButton("Keep the page's text and save it", "primary", choose(() => {
-        this.seen = theirs;
-        void this.save();
-      })),
-      createButton("Take the file's text", "", choose(() => {
-        this.seen = theirs;
-        this.editor.replace(theirs);
-      })),
-      // Saving will ask again, because the page's text is still made from an older one.
-      createButton("Decide later", "", choose(() => {})),
-    );
     if (!this.conflict.open) this.conflict.showModal();
   }
 }

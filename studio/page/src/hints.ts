@@ -4,17 +4,11 @@
 import { StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
   type DecorationSet } from "@codemirror/view";
+import type { Color, ColorInformation, ColorPresentation, InlayHint } from
+  "vscode-languageserver-protocol";
 import { create } from "./dom";
 import type { SceneEditor } from "./editor";
 import { Gesture } from "./gesture";
-import type { Position, Range, TextEdit } from "./protocol";
-
-interface InlayHint { position: Position; label: string }
-interface Color { red: number; green: number; blue: number; alpha: number }
-interface ColorInformation { range: Range; color: Color }
-
-/** How long the text has to rest before hints are asked for, in milliseconds. */
-const REST = 150;
 
 /** A colour as it is written. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
@@ -96,29 +90,21 @@ export const openSwatch: Command = view => {
 };
 
 export class Hints {
-  private timer = 0;
-
   constructor(private readonly editor: SceneEditor) {}
 
-  /** The text has changed: new hints come when it rests. */
-  changed(): void {
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.refresh(), REST);
-  }
-
-  private async refresh(): Promise<void> {
+  /** The text has come to rest: it has new hints. */
+  async refresh(): Promise<void> {
     const { editor } = this;
     const { doc } = editor.view.state;
-    if (editor.uri === "") return;
     const [hints, colors] = await Promise.all([
-      editor.ask<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
-      editor.ask<ColorInformation[]>("textDocument/documentColor", {}),
+      editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
+      editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
     ]);
     // A newer text or connection brings new ones.
-    if (hints === null || colors === null || editor.view.state.doc !== doc) return;
+    if (hints === null || colors === null) return;
     const decorations = [
       ...hints.map(({ position, label }) =>
-        Decoration.widget({ widget: new HintWidget(label), side: 1 })
+        Decoration.widget({ widget: new HintWidget(String(label)), side: 1 })
         .range(editor.offset(position))),
       ...colors.map(({ range, color }) => {
         const from = editor.offset(range.start);
@@ -139,12 +125,11 @@ export class Hints {
     const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
     const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
     const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>(
+    const ways = await editor.askCurrent<ColorPresentation[]>(
       "textDocument/colorPresentation", { color, range });
     const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
       ?? ways?.[0];
-    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(
-      editor.changes([way.textEdit]));
+    if (way?.textEdit !== undefined) gesture.apply(editor.changes([way.textEdit]));
   }
 }
 

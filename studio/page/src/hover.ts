@@ -5,7 +5,7 @@ import type { OverlayLayer } from "./overlays";
 import type { Picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { nameOf } from "./selection";
-import type { Status } from "./status";
+import { point as tell } from "./status";
 
 export class Hover {
   private busy = false;
@@ -13,11 +13,11 @@ export class Hover {
   private place: Point | null = null;
 
   constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer, private readonly status: Status) {
+    private readonly overlays: OverlayLayer) {
     picture.stage.addEventListener("pointerleave", () => this.leave());
     picture.stage.addEventListener("pointermove", event => {
       this.place = event.pointerType === "touch" ? null : picture.local(event);
-      if (event.buttons !== 0) status.point("");
+      if (event.buttons !== 0) tell("");
       else this.again();
     });
   }
@@ -35,7 +35,7 @@ export class Hover {
       this.next = null;
       const isInside = this.picture.isInside(at);
       const pick = isInside ? await this.editor.ask<Pick>("pinhole/pick", { point: at }) : null;
-      this.status.point(pick === null ? "" : described(pick, at));
+      tell(pick === null ? "" : described(pick, at));
       this.overlays.hover(pick?.object?.index ?? null);
       if (pick === null || !this.overlays.isOn("samples")) continue;
       const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
@@ -49,7 +49,7 @@ export class Hover {
     this.next = this.place = null;
     this.overlays.hover(null);
     this.overlays.showSamples([0, 0], null);
-    this.status.point("");
+    tell("");
   }
 }
 

@@ -5,7 +5,7 @@ import type { Blocks } from "./blocks";
 import { Drag, type Workbench } from "./drag";
 import type { Point } from "./protocol";
 import type { Selection } from "./selection";
-import type { Status } from "./status";
+import { say } from "./status";
 import { TOOLS, type Tool } from "./tools";
 
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
@@ -28,7 +28,7 @@ export class Keys {
   private readonly actions: Record<string, () => void>;
 
   constructor(private readonly bench: Workbench, private readonly selection: Selection,
-    private readonly blocks: Blocks, private readonly status: Status) {
+    private readonly blocks: Blocks) {
     const { picture, picture: { stage }, tools } = bench;
     this.actions = {
       x: () => tools.toggle("x"), y: () => tools.toggle("y"), z: () => tools.toggle("z"),
@@ -123,7 +123,7 @@ export class Keys {
     if (!isHandle && tool !== "move") return this.ofCamera(tool);
     const held = this.selection.held(isHandle ? focused : null);
     if (held !== null) return new Drag(this.bench, held.at, () => held);
-    this.status.say("Select an object, or choose what the camera does.", "warning");
+    say("Select an object, or choose what the camera does.", "warning");
     return null;
   }
 }

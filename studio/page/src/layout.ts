@@ -1,8 +1,7 @@
 // The layout: the divider between text and picture, the zoom buttons, the menus, and the list of
 // keys.
 
-import { byId, create, followPointer, remember, remembered } from "./dom";
-import { LAYERS, type Layer, type OverlayLayer } from "./overlays";
+import { byId, followPointer, remember, remembered } from "./dom";
 import type { Picture } from "./picture";
 
 /** How much of the width, or of the height on narrow screens, the text may take up, in per cent. */
@@ -69,19 +68,5 @@ export function layOut(picture: Picture): void {
     menu.addEventListener("click", event => {
       if ((event.target as Element).closest("button, [type=radio]")) menu.open = false;
     });
-  }
-}
-
-/** The menu of what can be drawn over the picture. */
-export function offerLayers(overlays: OverlayLayer): void {
-  for (const [layer, name] of Object.entries(LAYERS) as [Layer, string][]) {
-    const label = create("label");
-    const box = create("input");
-    box.type = "checkbox";
-    box.name = layer;
-    box.checked = overlays.isOn(layer);
-    box.addEventListener("change", () => overlays.turn(layer, box.checked));
-    label.append(box, ` ${name}`);
-    byId("layers").append(label);
   }
 }

@@ -15,7 +15,7 @@ import { Frames } from "./frames";
 import { Hover } from "./hover";
 import { hintField, Hints, openSwatch } from "./hints";
 import { Keys } from "./keys";
-import { layOut, offerLayers } from "./layout";
+import { layOut } from "./layout";
 import { numberControls } from "./numbers";
 import { Outlines } from "./outlines";
 import { OverlayLayer } from "./overlays";
@@ -26,16 +26,18 @@ import type { HostedFile, Limits } from "./protocol";
 import { Selection } from "./selection";
 import { offerSharing, sceneInAddress, showProgress } from "./share";
 import { Sliders } from "./sliders";
-import { Status } from "./status";
+import * as status from "./status";
 import { followTheme, themeExtension } from "./theme";
 import { Tools } from "./tools";
 import { setText } from "./visible";
+
+/** How long the text has to rest before hints, sliders and objects are asked for, in ms. */
+const REST = 150;
 
 const meta = (name: string) => document.querySelector<HTMLMetaElement>(
   `meta[name="pinhole-${name}"]`)?.content;
 const isServed = meta("host") !== "static";
 const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
-const status = new Status();
 const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
 const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElement, picture);
 
@@ -77,18 +79,13 @@ const frames = new Frames(editor, connection,
 const tools = new Tools(picture.stage);
 const selection = new Selection(editor, picture, overlays, tools);
 const outlines = new Outlines(editor, connection, frames, overlays, selection);
-const bench = {
-  editor, frames, picture, tools, rested: () => {
-    void outlines.rested();
-    rested();
-  },
-};
-const blocks = new Blocks(editor, selection, status);
+const bench = { editor, frames, picture, tools, rested };
+const blocks = new Blocks(editor, selection);
 const sliders = new Sliders(editor, frames, rested);
-new Pointers(bench, selection, new Keys(bench, selection, blocks, status));
-const hover = new Hover(editor, picture, overlays, status);
+new Pointers(bench, selection, new Keys(bench, selection, blocks));
+const hover = new Hover(editor, picture, overlays);
 outlines.onRest = () => hover.again();
-const files = new Files(editor, connection, status, isServed);
+const files = new Files(editor, connection, isServed);
 const drafts = new Drafts(editor, connection, files, isServed);
 files.onSaved = () => void drafts.keep();
 
@@ -102,10 +99,18 @@ function changed(): void {
   status.changed();
 }
 
+let resting: ReturnType<typeof setTimeout>;
+
+/** What a text at rest has comes a little later. */
 function rested(): void {
-  hints.changed();
-  sliders.changed();
   drafts.changed();
+  clearTimeout(resting);
+  resting = setTimeout(() => {
+    if (editor.uri === "") return;
+    void hints.refresh();
+    void sliders.refresh();
+    void outlines.rested();
+  }, REST);
 }
 
 /** Undo and Redo are offered where there is something. */
@@ -131,7 +136,7 @@ connection.onState = state => {
   isConnected = state === "open";
 };
 
-const linked = sceneInAddress(status);
+const linked = sceneInAddress();
 connection.onNotification = async (method, params) => {
   if (method === "studio/progress") showProgress((params as { share: number }).share);
   if (method !== "studio/file") return;
@@ -149,7 +154,7 @@ addEventListener("hashchange", async () => {
     session.begin(token);
     connection.retry();
   }
-  const text = await sceneInAddress(status);
+  const text = await sceneInAddress();
   if (text !== null) editor.replace(text);
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
@@ -172,7 +177,6 @@ addEventListener("beforeprint", () => {
   setText(byId("print-text"), `${files.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
 });
 layOut(picture);
-offerLayers(overlays);
-offerSharing(editor, connection, status, files);
+offerSharing(editor, connection, files);
 project(picture);
 if (!isProjector) connection.open();

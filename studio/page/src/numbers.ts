@@ -11,8 +11,8 @@ import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
-/** A number literal, with the sign that belongs to it. */
-export interface Literal { from: number; to: number; value: number; step: number }
+/** A number literal, with the sign that belongs to it, and where its unit ends. */
+export interface Literal { from: number; to: number; end: number; value: number; step: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
@@ -30,8 +30,8 @@ export function literalAt(state: EditorState, at: number): Literal | null {
   const before = state.sliceDoc(line.from, node.from);
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
-  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value,
-    step: stepOf(value, written, endsInWholeField(before)) };
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length,
+    end: node.to, value, step: stepOf(value, written, endsInWholeField(before)) };
 }
 
 /** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
@@ -66,10 +66,12 @@ function bounds({ step }: Literal, limits: Limits | null): [number, number] {
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
-/** The same for a slider, which has to end somewhere: about the value that is there. */
-export function offered(literal: Literal, limits: Limits | null): [number, number] {
+/** The same for a slider, which has to end somewhere: about the value that is there, unless both
+ *  bounds are known. */
+function offered(literal: Literal, limits: Limits | null): [number, number] {
   const span = Math.max(Math.abs(literal.value), 50 * literal.step);
   const [least, most] = bounds(literal, limits);
+  if (limits?.open === false && Number.isFinite(most - least)) return [least, most];
   return [Math.max(least, literal.value - span), Math.min(most, literal.value + span)];
 }
 
@@ -107,6 +109,35 @@ export class Turn {
   end(): void { void this.bounds.then(() => this.gesture.end()); }
 }
 
+/** A slider of a number, which may be gone. What it does until it is let go is one turn. */
+export class Dial {
+  readonly range = create("input");
+  turn: Turn | null = null;
+
+  constructor(private readonly view: EditorView, readonly literal: () => Literal | null) {
+    this.range.type = "range";
+    this.range.addEventListener("input", () => void this.set(Number(this.range.value)));
+    this.range.addEventListener("change", () => this.end());
+  }
+
+  async set(value: number): Promise<void> {
+    const found = this.literal();
+    if (found !== null) this.turn ??= new Turn(this.view, found);
+    await this.turn?.set(value);
+  }
+
+  end(): void {
+    this.turn?.end();
+    this.turn = null;
+  }
+
+  /** Shows the number between the ends that its limits leave. */
+  offer(found: Literal, limits: Limits | null): void {
+    const [min, max] = offered(found, limits);
+    Object.assign(this.range, { min, max, step: found.step, value: found.value });
+  }
+}
+
 const openSlider = StateEffect.define<number | null>();
 
 const sliderField = StateField.define<Tooltip | null>({
@@ -129,33 +160,19 @@ const sliderField = StateField.define<Tooltip | null>({
 
 function createSlider(view: EditorView): TooltipView {
   const dom = create("div", "slider");
-  const range = create("input");
-  range.type = "range";
-  let turn: Turn | null = null;
+  const dial = new Dial(view,
+    () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1));
+  const { range, literal } = dial;
   let shown: number | null = null;
-  const literal = () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1);
   const adapt = () => {
     const found = literal();
-    if (found === null || turn !== null || found.value === shown) return;
-    const offer = (limits: Limits | null) => {
-      const [least, most] = offered(found, limits);
-      Object.assign(range, { min: least, max: most, step: found.step, value: found.value });
-    };
+    if (found === null || dial.turn !== null || found.value === shown) return;
     range.setAttribute("aria-label", `Value ${found.value}`);
     shown = found.value;
-    offer(null);
-    const isStill = () => found.value === shown && turn === null;
-    void limitsOf(view, found).then(limits => isStill() && offer(limits));
+    dial.offer(found, null);
+    const isStill = () => found.value === shown && dial.turn === null;
+    void limitsOf(view, found).then(limits => isStill() && dial.offer(found, limits));
   };
-  range.addEventListener("input", () => {
-    const found = literal();
-    if (found !== null) turn ??= new Turn(view, found);
-    void turn?.set(Number(range.value));
-  });
-  range.addEventListener("change", () => {
-    turn?.end();
-    turn = null;
-  });
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
     event.preventDefault();

@@ -9,9 +9,6 @@ import type { Overlays, SceneObject } from "./protocol";
 import { nameOf, type Selection } from "./selection";
 import { setText } from "./visible";
 
-/** How long the text has to rest before its objects are listed, in milliseconds. */
-const REST = 150;
-
 /** So many objects are described to those who do not see the picture. */
 const DESCRIBED = 6;
 
@@ -38,32 +35,26 @@ export class Outlines {
   onRest: () => void = () => {};
   private asking = false;
   private outdated = false;
-  private timer = 0;
 
   constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
     private readonly frames: Frames, private readonly overlays: OverlayLayer,
     private readonly selection: Selection) {}
 
   /** The text has changed, or the server. The coarse picture comes first. */
-  changed(): void {
-    void this.frames.coarse.then(() => this.refresh());
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.rested(), REST);
-  }
+  changed(): void { void this.frames.coarse.then(() => this.refresh()); }
 
   /** The names and places of the objects, once nothing moves any more. */
   async rested(): Promise<void> {
     const { editor, frames, selection } = this;
-    const { doc } = editor.view.state;
     if (frames.dragging !== null || this.connection.state !== "open") return;
     this.onRest();
     const about = { object: selection.index };
-    const objects = await editor.ask<SceneObject[]>("pinhole/objects", about);
-    if (objects === null || editor.view.state.doc !== doc) return;
+    const objects = await editor.askCurrent<SceneObject[]>("pinhole/objects", about);
+    if (objects === null) return;
     selection.list(objects);
     const only = objects.slice(0, DESCRIBED).map(it => it.index);
-    const seen = await editor.ask<Overlays>("pinhole/overlays", { only });
-    if (seen !== null && editor.view.state.doc === doc) describe(seen, objects.length);
+    const seen = await editor.askCurrent<Overlays>("pinhole/overlays", { only });
+    if (seen !== null) describe(seen, objects.length);
   }
 
   async refresh(): Promise<void> {

@@ -6,18 +6,10 @@ import type { Picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
-/** What can be switched on, with its name in the menu. */
-export const LAYERS = {
-  outlines: "Outlines of all objects",
-  vanishing: "Vanishing points",
-  horizon: "Horizon",
-  axis: "View axis",
-  grid: "Pixel grid",
-  near: "Near and far",
-  samples: "Samples of the pixel under the pointer",
-} as const;
+/** What can be switched on: the boxes of a menu have these names. */
+export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
-export type Layer = keyof typeof LAYERS;
+const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
 /** From this zoom on a grid of pixels can be seen, and samples in a pixel. */
 const GRID_ZOOM = 6;
@@ -36,23 +28,20 @@ export class OverlayLayer {
   onNeed: () => void = () => {};
   private selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
-  private readonly on = new Set<Layer>();
 
   constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
     const layers = remembered("layers")?.split(" ") ?? [];
-    const known = Object.keys(LAYERS) as Layer[];
-    for (const layer of known) if (layers.includes(layer)) this.on.add(layer);
+    for (const box of boxes) {
+      box.checked = layers.includes(box.name);
+      box.addEventListener("change", () => {
+        remember("layers", boxes.filter(it => it.checked).map(it => it.name).join(" "));
+        this.draw();
+        if (box.checked) this.onNeed();
+      });
+    }
   }
 
-  isOn(layer: Layer): boolean { return this.on.has(layer); }
-
-  turn(layer: Layer, on: boolean): void {
-    if (on) this.on.add(layer);
-    else this.on.delete(layer);
-    remember("layers", [...this.on].join(" "));
-    this.draw();
-    if (on) this.onNeed();
-  }
+  isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
   /** Whether anything is switched on that the server has to be asked about. */
   get needsAny(): boolean {

@@ -1,9 +1,7 @@
 // What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and
 // `studio/…`, as docs/protocol.md describes them.
 
-export interface Position { line: number; character: number }
-export interface Range { start: Position; end: Position }
-export interface TextEdit { range: Range; newText: string }
+import type { Range, TextEdit } from "vscode-languageserver-protocol";
 
 /** A point of the picture, in pixels of the scene, from the top left corner. */
 export type Point = readonly [number, number];
@@ -83,6 +81,3 @@ export class Refusal extends Error {
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }
-
-export interface ServerDiagnostic { range: Range; severity?: number; message: string }
-export interface Published { uri: string; version?: number; diagnostics: ServerDiagnostic[] }

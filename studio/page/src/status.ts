@@ -35,46 +35,42 @@ const HANGS = "Nothing has come back for two seconds: Studio is stopped, or has 
 /** What becomes of a text until there is a connection again. */
 const KEPT = " What is written here stays, and can be downloaded.";
 
-export class Status {
-  private readonly pointed = byId("pointed");
-  private readonly said = byId("said");
+/** Names what is under the pointer. */
+export function point(text: string): void { setText(byId("pointed"), text); }
 
-  /** Names what is under the pointer. */
-  point(text: string): void { setText(this.pointed, text); }
+/** Says what has happened. */
+export function say(text: string, tone: "plain" | "warning" = "plain"): void {
+  const said = byId("said");
+  setText(said, visibleLine(text));
+  said.dataset["tone"] = tone;
+}
 
-  /** Says what has happened. */
-  say(text: string, tone: "plain" | "warning" = "plain"): void {
-    setText(this.said, visibleLine(text));
-    this.said.dataset["tone"] = tone;
-  }
+/** The text has changed: what was said of the one before is not true any more. */
+export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 
-  /** The text has changed: what was said of the one before is not true any more. */
-  changed(): void { if (this.said.dataset["tone"] !== "warning") this.say(""); }
+export function picture([width, height]: [number, number], fineness: Fineness): void {
+  setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
+}
 
-  picture([width, height]: [number, number], fineness: Fineness): void {
-    setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
-  }
+/** Marks the picture as one of an older text, or no longer. */
+export function stale(why: string | null): void {
+  const note = byId("stale");
+  note.hidden = why === null;
+  setText(note, why ?? "");
+  byId("stage").toggleAttribute("data-stale", why !== null);
+}
 
-  /** Marks the picture as one of an older text, or no longer. */
-  stale(why: string | null): void {
-    const note = byId("stale");
-    note.hidden = why === null;
-    setText(note, why ?? "");
-    byId("stage").toggleAttribute("data-stale", why !== null);
-  }
+/** Says that nothing comes back, although there is a connection. */
+export function hanging(isHanging: boolean): void {
+  byId("connection-bar").hidden = !isHanging;
+  byId("connection-download").hidden = !isHanging;
+  if (isHanging) setText(byId("connection"), HANGS + KEPT);
+}
 
-  /** Says that nothing comes back, although there is a connection. */
-  hanging(isHanging: boolean): void {
-    byId("connection-bar").hidden = !isHanging;
-    byId("connection-download").hidden = !isHanging;
-    if (isHanging) setText(byId("connection"), HANGS + KEPT);
-  }
-
-  /** Says whether there is a connection, and if not, what becomes of the text. */
-  connection(state: ConnectionState, hasText: boolean): void {
-    const isKept = hasText && state !== "connecting";
-    byId("connection-bar").hidden = state === "open";
-    byId("connection-download").hidden = !isKept;
-    setText(byId("connection"), CONNECTION[state] + (isKept ? KEPT : ""));
-  }
+/** Says whether there is a connection, and if not, what becomes of the text. */
+export function connection(state: ConnectionState, hasText: boolean): void {
+  const isKept = hasText && state !== "connecting";
+  byId("connection-bar").hidden = state === "open";
+  byId("connection-download").hidden = !isKept;
+  setText(byId("connection"), CONNECTION[state] + (isKept ? KEPT : ""));
 }
