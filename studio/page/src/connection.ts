@@ -5,6 +5,7 @@
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
+import { meta } from "./dom";
 import { Refusal } from "./protocol";
 
 /** Something that carries texts. */
@@ -42,7 +43,7 @@ const NO_CONNECTION = "This cannot be done without a connection.";
 const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
 
-export class Connection implements Transport {
+class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
   /** Told when nothing has come back for long, and when something has again. */
@@ -181,7 +182,7 @@ export class Connection implements Transport {
 }
 
 /** A web socket. Its first message is the token; the host's first one is that for the next time. */
-export function webSocket(path: string): Connector {
+function webSocket(path: string): Connector {
   return (opened, receive, closed) => {
     const { token } = session;
     if (token === null) return closed("keyless");
@@ -203,7 +204,7 @@ export function webSocket(path: string): Connector {
 }
 
 /** A web worker that runs the engine, whose first word opens it. One that fails is replaced. */
-export function worker(path: string): Connector {
+function worker(path: string): Connector {
   return (opened, receive, closed) => {
     const engine = new Worker(new URL(path, location.href), { type: "module" });
     let isOpen = false;
@@ -218,3 +219,6 @@ export function worker(path: string): Connector {
     });
   };
 }
+
+export const isServed = meta("host") !== "static";
+export const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));

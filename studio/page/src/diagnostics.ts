@@ -2,15 +2,15 @@
 
 import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
-import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
+import type { KeyBinding, ViewUpdate } from "@codemirror/view";
 import type { CodeAction, Diagnostic as ServerDiagnostic, PublishDiagnosticsParams } from
   "vscode-languageserver-protocol";
 import { byId, create, createButton } from "./dom";
-import type { SceneEditor } from "./editor";
+import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
 /** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
-export async function publishDiagnostics(editor: SceneEditor, published: PublishDiagnosticsParams): Promise<void> {
+export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
@@ -21,10 +21,10 @@ export async function publishDiagnostics(editor: SceneEditor, published: Publish
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
     { range: editor.whole, context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
-  if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
+  if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const mending = new Map<string, CodeAction[]>();
   for (const action of actions) for (const it of action.diagnostics ?? []) {
     mending.set(keyOf(it), [...mending.get(keyOf(it)) ?? [], action]);
@@ -38,7 +38,7 @@ function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: Cod
       to: editor.offset(diagnostic.range.end),
       severity: diagnostic.severity === 2 ? "warning" : "error",
       message: visible(String(diagnostic.message)),
-      actions: [...fixes, ...all].map(action => fix(editor, action)),
+      actions: [...fixes, ...all].map(action => fix(action)),
     };
   });
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
@@ -49,7 +49,7 @@ function keyOf({ message, range: { start, end } }: ServerDiagnostic): string {
   return `${start.line} ${start.character} ${end.line} ${end.character} ${message}`;
 }
 
-function fix(editor: SceneEditor, action: CodeAction): Action {
+function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
   // Values that are made up are told of in the text of the first edit.
@@ -76,11 +76,11 @@ export function changesDiagnostics(update: ViewUpdate): boolean {
 }
 
 /** What is wrong, under the text: the first of it, or all. */
-export class Problems {
+class Problems {
   private readonly button = byId("problems");
   private readonly list = byId("problem-list");
 
-  constructor(private readonly view: () => EditorView) {
+  constructor() {
     this.button.addEventListener("click", () => {
       this.button.ariaExpanded = String(!this.showsAll);
       this.update();
@@ -91,7 +91,7 @@ export class Problems {
 
   update(): void {
     const found: [Diagnostic, number, number][] = [];
-    forEachDiagnostic(this.view().state, (...it) => found.push(it));
+    forEachDiagnostic(editor.view.state, (...it) => found.push(it));
     const { length } = found;
     setText(this.button, length === 0 ? "No problems" : length === 1 ? "1 problem"
       : `${length} problems`);
@@ -105,7 +105,7 @@ export class Problems {
 
   /** A message, which leads to its place, with its fixes. */
   private item(diagnostic: Diagnostic, from: number, to: number): HTMLLIElement {
-    const view = this.view();
+    const view = editor.view;
     const item = create("li", diagnostic.severity);
     const jump = () => {
       view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
@@ -119,6 +119,8 @@ export class Problems {
     return item;
   }
 }
+
+export const problems = new Problems();
 
 /** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */
 export const fixKey: KeyBinding = {

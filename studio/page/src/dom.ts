@@ -9,6 +9,11 @@ export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   return element as E;
 }
 
+/** What the host has written into the page's head. */
+export function meta(name: string): string | undefined {
+  return document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
+}
+
 /** A new element with a class, and a text that is never read as HTML. */
 export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "",
   text = ""): HTMLElementTagNameMap[K] {

@@ -3,10 +3,10 @@
 // offered. The served host keeps drafts in a file; the static page the last ten in this browser.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
-import type { Connection } from "./connection";
+import { connection, isServed } from "./connection";
 import { byId, create, createButton } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Files } from "./files";
+import { editor } from "./editor";
+import { files } from "./files";
 import type { Draft } from "./protocol";
 import { setText } from "./visible";
 
@@ -22,7 +22,7 @@ interface Kept extends Draft { id: string }
 
 const store = () => createStore("pinhole-drafts", "drafts");
 
-export class Drafts {
+class Drafts {
   private timer = 0;
   /** Whether something is kept that this page has written. */
   private isKept = false;
@@ -31,8 +31,7 @@ export class Drafts {
   private id = `${Date.now()} ${Math.random()}`;
   private readonly bar = byId("draft-bar");
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly files: Files, private readonly isServed: boolean) {
+  constructor() {
     byId("draft-later").addEventListener("click", () => (this.bar.hidden = true));
     addEventListener("pagehide", () => void this.keep());
   }
@@ -44,15 +43,15 @@ export class Drafts {
   async keep(): Promise<void> {
     clearTimeout(this.timer);
     this.timer = 0;
-    const { isUnsaved } = this.files;
+    const { isUnsaved } = files;
     if (!(isUnsaved || this.isKept)) return;
     this.isKept = isUnsaved;
     const { draft } = this;
     try {
-      if (this.isServed) {
+      if (isServed) {
         const earlier = this.unanswered;
         const own = isUnsaved ? draft : { text: null };
-        await this.connection.request("studio/draft", { ...own, earlier });
+        await connection.request("studio/draft", { ...own, earlier });
       } else await stored(isUnsaved ? draft : this.id);
     } catch {
       // Without a connection the text is kept when there is one.
@@ -61,7 +60,7 @@ export class Drafts {
   }
 
   private get draft(): Kept {
-    const { textToSave: text, base } = this.files;
+    const { textToSave: text, base } = files;
     return { text, base, time: Math.floor(Date.now() / 1000), id: this.id };
   }
 
@@ -69,8 +68,8 @@ export class Drafts {
   async offer(kept: Draft | null): Promise<void> {
     const { earlier = [], ...newest } = kept ?? {};
     const drafts = kept !== null ? [newest as Draft, ...earlier]
-      : this.isServed ? [] : await all().catch(() => []);
-    this.unanswered = drafts.filter(it => it.text !== this.files.textToSave);
+      : isServed ? [] : await all().catch(() => []);
+    this.unanswered = drafts.filter(it => it.text !== files.textToSave);
     this.show();
   }
 
@@ -81,7 +80,7 @@ export class Drafts {
     setText(byId("draft"), `${were} not saved:`);
     byId("draft-choices").replaceChildren(...this.unanswered.slice(0, OFFERED).map(draft => {
       const time = new Date(draft.time * 1000).toLocaleString();
-      const isNewer = this.isServed && draft.base !== this.files.seen;
+      const isNewer = isServed && draft.base !== files.seen;
       const newer = isNewer ? " The file has changed since; Save will ask." : "";
       const lines = draft.text.split("\n").length;
       const row = create("li", "", `of ${time}, ${lines} lines.${newer}`);
@@ -92,7 +91,7 @@ export class Drafts {
   }
 
   private answer(draft: Draft, isRestored: boolean): void {
-    const { files, isServed, unanswered } = this;
+    const { unanswered } = this;
     unanswered.splice(unanswered.indexOf(draft), 1);
     this.isKept = true;
     if (isRestored) {
@@ -106,7 +105,7 @@ export class Drafts {
     } else if (!isServed) void stored((draft as Kept).id);
     this.show();
     void this.keep();
-    this.editor.view.focus();
+    editor.view.focus();
   }
 }
 
@@ -121,3 +120,5 @@ async function stored(draft: Kept | string): Promise<void> {
   await set(draft.id, draft, store());
   await delMany((await all()).slice(MOST).map(({ id }) => id), store());
 }
+
+export const drafts = new Drafts();

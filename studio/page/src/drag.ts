@@ -4,12 +4,12 @@
 
 import { ChangeSet, type Text } from "@codemirror/state";
 import { byId } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Frames } from "./frames";
+import { editor } from "./editor";
+import { frames } from "./frames";
 import { Gesture } from "./gesture";
-import type { Picture } from "./picture";
+import { picture } from "./picture";
 import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
-import type { Tools } from "./tools";
+import { tools } from "./tools";
 import { setText } from "./visible";
 
 /** What is held, and where it was seen at the press; without an object it is the camera. */
@@ -19,15 +19,6 @@ export interface Held { object: number | null; handle: string; at: Point }
 const REFUSAL_STAYS = 5000;
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
-
-/** The page's parts that a drag works on, and what drags of objects are held to. */
-export interface Workbench {
-  editor: SceneEditor;
-  frames: Frames;
-  picture: Picture;
-  tools: Tools;
-  rested(): void;
-}
 
 /** What a drag says stands where the hand is, while it lasts. */
 class Note {
@@ -88,9 +79,8 @@ export class Drag {
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** What is held may be found out only after the press. */
-  constructor(private readonly bench: Workbench, private readonly press: Point,
-    hold: () => Promise<Held | null> | Held) {
-    const { frames, editor: { view } } = bench;
+  constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
+    const { view } = editor;
     this.base = this.current = view.state.doc;
     this.written = ChangeSet.empty(this.base.length);
     this.target = this.asked = press;
@@ -105,7 +95,7 @@ export class Drag {
   private async begin(before: Drag | null, hold: () => Promise<Held | null> | Held) {
     if (before !== null) {
       await before.done;
-      const { view } = this.bench.editor;
+      const { view } = editor;
       this.base = this.current = view.state.doc;
       this.written = ChangeSet.empty(this.base.length);
       this.gesture = new Gesture(view);
@@ -143,7 +133,6 @@ export class Drag {
   }
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
-    const { editor, frames, picture, tools } = this.bench;
     const { base, press, uri } = this;
     this.asked = place;
     if (!this.isOpen) editor.openAside(uri, base.toString());
@@ -151,7 +140,7 @@ export class Drag {
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
-      step: tools.step(picture.zoom) };
+      step: tools.step };
     try {
       const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (this.over) return;
@@ -178,14 +167,14 @@ export class Drag {
     const text = changes.apply(base);
     if (!text.eq(current)) this.gesture.apply(this.written.invert(base).compose(changes));
     this.written = changes;
-    this.current = this.bench.editor.view.state.doc;
+    this.current = editor.view.state.doc;
   }
 
   /** Whoever has changed the text otherwise keeps it. */
   private back(): void {
-    if (this.over || this.bench.editor.view.state.doc !== this.current) return;
+    if (this.over || editor.view.state.doc !== this.current) return;
     this.gesture.cancel(this.written.invert(this.base));
-    this.current = this.bench.editor.view.state.doc;
+    this.current = editor.view.state.doc;
   }
 
   private finish(): void {
@@ -195,14 +184,12 @@ export class Drag {
     this.over = true;
     this.gesture.end();
     note?.end();
-    if (this.isOpen) this.bench.editor.closeAside(this.uri);
-    // Another drag may have begun before this one has come to its end.
-    if (this.bench.frames.dragging === this) this.bench.frames.dragging = null;
+    if (this.isOpen) editor.closeAside(this.uri);
     this.settle();
-    this.bench.rested();
+    frames.released(this);
   }
 
   private say(text: string, tone: "plain" | "warning"): void {
-    note?.say(text, tone, this.bench.picture.toScreen(this.target));
+    note?.say(text, tone, picture.toScreen(this.target));
   }
 }

@@ -15,7 +15,8 @@ import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightAc
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
 import type { Position, PublishDiagnosticsParams, Range, TextEdit } from
   "vscode-languageserver-protocol";
-import type { Connection } from "./connection";
+import { connection } from "./connection";
+import { byId, meta } from "./dom";
 import { gestureHistory, rewrite } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
@@ -70,7 +71,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
 /** A text with lines that end by LF, as the editor has them. */
 export function withLf(text: string): string { return text.replace(/\r\n?/g, "\n"); }
 
-export class SceneEditor {
+class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
   /** The address by which the server knows the scene; empty until it has been told. */
@@ -78,8 +79,10 @@ export class SceneEditor {
   /** What to do with the diagnostics that the server publishes. */
   diagnosed: (published: PublishDiagnosticsParams) => void = () => undefined;
 
-  constructor(parent: HTMLElement, private readonly connection: Connection,
-    nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
+  /** What hears of each update. */
+  onUpdate: (update: ViewUpdate) => void = () => undefined;
+
+  constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new LSPClient({
       // A busy machine may take its time; a lost connection is told by the connection.
       timeout: 60_000,
@@ -97,7 +100,6 @@ export class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        extensions,
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
@@ -115,10 +117,15 @@ export class SceneEditor {
         ]),
         EditorView.updateListener.of(it => {
           if (it.docChanged) this.sync();
-          update(it);
+          this.onUpdate(it);
         }),
       ],
     });
+  }
+
+  /** What the page's other parts add, which goes before what the editor does by itself. */
+  extend(extension: Extension): void {
+    this.view.dispatch({ effects: StateEffect.appendConfig.of(Prec.high(extension)) });
   }
 
   /** The text, with lines that end by LF. */
@@ -126,7 +133,7 @@ export class SceneEditor {
 
   /** Asks the server about the scene, as `Connection.request` does. */
   request<Result>(method: string, params: object): Promise<Result> {
-    return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
+    return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
   /** The same; null where no answer comes, as it is where the text has errors. */
@@ -134,7 +141,7 @@ export class SceneEditor {
     try {
       return await this.request<Result | null>(method, params);
     } catch (error) {
-      if (!isSuperseded(error) && this.connection.state === "open") console.warn(error);
+      if (!isSuperseded(error) && connection.state === "open") console.warn(error);
       return null;
     }
   }
@@ -167,8 +174,8 @@ export class SceneEditor {
   closeAside(uri: string): void { this.tell("textDocument/didClose", { textDocument: { uri } }); }
 
   private tell(method: string, params: object): void {
-    if (this.connection.state !== "open") return;
-    this.connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
+    if (connection.state !== "open") return;
+    connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
   }
 
   /** Tells the server about the text, unless it was told already. */
@@ -190,7 +197,7 @@ export class SceneEditor {
   /** A server that is new knows nothing yet. */
   connected(): void {
     this.client.workspace.syncFiles();
-    this.client.connect(this.connection);
+    this.client.connect(connection);
   }
 
   disconnected(): void { this.client.disconnect(); }
@@ -219,5 +226,7 @@ export class SceneEditor {
   }
 
   /** Tells the server what has changed; without a connection, it hears of it later. */
-  private sync(): void { if (this.connection.state === "open") this.client.sync(); }
+  private sync(): void { if (connection.state === "open") this.client.sync(); }
 }
+
+export const editor = new SceneEditor(byId("editor"), meta("nonce"));

@@ -4,9 +4,9 @@
 import { diffArrays } from "diff";
 import { invertedEffects, isolateHistory } from "@codemirror/commands";
 import { StateEffect, type Extension, type Transaction } from "@codemirror/state";
-import type { Connection } from "./connection";
+import { connection, isServed } from "./connection";
 import { byId, create, createButton, download } from "./dom";
-import { withLf, type SceneEditor } from "./editor";
+import { editor, withLf } from "./editor";
 import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
 import { say } from "./status";
 import { setText, visibleLine } from "./visible";
@@ -54,7 +54,7 @@ const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 const MOST_CHANGES = 3000;
 
 /** The host's file as the page last saw it; a static page has local files alone. */
-export class Files {
+class Files {
   onSaved: () => void = () => {};
   private opened = false;
   /** The host's scene, and the one that the page shows. */
@@ -63,8 +63,7 @@ export class Files {
   private at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly isServed: boolean) {
+  constructor() {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
     byId("new").addEventListener("click", () => this.begin(EMPTY));
@@ -80,8 +79,8 @@ export class Files {
   /** Puts another scene in place, which has no file if nothing else is said. */
   private begin(text: string, more: Partial<Scene> = {}): void {
     const to: Scene = { name: "scene.scn", seen: null, base: more.seen ?? null, isGone: false,
-      handle: null, isNew: this.isServed, untouched: withLf(text), ...more };
-    const { view } = this.editor;
+      handle: null, isNew: isServed, untouched: withLf(text), ...more };
+    const { view } = editor;
     view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
       selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
       effects: turns.of({ from: this.at, to }) });
@@ -98,7 +97,7 @@ export class Files {
   private get shownName(): string { return visibleLine(this.at.name); }
 
   get isUnsaved(): boolean {
-    const { text } = this.editor;
+    const { text } = editor;
     const { isGone, seen, untouched } = this.at;
     return this.opened && text !== untouched
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
@@ -109,37 +108,37 @@ export class Files {
   private set seen(text: string | null) { this.at.seen = this.at.base = text; }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string { return withEndsOf(this.at.seen ?? "", this.editor.text); }
+  get textToSave(): string { return withEndsOf(this.at.seen ?? "", editor.text); }
 
   /** Puts a draft in place. */
   restore(draft: Draft): void {
     if (this.at.seen !== null) this.at.base = draft.base;
-    this.editor.replace(draft.text);
+    editor.replace(draft.text);
     this.show();
   }
 
   /** The host says what file it has: at first, after the connection was lost, when a new scene
    *  has got its name, and when the file has changed. */
   hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
-    Object.assign(this.hosts, { name, isNew: this.isServed && !saved });
+    Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // What becomes of the host's file is told when its scene is there again, and is saved.
     if (this.at !== this.hosts) return this.show();
     if (!this.opened) {
       this.opened = true;
       this.seen = saved ? text : null;
-      const start = this.isServed ? (text ?? "") : FIGURE;
+      const start = isServed ? (text ?? "") : FIGURE;
       this.at.untouched = saved ? null : withLf(start);
-      this.editor.open(start);
+      editor.open(start);
       this.tellLone();
-      if (linked !== null) this.editor.replace(linked);
+      if (linked !== null) editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
-      if (!this.isServed) this.at.untouched = this.editor.text;
+      if (!isServed) this.at.untouched = editor.text;
       if (text === null) this.tellGone(reason);
-    } else if (this.isServed && saved) {
+    } else if (isServed && saved) {
       this.at.untouched = null;
       this.changed(text, reason);
     }
-    this.editor.start();
+    editor.start();
     this.show();
   }
 
@@ -152,11 +151,10 @@ export class Files {
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
-    } else if (this.editor.text === withLf(text)
-      || (seen !== null && this.editor.text === withLf(seen))) {
+    } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
       this.conflict.close();
       this.seen = text;
-      this.editor.replace(text);
+      editor.replace(text);
       say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
     } else this.ask(text);
@@ -186,7 +184,7 @@ export class Files {
 
   async save(): Promise<void> {
     try {
-      if (!this.isServed) await this.saveLocal();
+      if (!isServed) await this.saveLocal();
       else if (this.at.isNew) this.askName();
       else await this.saveAs(this.at.name);
     } catch (error) { this.failed(error as Error); }
@@ -199,14 +197,14 @@ export class Files {
   }
 
   private async saveAs(name: string): Promise<void> {
-    if (this.connection.state !== "open") throw new Error(NOT_SAVED);
+    if (connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
     const { isGone, isNew, base } = this.at;
     const isHosts = this.at === this.hosts && !isNew;
     const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
     const slow = setTimeout(() => say(NOT_YET, "warning"), SLOW);
     try {
-      const answer = await this.connection.request<Saved>("studio/save", about);
+      const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) {
         this.saved(name, text);
         this.at.isNew = false;
@@ -252,9 +250,8 @@ export class Files {
 
   private async saveLocal(): Promise<void> {
     const text = this.textToSave;
-    this.at.handle ??= (await pickers.showSaveFilePicker?.(
-      { ...SCENES, suggestedName: this.at.name }))
-      ?? null;
+    const about = { ...SCENES, suggestedName: this.at.name };
+    this.at.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
     if (this.at.handle === null) {
       download(this.at.name, text, "text/plain");
     } else {
@@ -268,7 +265,7 @@ export class Files {
 
   private async open(): Promise<void> {
     try {
-      if (!this.isServed && pickers.showOpenFilePicker !== undefined) {
+      if (!isServed && pickers.showOpenFilePicker !== undefined) {
         const [handle] = await pickers.showOpenFilePicker(SCENES);
         if (handle !== undefined) await this.take(await handle.getFile(), handle);
         return;
@@ -289,7 +286,7 @@ export class Files {
       // Other encodings would come back from Save as another text.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
-      const seen = this.isServed ? null : text;
+      const seen = isServed ? null : text;
       this.begin(text, { name: file.name, handle, seen, untouched: seen === null ? text : null });
       this.tellLone();
     } catch { say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
@@ -298,7 +295,7 @@ export class Files {
 
   /** Shows how page and file differ, and asks. Undo brings back what is not chosen. */
   private ask(theirs: string): void {
-    const lines = difference(withLf(theirs), this.editor.text)
+    const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
     setText(byId("conflict-name"), this.shownName);
@@ -309,7 +306,7 @@ export class Files {
       if (choice === "") return;
       this.seen = theirs;
       if (choice === "page") void this.save();
-      else this.editor.replace(theirs);
+      else editor.replace(theirs);
       this.show();
     };
     if (!this.conflict.open) this.conflict.showModal();
@@ -348,3 +345,5 @@ function compared(a: string[], b: string[]): DifferenceLine[] {
   return parts.flatMap(({ value, added, removed }) =>
     value.map((text): DifferenceLine => ({ sign: added ? "+" : removed ? "-" : " ", text })));
 }
+
+export const files = new Files();

@@ -7,7 +7,7 @@ import { Decoration, EditorView, WidgetType, type Command,
 import type { Color, ColorInformation, ColorPresentation, InlayHint } from
   "vscode-languageserver-protocol";
 import { create } from "./dom";
-import type { SceneEditor } from "./editor";
+import { editor } from "./editor";
 import { Gesture } from "./gesture";
 
 /** A colour as it is written. */
@@ -31,8 +31,7 @@ class HintWidget extends WidgetType {
 }
 
 class SwatchWidget extends WidgetType {
-  constructor(private readonly hints: Hints, private readonly color: string,
-    private readonly written: string) { super(); }
+  constructor(private readonly color: string, private readonly written: string) { super(); }
 
   override eq(other: SwatchWidget): boolean {
     return other.color === this.color && other.written === this.written;
@@ -53,7 +52,7 @@ class SwatchWidget extends WidgetType {
       work = work.then(async () => {
         const color = wanted;
         wanted = null;
-        if (color !== null) await this.hints.pick(view.posAtDOM(input), color, going);
+        if (color !== null) await pick(view.posAtDOM(input), color, going);
       });
     });
     input.addEventListener("change", () => {
@@ -89,48 +88,41 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-export class Hints {
-  constructor(private readonly editor: SceneEditor) {}
+/** The text has come to rest: it has new hints. */
+export async function refreshHints(): Promise<void> {
+  const { doc } = editor.view.state;
+  const [hints, colors] = await Promise.all([
+    editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
+    editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
+  ]);
+  // A newer text or connection brings new ones.
+  if (hints === null || colors === null) return;
+  const decorations = [
+    ...hints.map(({ position, label }) =>
+      Decoration.widget({ widget: new HintWidget(String(label)), side: 1 })
+      .range(editor.offset(position))),
+    ...colors.map(({ range, color }) => {
+      const from = editor.offset(range.start);
+      const widget = new SwatchWidget(hex(color), doc.sliceString(from, editor.offset(range.end)));
+      return Decoration.widget({ widget, side: -1 }).range(from);
+    }),
+  ];
+  editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
+}
 
-  /** The text has come to rest: it has new hints. */
-  async refresh(): Promise<void> {
-    const { editor } = this;
-    const { doc } = editor.view.state;
-    const [hints, colors] = await Promise.all([
-      editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
-      editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
-    ]);
-    // A newer text or connection brings new ones.
-    if (hints === null || colors === null) return;
-    const decorations = [
-      ...hints.map(({ position, label }) =>
-        Decoration.widget({ widget: new HintWidget(String(label)), side: 1 })
-        .range(editor.offset(position))),
-      ...colors.map(({ range, color }) => {
-        const from = editor.offset(range.start);
-        const widget = new SwatchWidget(this, hex(color),
-          doc.sliceString(from, editor.offset(range.end)));
-        return Decoration.widget({ widget, side: -1 }).range(from);
-      }),
-    ];
-    editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
-  }
-
-  /** Writes a picked colour over the one at an offset, in the way it is written there. */
-  async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
-    const { editor } = this;
-    const { doc } = editor.view.state;
-    const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
-    const start = editor.position(offset);
-    const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
-    const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
-    const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await editor.askCurrent<ColorPresentation[]>(
-      "textDocument/colorPresentation", { color, range });
-    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
-      ?? ways?.[0];
-    if (way?.textEdit !== undefined) gesture.apply(editor.changes([way.textEdit]));
-  }
+/** Writes a picked colour over the one at an offset, in the way it is written there. */
+async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
+  const { doc } = editor.view.state;
+  const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
+  const start = editor.position(offset);
+  const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
+  const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
+  const range = { start, end: { line: start.line, character: start.character + written.length } };
+  const ways = await editor.askCurrent<ColorPresentation[]>(
+    "textDocument/colorPresentation", { color, range });
+  const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
+    ?? ways?.[0];
+  if (way?.textEdit !== undefined) gesture.apply(editor.changes([way.textEdit]));
 }
 
 function hex({ red, green, blue }: Color): string {

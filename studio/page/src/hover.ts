@@ -1,56 +1,49 @@
 // What is under the pointer: it is named in the footer, and outlined.
 
-import type { SceneEditor } from "./editor";
-import type { OverlayLayer } from "./overlays";
-import type { Picture } from "./picture";
+import { editor } from "./editor";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { nameOf } from "./selection";
 import { point as tell } from "./status";
 
-export class Hover {
-  private busy = false;
-  private next: Point | null = null;
-  private place: Point | null = null;
+let isBusy = false;
+/** Where the pointer is on the stage, and where it has been told of last. */
+let place: Point | null = null;
+let next: Point | null = null;
 
-  constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer) {
-    picture.stage.addEventListener("pointerleave", () => this.leave());
-    picture.stage.addEventListener("pointermove", event => {
-      this.place = event.pointerType === "touch" ? null : picture.local(event);
-      if (event.buttons !== 0) tell("");
-      else this.again();
-    });
+picture.stage.addEventListener("pointermove", event => {
+  place = event.pointerType === "touch" ? null : picture.local(event);
+  if (event.buttons !== 0) tell("");
+  else hoverAgain();
+});
+picture.stage.addEventListener("pointerleave", () => {
+  next = place = null;
+  overlays.hover(null);
+  overlays.showSamples([0, 0], null);
+  tell("");
+});
+
+/** Something else may be seen where the pointer is. */
+export function hoverAgain(): void { if (place !== null) void at(picture.toPicture(place)); }
+
+/** While one answer is awaited, only the newest place is remembered. */
+async function at(point: Point): Promise<void> {
+  next = point;
+  if (isBusy) return;
+  isBusy = true;
+  while (next !== null) {
+    const at: Point = next;
+    next = null;
+    const isInside = picture.isInside(at);
+    const pick = isInside ? await editor.ask<Pick>("pinhole/pick", { point: at }) : null;
+    tell(pick === null ? "" : described(pick, at));
+    overlays.hover(pick?.object?.index ?? null);
+    if (pick === null || !overlays.isOn("samples")) continue;
+    const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
+    overlays.showSamples(pixel, await editor.ask<Samples>("pinhole/samples", { pixel }));
   }
-
-  /** Something else may be seen where the pointer is. */
-  again(): void { if (this.place !== null) void this.at(this.picture.toPicture(this.place)); }
-
-  /** While one answer is awaited, only the newest place is remembered. */
-  private async at(point: Point): Promise<void> {
-    this.next = point;
-    if (this.busy) return;
-    this.busy = true;
-    while (this.next !== null) {
-      const at: Point = this.next;
-      this.next = null;
-      const isInside = this.picture.isInside(at);
-      const pick = isInside ? await this.editor.ask<Pick>("pinhole/pick", { point: at }) : null;
-      tell(pick === null ? "" : described(pick, at));
-      this.overlays.hover(pick?.object?.index ?? null);
-      if (pick === null || !this.overlays.isOn("samples")) continue;
-      const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
-      const samples = await this.editor.ask<Samples>("pinhole/samples", { pixel });
-      this.overlays.showSamples(pixel, samples);
-    }
-    this.busy = false;
-  }
-
-  private leave(): void {
-    this.next = this.place = null;
-    this.overlays.hover(null);
-    this.overlays.showSamples([0, 0], null);
-    tell("");
-  }
+  isBusy = false;
 }
 
 /** A sentence on what is seen at a point. */

@@ -1,12 +1,13 @@
 // The keys of the picture: what arrows move, and the choice of tools, views and what drags are held
 // to. They work wherever the focus is not in a text field.
 
-import type { Blocks } from "./blocks";
-import { Drag, type Workbench } from "./drag";
+import { duplicate, removeBlock } from "./blocks";
+import { Drag } from "./drag";
+import { picture } from "./picture";
 import type { Point } from "./protocol";
-import type { Selection } from "./selection";
+import { selection } from "./selection";
 import { say } from "./status";
-import { TOOLS, type Tool } from "./tools";
+import { TOOLS, tools, type Tool } from "./tools";
 
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
 const KEY_STEP = 10;
@@ -21,21 +22,20 @@ const ARROWS: Record<string, Point> =
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
-export class Keys {
+class Keys {
   space = false;
   private drag: Drag | null = null;
   private pause = 0;
   private readonly actions: Record<string, () => void>;
 
-  constructor(private readonly bench: Workbench, private readonly selection: Selection,
-    private readonly blocks: Blocks) {
-    const { picture, picture: { stage }, tools } = bench;
+  constructor() {
+    const { stage } = picture;
     this.actions = {
       x: () => tools.toggle("x"), y: () => tools.toggle("y"), z: () => tools.toggle("z"),
       f: () => tools.toggle("floor"),
       "+": () => picture.zoomBy(2), "=": () => picture.zoomBy(2), "-": () => picture.zoomBy(0.5),
       "0": () => picture.fit(), "1": () => picture.actualSize(),
-      Delete: () => blocks.remove(),
+      Delete: removeBlock,
       ...Object.fromEntries(Object.entries(TOOLS).map(([key, tool]) =>
         [key, () => tools.choose(tool)])),
     };
@@ -62,7 +62,6 @@ export class Keys {
 
   private down(event: KeyboardEvent): void {
     const { key } = event;
-    const { picture, tools } = this.bench;
     const arrow = ARROWS[key];
     const on = event.target as Element;
     if (event.defaultPrevented || on.closest(TEXT) !== null) return;
@@ -72,7 +71,7 @@ export class Keys {
     clearTimeout(this.pause);
     if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) this.end();
     if (event.ctrlKey && key === "d") {
-      void this.blocks.duplicate();
+      void duplicate();
       return event.preventDefault();
     }
     if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
@@ -81,7 +80,7 @@ export class Keys {
       this.drag ??= this.begin(on);
       this.drag?.by([arrow[0] * step, arrow[1] * step]);
     } else if (key === "Escape") {
-      if (this.drag === null) this.selection.select(null);
+      if (this.drag === null) selection.select(null);
       this.drag?.cancel();
       this.drag = null;
     } else if (key === " ") {
@@ -93,7 +92,7 @@ export class Keys {
   }
 
   private up(event: KeyboardEvent): void {
-    this.bench.tools.held = event;
+    tools.held = event;
     if (event.key === " ") this.freeSpace();
     if (event.key in ARROWS) this.rest();
   }
@@ -106,24 +105,26 @@ export class Keys {
 
   private freeSpace(): void {
     this.space = false;
-    delete this.bench.picture.stage.dataset["space"];
+    delete picture.stage.dataset["space"];
   }
 
   private ofCamera(handle: Tool): Drag {
-    const { size: [width, height] } = this.bench.picture;
+    const { size: [width, height] } = picture;
     // Roll turns about the middle: one has to take hold beside of it.
     const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
-    return new Drag(this.bench, at, () => ({ object: null, handle, at }));
+    return new Drag(at, () => ({ object: null, handle, at }));
   }
 
   /** What an arrow key drags: the focused handle, else the selected object or the camera. */
   private begin(focused: Element): Drag | null {
-    const { tool } = this.bench.tools;
+    const { tool } = tools;
     const isHandle = focused.closest(".handle") !== null;
     if (!isHandle && tool !== "move") return this.ofCamera(tool);
-    const held = this.selection.held(isHandle ? focused : null);
-    if (held !== null) return new Drag(this.bench, held.at, () => held);
+    const held = selection.held(isHandle ? focused : null);
+    if (held !== null) return new Drag(held.at, () => held);
     say("Select an object, or choose what the camera does.", "warning");
     return null;
   }
 }
+
+export const keys = new Keys();

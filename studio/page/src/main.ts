@@ -4,95 +4,66 @@
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
 import { keymap, type ViewUpdate } from "@codemirror/view";
-import { Blocks } from "./blocks";
-import { Connection, webSocket, worker } from "./connection";
-import { changesDiagnostics, fixKey, Problems, publishDiagnostics } from "./diagnostics";
+import { connection } from "./connection";
+import { changesDiagnostics, fixKey, problems, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
-import { Drafts } from "./drafts";
-import { SceneEditor } from "./editor";
-import { Files, sceneHistory } from "./files";
-import { Frames } from "./frames";
-import { Hover } from "./hover";
-import { hintField, Hints, openSwatch } from "./hints";
-import { Keys } from "./keys";
-import { layOut } from "./layout";
+import { drafts } from "./drafts";
+import { editor } from "./editor";
+import { files, sceneHistory } from "./files";
+import { frames } from "./frames";
+import { hoverAgain } from "./hover";
+import { hintField, openSwatch, refreshHints } from "./hints";
+import "./layout";
 import { numberControls } from "./numbers";
-import { Outlines } from "./outlines";
-import { OverlayLayer } from "./overlays";
-import { Picture } from "./picture";
+import { listObjects, refreshOutlines } from "./outlines";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
 import { feedProjectors, isProjector, project } from "./projector";
-import { Pointers } from "./pointers";
-import type { HostedFile, Limits } from "./protocol";
-import { Selection } from "./selection";
+import "./pointers";
+import type { HostedFile } from "./protocol";
+import { selection } from "./selection";
 import { offerSharing, sceneInAddress, showProgress } from "./share";
-import { Sliders } from "./sliders";
+import { sliders } from "./sliders";
 import * as status from "./status";
-import { followTheme, themeExtension } from "./theme";
-import { Tools } from "./tools";
 import { setText } from "./visible";
 
 /** How long the text has to rest before hints, sliders and objects are asked for, in ms. */
 const REST = 150;
 
-const meta = (name: string) => document.querySelector<HTMLMetaElement>(
-  `meta[name="pinhole-${name}"]`)?.content;
-const isServed = meta("host") !== "static";
-const connection = new Connection(isServed ? webSocket("/socket") : worker("engine.js"));
-const picture = new Picture(byId("stage"), document.querySelector("canvas") as HTMLCanvasElement);
-const overlays = new OverlayLayer(document.querySelector("#lines") as SVGSVGElement, picture);
-
-const limitsAt = (at: number) =>
-  editor.ask<Limits>("pinhole/limits", { position: editor.position(at) });
-const editor: SceneEditor = new SceneEditor(
-  byId("editor"), connection, meta("nonce"),
-  [keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls(limitsAt), hintField,
-    themeExtension(), sceneHistory],
-  update => {
-    if (update.docChanged) {
-      selection.mapped(update.changes);
-      sliders.mapped(update.changes);
-      files.follow(update.transactions);
-    }
-    if (update.selectionSet) selection.cursorMoved();
-    if (update.docChanged) changed();
-    if (changesDiagnostics(update)) problems.update();
-    showUndo(update);
-  },
-);
-editor.diagnosed = published => void publishDiagnostics(editor, published);
-const problems = new Problems(() => editor.view);
-const hints = new Hints(editor);
-const frames = new Frames(editor, connection,
-  shown => {
-    status.picture(shown.size, shown.fineness);
-    feedProjectors(shown);
-    picture.show(shown);
-  },
-  state => {
-    if (state === "good") status.stale(null);
-    else if (state === "broken") status.stale(picture.isEmpty
-      ? "The text has errors, so there is no picture yet."
-      : "The text has errors. This is its last good picture.");
-    else status.stale(`No picture of the newest text: ${state.message}`);
-  },
-);
-const tools = new Tools(picture.stage);
-const selection = new Selection(editor, picture, overlays, tools);
-const outlines = new Outlines(editor, connection, frames, overlays, selection);
-const bench = { editor, frames, picture, tools, rested };
-const blocks = new Blocks(editor, selection);
-const sliders = new Sliders(editor, frames, rested);
-new Pointers(bench, selection, new Keys(bench, selection, blocks));
-const hover = new Hover(editor, picture, overlays);
-outlines.onRest = () => hover.again();
-const files = new Files(editor, connection, isServed);
-const drafts = new Drafts(editor, connection, files, isServed);
+editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
+  hintField, sceneHistory]);
+editor.onUpdate = update => {
+  if (update.docChanged) {
+    selection.mapped(update.changes);
+    sliders.mapped(update.changes);
+    files.follow(update.transactions);
+  }
+  if (update.selectionSet) selection.cursorMoved();
+  if (update.docChanged) changed();
+  if (changesDiagnostics(update)) problems.update();
+  showUndo(update);
+};
+editor.diagnosed = published => void publishDiagnostics(published);
+frames.onShow = shown => {
+  status.picture(shown.size, shown.fineness);
+  feedProjectors(shown);
+  picture.show(shown);
+};
+frames.onState = state => {
+  if (state === "good") status.stale(null);
+  else if (state === "broken") status.stale(picture.isEmpty
+    ? "The text has errors, so there is no picture yet."
+    : "The text has errors. This is its last good picture.");
+  else status.stale(`No picture of the newest text: ${state.message}`);
+};
+frames.onRest = rested;
 files.onSaved = () => void drafts.keep();
 
 function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
-  outlines.changed();
+  // The coarse picture comes first.
+  void frames.coarse.then(refreshOutlines);
   files.show();
   // Nobody looks at these while a hand moves.
   if (frames.dragging === null) rested();
@@ -107,9 +78,10 @@ function rested(): void {
   clearTimeout(resting);
   resting = setTimeout(() => {
     if (editor.uri === "") return;
-    void hints.refresh();
+    hoverAgain();
+    void refreshHints();
     void sliders.refresh();
-    void outlines.rested();
+    void listObjects();
   }, REST);
 }
 
@@ -119,13 +91,13 @@ function showUndo({ state }: ViewUpdate): void {
   byId<HTMLButtonElement>("redo").disabled = redoDepth(state) === 0;
 }
 
-overlays.onNeed = selection.onChange = () => void outlines.refresh();
+overlays.onNeed = selection.onChange = () => void refreshOutlines();
 picture.onView = () => {
   overlays.draw();
   selection.draw();
 };
 
-connection.onHang = isHanging => status.hanging(isHanging);
+connection.onHang = isHanging => status.connection(isHanging ? "hanging" : "open", true);
 let isConnected = false;
 connection.onState = state => {
   status.connection(state, editor.uri !== "");
@@ -170,13 +142,11 @@ document.addEventListener("keydown", event => {
   else return;
   event.preventDefault();
 });
-followTheme(editor.view);
 // The editor has no more lines in the page than are seen.
 addEventListener("beforeprint", () => {
   picture.fit();
   setText(byId("print-text"), `${files.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
 });
-layOut(picture);
-offerSharing(editor, connection, files);
-project(picture);
+offerSharing();
+project();
 if (!isProjector) connection.open();

@@ -2,11 +2,11 @@
 // opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
-import { Facet, StateEffect, StateField, type EditorState,
-  type Extension } from "@codemirror/state";
+import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
 import { EditorView, keymap, showTooltip, type Command, type Tooltip,
   type TooltipView } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
+import { editor } from "./editor";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
 import type { Limits } from "./protocol";
@@ -53,11 +53,9 @@ export function format(value: number, step: number): string {
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
-/** Says between which numbers the one at a place of the text may be; null if nobody knows. */
-const limitSource = Facet.define<(at: number) => Promise<Limits | null>>();
-
-async function limitsOf({ state }: EditorView, literal: Literal): Promise<Limits | null> {
-  return (await state.facet(limitSource)[0]?.(literal.to)) ?? null;
+/** Says between which numbers one may be; null if nobody knows. */
+function limitsOf({ to }: Literal): Promise<Limits | null> {
+  return editor.ask("pinhole/limits", { position: editor.position(to) });
 }
 
 /** The least and the greatest value that a number can be turned to. */
@@ -89,7 +87,7 @@ export class Turn {
     this.gesture = new Gesture(view);
     this.to = literal.to;
     this.written = view.state.sliceDoc(literal.from, literal.to);
-    this.bounds = limitsOf(view, literal).then(limits => bounds(literal, limits));
+    this.bounds = limitsOf(literal).then(limits => bounds(literal, limits));
   }
 
   async set(value: number): Promise<void> {
@@ -171,7 +169,7 @@ function createSlider(view: EditorView): TooltipView {
     shown = found.value;
     dial.offer(found, null);
     const isStill = () => found.value === shown && dial.turn === null;
-    void limitsOf(view, found).then(limits => isStill() && dial.offer(found, limits));
+    void limitsOf(found).then(limits => isStill() && dial.offer(found, limits));
   };
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
@@ -228,37 +226,34 @@ const openAtCursor: Command = view => {
   return true;
 };
 
-export function numberControls(limits: (at: number) => Promise<Limits | null>): Extension {
-  return [
-    limitSource.of(limits),
-    sliderField,
-    EditorView.domEventHandlers({
-      pointerdown(event, view) {
-        if (!event.altKey || event.button !== 0) return false;
-        const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
-        const literal = at === null ? null : literalAt(view.state, at);
-        if (literal === null) return false;
-        scrub(event, view, literal);
-        return true;
-      },
-      // With the alt key the editor would begin to select.
-      mousedown: event => event.altKey,
-      click(event, view) {
-        const { main } = view.state.selection;
-        const literal = main.empty && !event.altKey ? literalAt(view.state, main.head) : null;
-        if (literal !== null) view.dispatch({ effects: openSlider.of(literal.from) });
-        return false;
-      },
-    }),
-    keymap.of([
-      { key: "Alt-ArrowUp", run: turnBy(1) },
-      { key: "Alt-ArrowDown", run: turnBy(-1) },
-      { key: "Alt-Enter", run: openAtCursor },
-      { key: "Escape", run: view => {
-        if (view.state.field(sliderField) === null) return false;
-        view.dispatch({ effects: openSlider.of(null) });
-        return true;
-      } },
-    ]),
-  ];
-}
+export const numberControls: Extension = [
+  sliderField,
+  EditorView.domEventHandlers({
+    pointerdown(event, view) {
+      if (!event.altKey || event.button !== 0) return false;
+      const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
+      const literal = at === null ? null : literalAt(view.state, at);
+      if (literal === null) return false;
+      scrub(event, view, literal);
+      return true;
+    },
+    // With the alt key the editor would begin to select.
+    mousedown: event => event.altKey,
+    click(event, view) {
+      const { main } = view.state.selection;
+      const literal = main.empty && !event.altKey ? literalAt(view.state, main.head) : null;
+      if (literal !== null) view.dispatch({ effects: openSlider.of(literal.from) });
+      return false;
+    },
+  }),
+  keymap.of([
+    { key: "Alt-ArrowUp", run: turnBy(1) },
+    { key: "Alt-ArrowDown", run: turnBy(-1) },
+    { key: "Alt-Enter", run: openAtCursor },
+    { key: "Escape", run: view => {
+      if (view.state.field(sliderField) === null) return false;
+      view.dispatch({ effects: openSlider.of(null) });
+      return true;
+    } },
+  ]),
+];

@@ -1,12 +1,12 @@
 // Asks for what is drawn over the picture: of the newest text, and no more than is shown.
 
-import type { Connection } from "./connection";
+import { connection } from "./connection";
 import { byId } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Frames } from "./frames";
-import type { OverlayLayer } from "./overlays";
+import { editor } from "./editor";
+import { frames } from "./frames";
+import { overlays } from "./overlays";
 import type { Overlays, SceneObject } from "./protocol";
-import { nameOf, type Selection } from "./selection";
+import { nameOf, selection } from "./selection";
 import { setText } from "./visible";
 
 /** So many objects are described to those who do not see the picture. */
@@ -31,55 +31,42 @@ function describe({ size, objects }: Overlays, count: number): void {
   canvas?.setAttribute("data-seen", "");
 }
 
-export class Outlines {
-  onRest: () => void = () => {};
-  private asking = false;
-  private outdated = false;
+/** The text has come to rest: its objects are listed, with their names and places. */
+export async function listObjects(): Promise<void> {
+  if (frames.dragging !== null || connection.state !== "open") return;
+  const about = { object: selection.index };
+  const objects = await editor.askCurrent<SceneObject[]>("pinhole/objects", about);
+  if (objects === null) return;
+  selection.list(objects);
+  const only = objects.slice(0, DESCRIBED).map(it => it.index);
+  const seen = await editor.askCurrent<Overlays>("pinhole/overlays", { only });
+  if (seen !== null) describe(seen, objects.length);
+}
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly frames: Frames, private readonly overlays: OverlayLayer,
-    private readonly selection: Selection) {}
+let isAsking = false;
+let isOutdated = false;
 
-  /** The text has changed, or the server. The coarse picture comes first. */
-  changed(): void { void this.frames.coarse.then(() => this.refresh()); }
-
-  /** The names and places of the objects, once nothing moves any more. */
-  async rested(): Promise<void> {
-    const { editor, frames, selection } = this;
-    if (frames.dragging !== null || this.connection.state !== "open") return;
-    this.onRest();
-    const about = { object: selection.index };
-    const objects = await editor.askCurrent<SceneObject[]>("pinhole/objects", about);
-    if (objects === null) return;
-    selection.list(objects);
-    const only = objects.slice(0, DESCRIBED).map(it => it.index);
-    const seen = await editor.askCurrent<Overlays>("pinhole/overlays", { only });
-    if (seen !== null) describe(seen, objects.length);
-  }
-
-  async refresh(): Promise<void> {
-    const { connection, editor, frames, overlays, selection } = this;
-    this.outdated = true;
-    if (this.asking) return;
-    this.asking = true;
-    while (this.outdated && connection.state === "open") {
-      this.outdated = false;
-      const { doc } = editor.view.state;
-      const shown = [selection.index, overlays.hovered].filter(it => it !== null);
-      const needsNone = shown.length === 0 && !overlays.needsAny;
-      if (frames.dragging !== null && needsNone) continue;
-      const only = overlays.needsAll ? null : shown;
-      const about = { object: selection.index, only };
-      const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-      // A text with errors has the last good picture, which nothing can be taken hold of in.
-      overlays.isTrue = answer !== null;
-      if (answer !== null && editor.view.state.doc === doc) {
-        overlays.data = answer;
-        frames.resized(answer.size);
-      }
-      overlays.draw();
-      selection.draw();
+/** Asks for what is shown, one question after the other. */
+export async function refreshOutlines(): Promise<void> {
+  isOutdated = true;
+  if (isAsking) return;
+  isAsking = true;
+  while (isOutdated && connection.state === "open") {
+    isOutdated = false;
+    const { doc } = editor.view.state;
+    const shown = [selection.index, overlays.hovered].filter(it => it !== null);
+    const needsNone = shown.length === 0 && !overlays.needsAny;
+    if (frames.dragging !== null && needsNone) continue;
+    const about = { object: selection.index, only: overlays.needsAll ? null : shown };
+    const answer = await editor.ask<Overlays>("pinhole/overlays", about);
+    // A text with errors has the last good picture, which nothing can be taken hold of in.
+    overlays.isTrue = answer !== null;
+    if (answer !== null && editor.view.state.doc === doc) {
+      overlays.data = answer;
+      frames.resized(answer.size);
     }
-    this.asking = false;
+    overlays.draw();
+    selection.draw();
   }
+  isAsking = false;
 }

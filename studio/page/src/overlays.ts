@@ -2,7 +2,7 @@
 // horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
 
 import { byId, createSvg, remember, remembered } from "./dom";
-import type { Picture } from "./picture";
+import { picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
@@ -18,7 +18,7 @@ const SAMPLES_ZOOM = 4;
 /** So far from the stage's border arrows end, in screen pixels. */
 const EDGE = 14;
 
-export class OverlayLayer {
+class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
   data: Overlays | null = null;
   /** Whether they are those of the text that is there. */
@@ -29,7 +29,7 @@ export class OverlayLayer {
   private selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
 
-  constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
+  constructor(private readonly svg: SVGElement) {
     const layers = remembered("layers")?.split(" ") ?? [];
     for (const box of boxes) {
       box.checked = layers.includes(box.name);
@@ -69,7 +69,7 @@ export class OverlayLayer {
   }
 
   draw(): void {
-    const { data, picture, svg } = this;
+    const { data, svg } = this;
     svg.replaceChildren();
     setText(byId("unseen"), data === null ? "" : [...this.unseen(data)].join(" "));
     if (data === null) return;
@@ -82,7 +82,7 @@ export class OverlayLayer {
       group.append(createSvg("path", { d, class: `line under ${name}` }),
         createSvg("path", { d, class: `line ${name}` }));
     };
-    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid(picture));
+    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
     if (this.isOn("near")) {
       path("near", data.near);
       path("far", data.far);
@@ -107,8 +107,8 @@ export class OverlayLayer {
   /** Marks a point with its coordinates; one that is outside of the stage by an arrow at its
    *  border. */
   private mark(point: Point, name: string, text: string): void {
-    const [x, y] = this.picture.toScreen(point);
-    const { clientWidth: width, clientHeight: height } = this.picture.stage;
+    const [x, y] = picture.toScreen(point);
+    const { clientWidth: width, clientHeight: height } = picture.stage;
     const [middleX, middleY] = [width / 2, height / 2];
     // How far out it is: 1 is the border.
     const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
@@ -129,7 +129,7 @@ export class OverlayLayer {
 
   /** Why something that is switched on is not to be seen. */
   private *unseen(data: Overlays): Generator<string> {
-    const { zoom } = this.picture;
+    const { zoom } = picture;
     if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
     if (this.isOn("horizon") && data.horizon === null) yield "The horizon is not near the picture.";
     if (this.isOn("near") && data.near.length + data.far.length === 0) {
@@ -143,8 +143,8 @@ export class OverlayLayer {
   private drawSamples(): void {
     if (this.samples === null) return;
     const { pixel, samples } = this.samples;
-    const [x, y] = this.picture.toScreen(pixel);
-    const size = this.picture.zoom;
+    const [x, y] = picture.toScreen(pixel);
+    const size = picture.zoom;
     this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
     samples.points.forEach(([dx, dy], i) => {
       const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size,
@@ -156,7 +156,7 @@ export class OverlayLayer {
 }
 
 /** The lines between the pixels that can be seen. */
-function grid(picture: Picture): Polyline[] {
+function grid(): Polyline[] {
   const { stage, size } = picture;
   const [left, top] = picture.toPicture([0, 0]);
   const [right, bottom] = picture.toPicture([stage.clientWidth, stage.clientHeight]);
@@ -167,3 +167,5 @@ function grid(picture: Picture): Polyline[] {
   for (let y = y0; y <= y1; y++) lines.push([[x0, y], [x1, y]]);
   return lines;
 }
+
+export const overlays = new OverlayLayer(document.querySelector("#lines") as SVGElement);

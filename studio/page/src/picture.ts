@@ -1,5 +1,6 @@
 // The picture: a canvas in a stage, and the view of it, which can be zoomed into single pixels.
 
+import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
@@ -9,7 +10,7 @@ const MOST_ZOOM = 64;
 /** The space between the picture and the stage's border, in screen pixels. */
 const MARGIN = 12;
 
-export class Picture {
+class Picture {
   /** Called when the view or the size of the picture has changed. */
   onView: () => void = () => {};
   /** Called when the wheel is to move the camera: 1 is 300 pixels of it. */
@@ -127,3 +128,6 @@ export class Picture {
     this.onView();
   }
 }
+
+export const picture = new Picture(byId("stage"),
+  document.querySelector("canvas") as HTMLCanvasElement);

@@ -3,7 +3,7 @@
 import { inAddress } from "./address";
 import { byId } from "./dom";
 import type { Fineness, Shown } from "./frames";
-import type { Picture } from "./picture";
+import { picture } from "./picture";
 
 /** What goes to the windows: a picture, as the bytes of an image. */
 interface Fed { image: ImageBitmap | Blob; size: [number, number]; fineness: Fineness }
@@ -24,7 +24,7 @@ export function feedProjectors({ bitmap, size, fineness }: Pick<Shown, "bitmap" 
 }
 
 /** Offers the window; in it, shows what comes. */
-export function project(picture: Picture): void {
+export function project(): void {
   if (isProjector) {
     document.body.classList.add("projector");
     channel.onmessage = async ({ data: { image, size, fineness } }: MessageEvent<Fed>) => {

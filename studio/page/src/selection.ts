@@ -4,10 +4,10 @@
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, createButton, create } from "./dom";
 import type { Held } from "./drag";
-import type { SceneEditor } from "./editor";
-import type { OverlayLayer } from "./overlays";
-import type { Picture } from "./picture";
-import type { Tools } from "./tools";
+import { editor } from "./editor";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
+import { tools } from "./tools";
 import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
 
 /** The least distance of two targets, in screen pixels, to the side or in height. */
@@ -23,7 +23,7 @@ interface Placed { object: SceneObject; from: number; to: number }
 
 export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
 
-export class Selection {
+class Selection {
   /** The index of the object that is selected. */
   index: number | null = null;
   onChange: () => void = () => {};
@@ -34,8 +34,7 @@ export class Selection {
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
 
-  constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer, private readonly tools: Tools) {
+  constructor() {
     this.menu.addEventListener("change", () => {
       const chosen = this.placed.find(it => String(it.object.index) === this.menu.value);
       this.select(chosen?.object ?? null);
@@ -76,17 +75,17 @@ export class Selection {
     // The list has the first objects alone.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
-    this.editor.jump(object.selection.start);
+    editor.jump(object.selection.start);
     this.cursorMoved();
   }
 
   private place(object: SceneObject): Placed {
     const { start, end } = object.range;
-    return { object, from: this.editor.offset(start), to: this.editor.offset(end) };
+    return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
   private follow(): void {
-    const { head } = this.editor.view.state.selection.main;
+    const { head } = editor.view.state.selection.main;
     const touching = this.placed.filter(it => it.from < it.to && it.from <= head && head <= it.to);
     // At the border of two it is the second one.
     const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
@@ -98,7 +97,7 @@ export class Selection {
     }
     if (index === this.index) return;
     this.index = index;
-    this.overlays.select(index);
+    overlays.select(index);
     this.draw();
     this.onChange();
   }
@@ -114,12 +113,12 @@ export class Selection {
       byId<HTMLButtonElement>(id).disabled = this.index === null;
     }
     const hasFloor = this.placed.some(it => it.object.kind === "checkerboard");
-    this.tools.offer(this.index !== null, hasFloor);
+    tools.offer(this.index !== null, hasFloor);
   }
 
   /** The selected object as it is drawn; none while that is not known of this text. */
   get drawn(): DrawnObject | undefined {
-    const { data, isTrue } = this.overlays;
+    const { data, isTrue } = overlays;
     return isTrue ? data?.objects.find(it => it.index === this.index) : undefined;
   }
 
@@ -136,7 +135,7 @@ export class Selection {
     if (!same) this.handles.replaceChildren(...buttons);
     const taken: Point[] = [];
     shown.forEach(({ at }, i) => {
-      const [x, y] = apart(this.picture.toScreen(at as Point), taken);
+      const [x, y] = apart(picture.toScreen(at as Point), taken);
       taken.push([x, y]);
       const button = buttons[i] as HTMLButtonElement;
       button.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
@@ -169,3 +168,5 @@ function apart([x, y]: Point, taken: readonly Point[]): Point {
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
   return ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).find(isFree) ?? [x, y];
 }
+
+export const selection = new Selection();

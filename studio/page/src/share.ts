@@ -3,9 +3,9 @@
 
 import { addressWith, inAddress } from "./address";
 import { byId, download, fromBase64 } from "./dom";
-import type { Connection } from "./connection";
-import type { SceneEditor } from "./editor";
-import type { Files } from "./files";
+import { connection } from "./connection";
+import { editor } from "./editor";
+import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
@@ -57,7 +57,7 @@ export function showProgress(share: number): void {
   setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);
 }
 
-export function offerSharing(editor: SceneEditor, connection: Connection, files: Files): void {
+export function offerSharing(): void {
   const stem = () => files.name.replace(/\.scn$/, "");
   const rendering = byId("rendering");
   const picture = async (kind: "png" | "exr", type: string) => {
@@ -72,8 +72,7 @@ export function offerSharing(editor: SceneEditor, connection: Connection, files:
       const answer = await connection.request<Partial<Record<string, string>> | null>(
         `studio/${kind}`, { text: editor.text }, wanted.signal);
       const bytes = answer?.[kind];
-      if (bytes === undefined) return say("The text has errors: it has no picture.",
-        "warning");
+      if (bytes === undefined) return say("The text has errors: it has no picture.", "warning");
       download(name, fromBase64(bytes), type);
       say(`${name} is downloaded.`);
     } catch (error) {

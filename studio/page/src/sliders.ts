@@ -2,8 +2,8 @@
 
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Frames } from "./frames";
+import { editor } from "./editor";
+import { frames } from "./frames";
 import { Dial, literalAt } from "./numbers";
 import type { Slider } from "./protocol";
 import { setText } from "./visible";
@@ -22,13 +22,10 @@ interface Row {
   button: HTMLButtonElement;
 }
 
-export class Sliders {
+class Sliders {
   private rows: Row[] = [];
   private playing: Row | null = null;
   private readonly panel = byId("sliders");
-
-  constructor(private readonly editor: SceneEditor, private readonly frames: Frames,
-    private readonly rested: () => void) {}
 
   /** The text has changed: each slider follows its number. */
   mapped(changes: ChangeDesc): void {
@@ -41,13 +38,13 @@ export class Sliders {
   private show({ dial, value }: Row): void {
     const found = dial.literal();
     if (found === null) return;
-    setText(value, this.editor.view.state.sliceDoc(found.from, found.end));
+    setText(value, editor.view.state.sliceDoc(found.from, found.end));
     if (dial.turn === null) dial.range.value = String(found.value);
   }
 
   /** The text has come to rest: sliders are those of its definitions. */
   async refresh(): Promise<void> {
-    const { editor, rows } = this;
+    const { rows } = this;
     const sliders = await editor.askCurrent<Slider[]>("pinhole/sliders", {});
     // A hand that turns one keeps it.
     if (sliders === null || rows.some(row => row.dial.turn)) return;
@@ -66,7 +63,7 @@ export class Sliders {
   }
 
   private createRow(name: string): Row {
-    const { view } = this.editor;
+    const { view } = editor;
     const dial = new Dial(view, () => {
       const found = literalAt(view.state, row.at + 1);
       return found && { ...found, step: row.step ?? found.step };
@@ -74,7 +71,7 @@ export class Sliders {
     dial.range.setAttribute("aria-label", name);
     dial.range.addEventListener("input", () => {
       if (this.playing === row) this.stop();
-      this.frames.dragging ??= dial;
+      frames.dragging ??= dial;
     });
     dial.range.addEventListener("change", () => this.end(row));
     const [element, value] = [create("div", "slider-row"), create("output")];
@@ -87,8 +84,7 @@ export class Sliders {
 
   private end({ dial }: Row): void {
     dial.end();
-    if (this.frames.dragging === dial) this.frames.dragging = null;
-    this.rested();
+    frames.released(dial);
   }
 
   private stop(): void {
@@ -113,9 +109,9 @@ export class Sliders {
       if (this.playing !== row) return;
       const part = ((performance.now() - begin) / PLAY) % 2;
       range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
-      this.frames.dragging ??= dial;
+      frames.dragging ??= dial;
       await dial.set(Number(range.value));
-      await this.frames.coarse;
+      await frames.coarse;
       // Whoever changes the number otherwise, or undoes that, has it rest.
       if (dial.turn === null || dial.turn.isOver) this.stop();
       else requestAnimationFrame(() => void go());
@@ -129,3 +125,5 @@ function label({ name, button }: Row, sign: string, does: string): void {
   setText(button, sign);
   button.setAttribute("aria-label", `${does} ${name}`);
 }
+
+export const sliders = new Sliders();

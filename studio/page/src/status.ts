@@ -6,34 +6,10 @@ import { byId } from "./dom";
 import type { Fineness } from "./frames";
 import { setText, visibleLine } from "./visible";
 
+/** What becomes of a text until there is a connection again. */
+const KEPT = "What is written here stays, and can be downloaded.";
 const FINENESS: Record<Fineness, string> =
   { coarse: "coarse", sharp: "one sample a pixel", final: "finished" };
-
-/** Where a page without a connection gets one. */
-const OPEN_PRINTED = "open the address that pinhole studio has printed in its terminal, in this "
-  + "tab";
-
-const CONNECTION: Record<ConnectionState, string> = {
-  open: "",
-  connecting: "Connecting…",
-  lost: "Connection lost; connecting again…",
-  failed: "The engine has stopped; it is started again…",
-  silent: `Nothing answers at this address any more. If Studio was ended, start it again, `
-    + `and ${OPEN_PRINTED}.`,
-  ended: `Studio was ended. Start it again, and ${OPEN_PRINTED}.`,
-  keyless: `This tab has no token of Studio: ${OPEN_PRINTED}.`,
-  unknown: `This address is from an earlier run of Studio, or incomplete: ${OPEN_PRINTED}.`,
-  restarted: `Studio was started anew, and does not know this tab: ${OPEN_PRINTED}.`,
-  late: `The address that a browser is started with serves for a minute, which is over: `
-    + `${OPEN_PRINTED}.`,
-  twice: `The address that a browser was started with was opened twice, perhaps by `
-    + `somebody else on this computer. Its session has ended: ${OPEN_PRINTED}.`,
-};
-
-const HANGS = "Nothing has come back for two seconds: Studio is stopped, or has too much to do.";
-
-/** What becomes of a text until there is a connection again. */
-const KEPT = " What is written here stays, and can be downloaded.";
 
 /** Names what is under the pointer. */
 export function point(text: string): void { setText(byId("pointed"), text); }
@@ -60,17 +36,12 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Says that nothing comes back, although there is a connection. */
-export function hanging(isHanging: boolean): void {
-  byId("connection-bar").hidden = !isHanging;
-  byId("connection-download").hidden = !isHanging;
-  if (isHanging) setText(byId("connection"), HANGS + KEPT);
-}
-
-/** Says whether there is a connection, and if not, what becomes of the text. */
-export function connection(state: ConnectionState, hasText: boolean): void {
-  const isKept = hasText && state !== "connecting";
+/** Says whether there is a connection, or that nothing comes back over it, and what becomes of the
+ *  text until then. */
+export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
+  const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";
   byId("connection-download").hidden = !isKept;
-  setText(byId("connection"), CONNECTION[state] + (isKept ? KEPT : ""));
+  const said = byId("connection-states").querySelector(`[data-state=${state}]`)?.textContent ?? "";
+  setText(byId("connection"), isKept ? `${said} ${KEPT}` : said);
 }

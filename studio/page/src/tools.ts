@@ -1,6 +1,7 @@
 // What a drag on the picture does: which tool is chosen, and what drags of objects are held to.
 
 import { byId } from "./dom";
+import { picture } from "./picture";
 import type { Along } from "./protocol";
 import { setText } from "./visible";
 
@@ -16,7 +17,7 @@ const STEP = 8;
 const radios = (name: string) =>
   [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
 
-export class Tools {
+class Tools {
   tool: Tool = "move";
   /** The keys that are held, which free drags of objects. */
   held = { shiftKey: false, ctrlKey: false };
@@ -24,7 +25,7 @@ export class Tools {
   private chosen: Along | "" | undefined;
   private hasFloor = false;
 
-  constructor(private readonly stage: HTMLElement) {
+  constructor() {
     for (const input of radios("tool")) {
       input.addEventListener("change", () => this.choose(input.value as Tool));
     }
@@ -35,7 +36,7 @@ export class Tools {
 
   choose(tool: Tool): void {
     this.tool = tool;
-    this.stage.dataset["tool"] = tool;
+    picture.stage.dataset["tool"] = tool;
     for (const input of radios("tool")) input.checked = input.value === tool;
     const name = tool.replace("_", " ");
     const summary = document.querySelector("#camera-menu summary") as Element;
@@ -56,8 +57,8 @@ export class Tools {
     return this.held.shiftKey ? undefined : this.kept || undefined;
   }
 
-  /** So far something goes at once, in pixels of a picture that is shown at a zoom. */
-  step(zoom: number): number | undefined { return this.held.ctrlKey ? undefined : STEP / zoom; }
+  /** So far something goes at once, in pixels of the picture. */
+  get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
 
   hold(along: Along | "" | undefined): void {
     this.chosen = along;
@@ -67,3 +68,5 @@ export class Tools {
   /** The same by a key, which frees if it is pressed again. */
   toggle(along: Along): void { this.hold(this.kept === along ? "" : along); }
 }
+
+export const tools = new Tools();
