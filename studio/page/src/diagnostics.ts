@@ -75,52 +75,42 @@ export function changesDiagnostics(update: ViewUpdate): boolean {
     it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
 }
 
-/** What is wrong, under the text: the first of it, or all. */
-class Problems {
-  private readonly button = byId("problems");
-  private readonly list = byId("problem-list");
+const button = byId("problems");
+button.addEventListener("click", () => {
+  button.ariaExpanded = String(button.ariaExpanded !== "true");
+  showProblems();
+});
 
-  constructor() {
-    this.button.addEventListener("click", () => {
-      this.button.ariaExpanded = String(!this.showsAll);
-      this.update();
-    });
-  }
-
-  private get showsAll(): boolean { return this.button.ariaExpanded === "true"; }
-
-  update(): void {
-    const found: [Diagnostic, number, number][] = [];
-    forEachDiagnostic(editor.view.state, (...it) => found.push(it));
-    const { length } = found;
-    setText(this.button, length === 0 ? "No problems" : length === 1 ? "1 problem"
-      : `${length} problems`);
-    this.button.toggleAttribute("data-some", length > 0);
-    this.list.hidden = length === 0;
-    this.list.toggleAttribute("data-all", this.showsAll);
-    // What is not shown is not made: a drag changes the text many times a second.
-    const shown = this.showsAll ? found : found.slice(0, 1);
-    this.list.replaceChildren(...shown.map(it => this.item(...it)));
-  }
-
-  /** A message, which leads to its place, with its fixes. */
-  private item(diagnostic: Diagnostic, from: number, to: number): HTMLLIElement {
-    const view = editor.view;
-    const item = create("li", diagnostic.severity);
-    const jump = () => {
-      view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
-      view.focus();
-    };
-    item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
-      "place", jump));
-    for (const { name, apply } of diagnostic.actions ?? []) {
-      item.append(createButton(name, "fix", () => apply(view, from, to)));
-    }
-    return item;
-  }
+/** Shows what is wrong under the text: the first of it, or all. */
+export function showProblems(): void {
+  const found: [Diagnostic, number, number][] = [];
+  forEachDiagnostic(editor.view.state, (...it) => found.push(it));
+  const { length } = found;
+  setText(button, length === 0 ? "No problems" : length === 1 ? "1 problem"
+    : `${length} problems`);
+  button.toggleAttribute("data-some", length > 0);
+  const list = byId("problem-list");
+  const isWhole = button.ariaExpanded === "true";
+  list.hidden = length === 0;
+  list.toggleAttribute("data-all", isWhole);
+  // What is not shown is not made: a drag changes the text many times a second.
+  list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
 }
 
-export const problems = new Problems();
+/** A message, which leads to its place, with its fixes. */
+function item({ severity, message, actions }: Diagnostic, from: number, to: number): HTMLElement {
+  const { view } = editor;
+  const item = create("li", severity);
+  const { number } = view.state.doc.lineAt(from);
+  item.append(createButton(`${number}: ${message}`, "place", () => {
+    view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
+    view.focus();
+  }));
+  for (const { name, apply } of actions ?? []) {
+    item.append(createButton(name, "fix", () => apply(view, from, to)));
+  }
+  return item;
+}
 
 /** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */
 export const fixKey: KeyBinding = {

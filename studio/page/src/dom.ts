@@ -55,6 +55,23 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   }
 }
 
+/** Does one thing after the other: of those that come while one is done, the newest alone. */
+export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<void> {
+  let next: { it: T } | null = null;
+  let work: Promise<void> | null = null;
+  const go = async () => {
+    for (let now = next; now !== null; now = next) {
+      next = null;
+      await act(now.it);
+    }
+    work = null;
+  };
+  return it => {
+    next = { it };
+    return (work ??= go());
+  };
+}
+
 /** Has the browser save a file. */
 export function download(name: string, content: BlobPart, type: string): void {
   const link = create("a");

@@ -22,91 +22,85 @@ interface Kept extends Draft { id: string }
 
 const store = () => createStore("pinhole-drafts", "drafts");
 
-class Drafts {
-  private timer = 0;
-  /** Whether something is kept that this page has written. */
-  private isKept = false;
-  /** What is offered and not answered yet, the newest first. */
-  private unanswered: Draft[] = [];
-  private id = `${Date.now()} ${Math.random()}`;
-  private readonly bar = byId("draft-bar");
+let timer = 0;
+/** Whether something is kept that this page has written. */
+let isKept = false;
+/** What is offered and not answered yet, the newest first. */
+let unanswered: Draft[] = [];
+let id = `${Date.now()} ${Math.random()}`;
+const bar = byId("draft-bar");
 
-  constructor() {
-    byId("draft-later").addEventListener("click", () => (this.bar.hidden = true));
-    addEventListener("pagehide", () => void this.keep());
+byId("draft-later").addEventListener("click", () => (bar.hidden = true));
+addEventListener("pagehide", () => void keepDraft());
+
+/** The text has changed. */
+export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
+
+/** The text is what there is to keep, if it is not saved. */
+export async function keepDraft(): Promise<void> {
+  clearTimeout(timer);
+  timer = 0;
+  const { isUnsaved } = files;
+  if (!(isUnsaved || isKept)) return;
+  isKept = isUnsaved;
+  try {
+    if (isServed) {
+      const earlier = unanswered;
+      const own = isUnsaved ? newDraft() : { text: null };
+      await connection.request("studio/draft", { ...own, earlier });
+    } else await stored(isUnsaved ? newDraft() : id);
+  } catch {
+    // Without a connection the text is kept when there is one.
+    isKept = true;
   }
+}
 
-  /** The text has changed. */
-  changed(): void { this.timer ||= setTimeout(() => void this.keep(), BEHIND); }
+function newDraft(): Kept {
+  const { textToSave: text, base } = files;
+  return { text, base, time: Math.floor(Date.now() / 1000), id };
+}
 
-  /** The text is what there is to keep, if it is not saved. */
-  async keep(): Promise<void> {
-    clearTimeout(this.timer);
-    this.timer = 0;
-    const { isUnsaved } = files;
-    if (!(isUnsaved || this.isKept)) return;
-    this.isKept = isUnsaved;
-    const { draft } = this;
-    try {
-      if (isServed) {
-        const earlier = this.unanswered;
-        const own = isUnsaved ? draft : { text: null };
-        await connection.request("studio/draft", { ...own, earlier });
-      } else await stored(isUnsaved ? draft : this.id);
-    } catch {
-      // Without a connection the text is kept when there is one.
-      this.isKept = true;
+/** Offers what earlier pages have kept. */
+export async function offerDrafts(kept: Draft | null): Promise<void> {
+  const { earlier = [], ...newest } = kept ?? {};
+  const drafts = kept !== null ? [newest as Draft, ...earlier]
+    : isServed ? [] : await all().catch(() => []);
+  unanswered = drafts.filter(it => it.text !== files.textToSave);
+  show();
+}
+
+function show(): void {
+  const { length } = unanswered;
+  bar.hidden = length === 0;
+  const were = length === 1 ? "A text was" : `${length} texts were`;
+  setText(byId("draft"), `${were} not saved:`);
+  byId("draft-choices").replaceChildren(...unanswered.slice(0, OFFERED).map(draft => {
+    const time = new Date(draft.time * 1000).toLocaleString();
+    const isNewer = isServed && draft.base !== files.seen;
+    const newer = isNewer ? " The file has changed since; Save will ask." : "";
+    const lines = draft.text.split("\n").length;
+    const row = create("li", "", `of ${time}, ${lines} lines.${newer}`);
+    row.append(createButton("Restore", "primary", () => answer(draft, true)),
+      createButton("Forget", "", () => answer(draft, false)));
+    return row;
+  }));
+}
+
+function answer(draft: Draft, isRestored: boolean): void {
+  unanswered.splice(unanswered.indexOf(draft), 1);
+  isKept = true;
+  if (isRestored) {
+    // What was written meanwhile is offered in its turn.
+    if (files.isUnsaved) {
+      unanswered.unshift(newDraft());
+      if (!isServed) void stored(newDraft());
     }
-  }
-
-  private get draft(): Kept {
-    const { textToSave: text, base } = files;
-    return { text, base, time: Math.floor(Date.now() / 1000), id: this.id };
-  }
-
-  /** Offers what earlier pages have kept. */
-  async offer(kept: Draft | null): Promise<void> {
-    const { earlier = [], ...newest } = kept ?? {};
-    const drafts = kept !== null ? [newest as Draft, ...earlier]
-      : isServed ? [] : await all().catch(() => []);
-    this.unanswered = drafts.filter(it => it.text !== files.textToSave);
-    this.show();
-  }
-
-  private show(): void {
-    const { length } = this.unanswered;
-    this.bar.hidden = length === 0;
-    const were = length === 1 ? "A text was" : `${length} texts were`;
-    setText(byId("draft"), `${were} not saved:`);
-    byId("draft-choices").replaceChildren(...this.unanswered.slice(0, OFFERED).map(draft => {
-      const time = new Date(draft.time * 1000).toLocaleString();
-      const isNewer = isServed && draft.base !== files.seen;
-      const newer = isNewer ? " The file has changed since; Save will ask." : "";
-      const lines = draft.text.split("\n").length;
-      const row = create("li", "", `of ${time}, ${lines} lines.${newer}`);
-      row.append(createButton("Restore", "primary", () => this.answer(draft, true)),
-        createButton("Forget", "", () => this.answer(draft, false)));
-      return row;
-    }));
-  }
-
-  private answer(draft: Draft, isRestored: boolean): void {
-    const { unanswered } = this;
-    unanswered.splice(unanswered.indexOf(draft), 1);
-    this.isKept = true;
-    if (isRestored) {
-      // What was written meanwhile is offered in its turn.
-      if (files.isUnsaved) {
-        unanswered.unshift(this.draft);
-        if (!isServed) void stored(this.draft);
-      }
-      if (!isServed) this.id = (draft as Kept).id;
-      files.restore(draft);
-    } else if (!isServed) void stored((draft as Kept).id);
-    this.show();
-    void this.keep();
-    editor.view.focus();
-  }
+    if (!isServed) id = (draft as Kept).id;
+    files.restore(draft);
+  } else if (!isServed) void stored((draft as Kept).id);
+  show();
+  void keepDraft();
+  editor.view.focus();
 }
 
 async function all(): Promise<Kept[]> {
@@ -120,5 +114,3 @@ async function stored(draft: Kept | string): Promise<void> {
   await set(draft.id, draft, store());
   await delMany((await all()).slice(MOST).map(({ id }) => id), store());
 }
-
-export const drafts = new Drafts();

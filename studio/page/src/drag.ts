@@ -20,42 +20,32 @@ const REFUSAL_STAYS = 5000;
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
-/** What a drag says stands where the hand is, while it lasts. */
-class Note {
-  private readonly element = byId("drag-note");
-  private timer = 0;
-  private staying = new AbortController();
+// What a drag says stands where the hand is, while it lasts.
+const note = byId("drag-note");
+let staying = new AbortController();
 
-  say(text: string, tone: "plain" | "warning", [x, y]: Point): void {
-    this.clear();
-    this.element.hidden = text === "";
-    this.element.dataset["tone"] = tone;
-    setText(this.element, text);
-    const { style } = this.element.parentElement as HTMLElement;
-    style.setProperty("--x", `${x}px`);
-    style.setProperty("--y", `${y}px`);
-  }
-
-  /** A refusal stays until something else is done, or for a while. */
-  end(): void {
-    if (this.element.hidden || this.element.dataset["tone"] !== "warning") return this.clear();
-    const { signal } = this.staying;
-    for (const type of ["pointerdown", "keydown"]) {
-      addEventListener(type, () => this.clear(), { capture: true, signal });
-    }
-    this.timer = setTimeout(() => this.clear(), REFUSAL_STAYS);
-  }
-
-  private clear(): void {
-    clearTimeout(this.timer);
-    this.staying.abort();
-    this.staying = new AbortController();
-    this.element.hidden = true;
-    setText(this.element, "");
-  }
+function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
+  staying.abort();
+  note.hidden = text === "";
+  note.dataset["tone"] = tone;
+  setText(note, text);
+  const { style } = byId("drag-place");
+  style.setProperty("--x", `${x}px`);
+  style.setProperty("--y", `${y}px`);
 }
 
-let note: Note | null = null;
+/** A refusal stays until something else is done, or for a while. */
+function endNote(): void {
+  const clear = () => showNote("", "plain", [0, 0]);
+  if (note.hidden || note.dataset["tone"] !== "warning") return clear();
+  const { signal } = (staying = new AbortController());
+  for (const type of ["pointerdown", "keydown"]) {
+    addEventListener(type, clear, { capture: true, signal });
+  }
+  const timer = setTimeout(clear, REFUSAL_STAYS);
+  signal.addEventListener("abort", () => clearTimeout(timer));
+}
+
 let count = 0;
 
 /** Asks for one edit at a time, always about the newest place of the hand. */
@@ -87,7 +77,6 @@ export class Drag {
     this.gesture = new Gesture(view);
     const before = frames.dragging instanceof Drag ? frames.dragging : null;
     frames.dragging = this;
-    note ??= new Note();
     this.holding = this.begin(before, hold);
   }
 
@@ -183,13 +172,13 @@ export class Drag {
     if (this.current.eq(this.base)) this.back();
     this.over = true;
     this.gesture.end();
-    note?.end();
+    endNote();
     if (this.isOpen) editor.closeAside(this.uri);
     this.settle();
     frames.released(this);
   }
 
   private say(text: string, tone: "plain" | "warning"): void {
-    note?.say(text, tone, picture.toScreen(this.target));
+    showNote(text, tone, picture.toScreen(this.target));
   }
 }

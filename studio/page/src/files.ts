@@ -66,6 +66,11 @@ class Files {
   constructor() {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
+    byId("file").addEventListener("change", ({ target }) => {
+      const [file] = (target as HTMLInputElement).files ?? [];
+      if (file !== undefined) void this.take(file, null);
+      (target as HTMLInputElement).value = ""; // The same file can be chosen again.
+    });
     byId("new").addEventListener("click", () => this.begin(EMPTY));
     for (const [name, text] of EXAMPLES) byId("examples").append(
       createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
@@ -270,14 +275,7 @@ class Files {
         if (handle !== undefined) await this.take(await handle.getFile(), handle);
         return;
       }
-      const input = create("input");
-      input.type = "file";
-      input.accept = ".scn,text/plain";
-      input.addEventListener("change", () => {
-        const file = input.files?.[0];
-        if (file !== undefined) void this.take(file, null);
-      });
-      input.click();
+      byId("file").click();
     } catch (error) { this.failed(error as Error); }
   }
 

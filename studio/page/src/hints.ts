@@ -6,7 +6,7 @@ import { Decoration, EditorView, WidgetType, type Command,
   type DecorationSet } from "@codemirror/view";
 import type { Color, ColorInformation, ColorPresentation, InlayHint } from
   "vscode-languageserver-protocol";
-import { create } from "./dom";
+import { create, newestOf } from "./dom";
 import { editor } from "./editor";
 import { Gesture } from "./gesture";
 
@@ -43,23 +43,14 @@ class SwatchWidget extends WidgetType {
     // The text is one stop of the Tab key. From a colour, Alt-Enter leads here.
     input.tabIndex = -1;
     let gesture: Gesture | null = null;
-    let wanted: string | null = null;
     let work = Promise.resolve();
-    input.addEventListener("input", () => {
-      const going = (gesture ??= new Gesture(view));
-      wanted = input.value;
-      // One after the other, and of those that wait the newest alone.
-      work = work.then(async () => {
-        const color = wanted;
-        wanted = null;
-        if (color !== null) await pick(view.posAtDOM(input), color, going);
-      });
-    });
-    input.addEventListener("change", () => {
-      const going = gesture;
+    const write = newestOf((color: string) =>
+      pick(view.posAtDOM(input), color, (gesture ??= new Gesture(view))));
+    input.addEventListener("input", () => (work = write(input.value)));
+    input.addEventListener("change", () => void work.then(() => {
+      gesture?.end();
       gesture = null;
-      void work.then(() => going?.end());
-    });
+    }));
     this.updateDOM(input);
     return input;
   }

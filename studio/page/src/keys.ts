@@ -1,13 +1,13 @@
 // The keys of the picture: what arrows move, and the choice of tools, views and what drags are held
 // to. They work wherever the focus is not in a text field.
 
-import { duplicate, removeBlock } from "./blocks";
+import { byId } from "./dom";
 import { Drag } from "./drag";
 import { picture } from "./picture";
 import type { Point } from "./protocol";
 import { selection } from "./selection";
 import { say } from "./status";
-import { TOOLS, tools, type Tool } from "./tools";
+import { tools, type Tool } from "./tools";
 
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
 const KEY_STEP = 10;
@@ -22,23 +22,20 @@ const ARROWS: Record<string, Point> =
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
+/** The control that a key presses; one that drags are held to already is let go. */
+function controlOf(key: string): HTMLElement | undefined {
+  const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
+  const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
+  return found?.matches("[name=along]:checked") ? byId("free") : found;
+}
+
 class Keys {
   space = false;
   private drag: Drag | null = null;
   private pause = 0;
-  private readonly actions: Record<string, () => void>;
 
   constructor() {
     const { stage } = picture;
-    this.actions = {
-      x: () => tools.toggle("x"), y: () => tools.toggle("y"), z: () => tools.toggle("z"),
-      f: () => tools.toggle("floor"),
-      "+": () => picture.zoomBy(2), "=": () => picture.zoomBy(2), "-": () => picture.zoomBy(0.5),
-      "0": () => picture.fit(), "1": () => picture.actualSize(),
-      Delete: removeBlock,
-      ...Object.fromEntries(Object.entries(TOOLS).map(([key, tool]) =>
-        [key, () => tools.choose(tool)])),
-    };
     document.addEventListener("keydown", event => this.down(event));
     document.addEventListener("keyup", event => this.up(event));
     picture.onDolly = turned => {
@@ -70,24 +67,24 @@ class Keys {
     tools.held = event;
     clearTimeout(this.pause);
     if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) this.end();
-    if (event.ctrlKey && key === "d") {
-      void duplicate();
-      return event.preventDefault();
-    }
-    if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
+    if (event.altKey || event.metaKey) return;
+    const whole = event.ctrlKey ? `Control+${key}` : key;
     if (arrow !== undefined) {
       const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
       this.drag ??= this.begin(on);
       this.drag?.by([arrow[0] * step, arrow[1] * step]);
-    } else if (key === "Escape") {
+    } else if (whole === "Escape") {
       if (this.drag === null) selection.select(null);
       this.drag?.cancel();
       this.drag = null;
-    } else if (key === " ") {
+    } else if (whole === " ") {
       this.space = true;
       picture.stage.dataset["space"] = "";
-    } else if (this.actions[key] !== undefined) this.actions[key]();
-    else return;
+    } else {
+      const control = controlOf(whole);
+      if (control === undefined) return;
+      control.click();
+    }
     event.preventDefault();
   }
 

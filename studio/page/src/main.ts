@@ -5,9 +5,9 @@ import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
 import { keymap, type ViewUpdate } from "@codemirror/view";
 import { connection } from "./connection";
-import { changesDiagnostics, fixKey, problems, publishDiagnostics } from "./diagnostics";
+import { changesDiagnostics, fixKey, publishDiagnostics, showProblems } from "./diagnostics";
 import { byId } from "./dom";
-import { drafts } from "./drafts";
+import { draftChanged, keepDraft, offerDrafts } from "./drafts";
 import { editor } from "./editor";
 import { files, sceneHistory } from "./files";
 import { frames } from "./frames";
@@ -23,7 +23,7 @@ import "./pointers";
 import type { HostedFile } from "./protocol";
 import { selection } from "./selection";
 import { offerSharing, sceneInAddress, showProgress } from "./share";
-import { sliders } from "./sliders";
+import { mapSliders, refreshSliders } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
@@ -35,12 +35,12 @@ editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numbe
 editor.onUpdate = update => {
   if (update.docChanged) {
     selection.mapped(update.changes);
-    sliders.mapped(update.changes);
+    mapSliders(update.changes);
     files.follow(update.transactions);
   }
   if (update.selectionSet) selection.cursorMoved();
   if (update.docChanged) changed();
-  if (changesDiagnostics(update)) problems.update();
+  if (changesDiagnostics(update)) showProblems();
   showUndo(update);
 };
 editor.diagnosed = published => void publishDiagnostics(published);
@@ -57,13 +57,13 @@ frames.onState = state => {
   else status.stale(`No picture of the newest text: ${state.message}`);
 };
 frames.onRest = rested;
-files.onSaved = () => void drafts.keep();
+files.onSaved = () => void keepDraft();
 
 function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
   // The coarse picture comes first.
-  void frames.coarse.then(refreshOutlines);
+  void frames.coarse.then(() => refreshOutlines());
   files.show();
   // Nobody looks at these while a hand moves.
   if (frames.dragging === null) rested();
@@ -74,13 +74,13 @@ let resting: ReturnType<typeof setTimeout>;
 
 /** What a text at rest has comes a little later. */
 function rested(): void {
-  drafts.changed();
+  draftChanged();
   clearTimeout(resting);
   resting = setTimeout(() => {
     if (editor.uri === "") return;
     hoverAgain();
     void refreshHints();
-    void sliders.refresh();
+    void refreshSliders();
     void listObjects();
   }, REST);
 }
@@ -117,7 +117,7 @@ connection.onNotification = async (method, params) => {
   files.hosted(params as HostedFile, text);
   if (!first) return;
   changed();
-  void drafts.offer((params as HostedFile).draft ?? null);
+  void offerDrafts((params as HostedFile).draft ?? null);
 };
 
 addEventListener("hashchange", async () => {

@@ -2,9 +2,8 @@
 // opens below a number on a click or by Alt-Enter.
 
 import { syntaxTree } from "@codemirror/language";
-import { StateEffect, StateField, type EditorState, type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip,
-  type TooltipView } from "@codemirror/view";
+import { StateEffect, StateField, type Extension } from "@codemirror/state";
+import { EditorView, keymap, showTooltip, type TooltipView } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { editor } from "./editor";
 import { Gesture } from "./gesture";
@@ -20,7 +19,8 @@ const DRAG_PIXELS = 4;
 /** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
-export function literalAt(state: EditorState, at: number): Literal | null {
+export function literalAt(at: number): Literal | null {
+  const { state } = editor.view;
   const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1))
     .find(it => it.name === "number");
   if (node === undefined) return null;
@@ -53,9 +53,9 @@ export function format(value: number, step: number): string {
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
-/** Says between which numbers one may be; null if nobody knows. */
-function limitsOf({ to }: Literal): Promise<Limits | null> {
-  return editor.ask("pinhole/limits", { position: editor.position(to) });
+/** Says between which numbers the one at an offset may be; null if nobody knows. */
+function limitsOf(at: number): Promise<Limits | null> {
+  return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
 /** The least and the greatest value that a number can be turned to. */
@@ -83,11 +83,11 @@ export class Turn {
   /** Whether somebody else has changed the number. */
   isOver = false;
 
-  constructor(private readonly view: EditorView, private readonly literal: Literal) {
-    this.gesture = new Gesture(view);
+  constructor(private readonly literal: Literal) {
+    this.gesture = new Gesture(editor.view);
     this.to = literal.to;
-    this.written = view.state.sliceDoc(literal.from, literal.to);
-    this.bounds = limitsOf(literal).then(limits => bounds(literal, limits));
+    this.written = editor.view.state.sliceDoc(literal.from, literal.to);
+    this.bounds = limitsOf(literal.to).then(limits => bounds(literal, limits));
   }
 
   async set(value: number): Promise<void> {
@@ -95,7 +95,7 @@ export class Turn {
     this.wanted = value;
     const [least, most] = await this.bounds;
     const text = format(Math.min(most, Math.max(least, this.wanted)), step);
-    const now = this.view.state.sliceDoc(from, this.to);
+    const now = editor.view.state.sliceDoc(from, this.to);
     // Whoever has changed the number otherwise keeps it.
     this.isOver ||= now !== this.written;
     if (text === now || this.isOver) return;
@@ -112,7 +112,7 @@ export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;
 
-  constructor(private readonly view: EditorView, readonly literal: () => Literal | null) {
+  constructor(readonly literal: () => Literal | null) {
     this.range.type = "range";
     this.range.addEventListener("input", () => void this.set(Number(this.range.value)));
     this.range.addEventListener("change", () => this.end());
@@ -120,7 +120,7 @@ export class Dial {
 
   async set(value: number): Promise<void> {
     const found = this.literal();
-    if (found !== null) this.turn ??= new Turn(this.view, found);
+    if (found !== null) this.turn ??= new Turn(found);
     await this.turn?.set(value);
   }
 
@@ -138,63 +138,60 @@ export class Dial {
 
 const openSlider = StateEffect.define<number | null>();
 
-const sliderField = StateField.define<Tooltip | null>({
+/** Where the number begins whose slider is open. */
+const sliderField = StateField.define<number | null>({
   create: () => null,
-  update(tooltip, transaction) {
-    let next = tooltip;
+  update(open, transaction) {
+    const { changes, docChanged, effects, selection } = transaction;
+    const next = effects.findLast(it => it.is(openSlider));
+    if (next !== undefined) return next.value;
     // Typing closes it; what the slider itself writes does not.
-    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null
-      : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
-    if (next !== null && transaction.selection !== undefined) next = null;
-    for (const effect of transaction.effects) {
-      if (!effect.is(openSlider)) continue;
-      const pos = effect.value;
-      next = pos === null ? null : { pos, create: createSlider, strictSide: false };
-    }
-    return next;
+    const isTyped = docChanged && transaction.isUserEvent("input");
+    return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
-  provide: field => showTooltip.from(field),
+  provide: field => showTooltip.from(field, pos =>
+    pos === null ? null : { pos, create: createSlider, strictSide: false }),
 });
 
-function createSlider(view: EditorView): TooltipView {
+const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.of(pos) });
+
+function createSlider({ state }: EditorView): TooltipView {
   const dom = create("div", "slider");
-  const dial = new Dial(view,
-    () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1));
+  const dial = new Dial(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
   const { range, literal } = dial;
-  let shown: number | null = null;
+  let limits: Limits | null = null;
   const adapt = () => {
     const found = literal();
-    if (found === null || dial.turn !== null || found.value === shown) return;
-    range.setAttribute("aria-label", `Value ${found.value}`);
-    shown = found.value;
-    dial.offer(found, null);
-    const isStill = () => found.value === shown && dial.turn === null;
-    void limitsOf(found).then(limits => isStill() && dial.offer(found, limits));
+    if (found === null || dial.turn !== null) return;
+    range.ariaLabel = `Value ${found.value}`;
+    dial.offer(found, limits);
   };
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
     event.preventDefault();
-    view.dispatch({ effects: openSlider.of(null) });
-    view.focus();
+    show(null);
+    editor.view.focus();
   });
-  const less = createButton("−", "", () => turnOnce(view, literal(), -1));
-  less.setAttribute("aria-label", "Less");
-  const more = createButton("+", "", () => turnOnce(view, literal(), 1));
-  more.setAttribute("aria-label", "More");
+  const less = createButton("−", "", () => turnOnce(literal(), -1));
+  less.ariaLabel = "Less";
+  const more = createButton("+", "", () => turnOnce(literal(), 1));
+  more.ariaLabel = "More";
   const grip = create("span", "grip", "↔");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
-  grip.addEventListener("pointerdown", event => {
-    const found = literal();
-    if (found !== null) scrub(event, view, found);
-  });
+  grip.addEventListener("pointerdown", event => scrub(event, literal()));
   dom.append(less, range, more, grip);
+  void limitsOf((state.field(sliderField) ?? 0) + 1).then(found => {
+    limits = found;
+    adapt();
+  });
   return { dom, mount: adapt, update: ({ docChanged }) => { if (docChanged) adapt(); } };
 }
 
 /** Turns a number by the way of the pointer to the side, until it is let go. */
-function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
+function scrub(event: PointerEvent, literal: Literal | null): boolean {
+  if (literal === null) return false;
   event.preventDefault();
-  const turn = new Turn(view, literal);
+  const turn = new Turn(literal);
   document.body.classList.add("scrubbing");
   const move = (next: PointerEvent) => void turn.set(
     literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
@@ -202,29 +199,19 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
     document.body.classList.remove("scrubbing");
     turn.end();
   });
+  return true;
 }
 
 /** Turns a number by a step. Says whether there is one. */
-function turnOnce(view: EditorView, literal: Literal | null, direction: number): boolean {
+function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
-  const turn = new Turn(view, literal);
+  const turn = new Turn(literal);
   void turn.set(literal.value + direction * literal.step);
   turn.end();
   return true;
 }
 
-/** Turns the number at the cursor; elsewhere the key does what it does without. */
-function turnBy(direction: number): Command {
-  return view => turnOnce(view, literalAt(view.state, view.state.selection.main.head), direction);
-}
-
-const openAtCursor: Command = view => {
-  const literal = literalAt(view.state, view.state.selection.main.head);
-  if (literal === null) return false;
-  view.dispatch({ effects: openSlider.of(literal.from) });
-  requestAnimationFrame(() => view.dom.querySelector<HTMLInputElement>(".slider input")?.focus());
-  return true;
-};
+const atCursor = () => literalAt(editor.view.state.selection.main.head);
 
 export const numberControls: Extension = [
   sliderField,
@@ -232,27 +219,30 @@ export const numberControls: Extension = [
     pointerdown(event, view) {
       if (!event.altKey || event.button !== 0) return false;
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
-      const literal = at === null ? null : literalAt(view.state, at);
-      if (literal === null) return false;
-      scrub(event, view, literal);
-      return true;
+      return scrub(event, at === null ? null : literalAt(at));
     },
     // With the alt key the editor would begin to select.
     mousedown: event => event.altKey,
-    click(event, view) {
-      const { main } = view.state.selection;
-      const literal = main.empty && !event.altKey ? literalAt(view.state, main.head) : null;
-      if (literal !== null) view.dispatch({ effects: openSlider.of(literal.from) });
+    click({ altKey }, { state }) {
+      const literal = state.selection.main.empty && !altKey ? atCursor() : null;
+      if (literal !== null) show(literal.from);
       return false;
     },
   }),
   keymap.of([
-    { key: "Alt-ArrowUp", run: turnBy(1) },
-    { key: "Alt-ArrowDown", run: turnBy(-1) },
-    { key: "Alt-Enter", run: openAtCursor },
-    { key: "Escape", run: view => {
-      if (view.state.field(sliderField) === null) return false;
-      view.dispatch({ effects: openSlider.of(null) });
+    // Elsewhere than at a number these do what they do without.
+    { key: "Alt-ArrowUp", run: () => turnOnce(atCursor(), 1) },
+    { key: "Alt-ArrowDown", run: () => turnOnce(atCursor(), -1) },
+    { key: "Alt-Enter", run: ({ dom }) => {
+      const literal = atCursor();
+      if (literal === null) return false;
+      show(literal.from);
+      requestAnimationFrame(() => dom.querySelector<HTMLInputElement>(".slider input")?.focus());
+      return true;
+    } },
+    { key: "Escape", run: ({ state }) => {
+      if (state.field(sliderField) === null) return false;
+      show(null);
       return true;
     } },
   ]),

@@ -1,7 +1,7 @@
 // Asks for what is drawn over the picture: of the newest text, and no more than is shown.
 
 import { connection } from "./connection";
-import { byId } from "./dom";
+import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
 import { overlays } from "./overlays";
@@ -43,30 +43,20 @@ export async function listObjects(): Promise<void> {
   if (seen !== null) describe(seen, objects.length);
 }
 
-let isAsking = false;
-let isOutdated = false;
-
 /** Asks for what is shown, one question after the other. */
-export async function refreshOutlines(): Promise<void> {
-  isOutdated = true;
-  if (isAsking) return;
-  isAsking = true;
-  while (isOutdated && connection.state === "open") {
-    isOutdated = false;
-    const { doc } = editor.view.state;
-    const shown = [selection.index, overlays.hovered].filter(it => it !== null);
-    const needsNone = shown.length === 0 && !overlays.needsAny;
-    if (frames.dragging !== null && needsNone) continue;
-    const about = { object: selection.index, only: overlays.needsAll ? null : shown };
-    const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-    // A text with errors has the last good picture, which nothing can be taken hold of in.
-    overlays.isTrue = answer !== null;
-    if (answer !== null && editor.view.state.doc === doc) {
-      overlays.data = answer;
-      frames.resized(answer.size);
-    }
-    overlays.draw();
-    selection.draw();
+export const refreshOutlines = newestOf<void>(async () => {
+  const shown = [selection.index, overlays.hovered].filter(it => it !== null);
+  const needsNone = shown.length === 0 && !overlays.needsAny;
+  if (connection.state !== "open" || (frames.dragging !== null && needsNone)) return;
+  const { doc } = editor.view.state;
+  const about = { object: selection.index, only: overlays.needsAll ? null : shown };
+  const answer = await editor.ask<Overlays>("pinhole/overlays", about);
+  // A text with errors has the last good picture, which nothing can be taken hold of in.
+  overlays.isTrue = answer !== null;
+  if (answer !== null && editor.view.state.doc === doc) {
+    overlays.data = answer;
+    frames.resized(answer.size);
   }
-  isAsking = false;
-}
+  overlays.draw();
+  selection.draw();
+});

@@ -1,6 +1,7 @@
-// What is selected: the object that the cursor is in. It has handles over the picture, and is named
-// in the menu of all objects.
+// What is selected: the object that the cursor is in. It has handles over the picture, is named in
+// the menu of all objects, and can be duplicated and deleted as others can be added.
 
+import { isolateHistory } from "@codemirror/commands";
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, createButton, create } from "./dom";
 import type { Held } from "./drag";
@@ -8,7 +9,8 @@ import { editor } from "./editor";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
 import { tools } from "./tools";
-import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
+import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
+import { say } from "./status";
 
 /** The least distance of two targets, in screen pixels, to the side or in height. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
@@ -170,3 +172,30 @@ function apart([x, y]: Point, taken: readonly Point[]): Point {
 }
 
 export const selection = new Selection();
+
+for (const button of document.querySelectorAll<HTMLElement>("[data-kind]")) {
+  button.addEventListener("click", () => void add({ kind: button.dataset["kind"] }));
+}
+byId("duplicate").addEventListener("click", () => void add({ object: selection.index }));
+byId("delete").addEventListener("click", remove);
+
+/** Adds a block, which the server writes: one of a kind, or a copy. */
+async function add(about: object): Promise<void> {
+  const added = await editor.askCurrent<Added>("pinhole/add", about);
+  if (added === null) return;
+  // The cursor in it has it selected, as soon as it is known as an object.
+  editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
+    selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
+  say(`${added.name ?? "A copy"} is added.`);
+}
+
+/** Takes the selected block away, with its line if nothing else is there. */
+function remove(): void {
+  const { view, view: { state: { doc } } } = editor;
+  const found = selection.block;
+  if (found === undefined) return;
+  const [first, last] = [doc.lineAt(found.from), doc.lineAt(found.to)];
+  const rest = doc.sliceString(first.from, found.from) + doc.sliceString(found.to, last.to);
+  view.dispatch({ annotations: isolateHistory.of("full"), changes: rest.trim() === ""
+    ? { from: first.from, to: Math.min(last.to + 1, doc.length) } : found });
+}

@@ -22,102 +22,97 @@ interface Row {
   button: HTMLButtonElement;
 }
 
-class Sliders {
-  private rows: Row[] = [];
-  private playing: Row | null = null;
-  private readonly panel = byId("sliders");
+let rows: Row[] = [];
+let playing: Row | null = null;
 
-  /** The text has changed: each slider follows its number. */
-  mapped(changes: ChangeDesc): void {
-    for (const row of this.rows) {
-      row.at = changes.mapPos(row.at, -1);
-      this.show(row);
-    }
+/** The text has changed: each slider follows its number. */
+export function mapSliders(changes: ChangeDesc): void {
+  for (const row of rows) {
+    row.at = changes.mapPos(row.at, -1);
+    show(row);
   }
+}
 
-  private show({ dial, value }: Row): void {
-    const found = dial.literal();
-    if (found === null) return;
-    setText(value, editor.view.state.sliceDoc(found.from, found.end));
-    if (dial.turn === null) dial.range.value = String(found.value);
-  }
+function show({ dial, value }: Row): void {
+  const found = dial.literal();
+  if (found === null) return;
+  setText(value, editor.view.state.sliceDoc(found.from, found.end));
+  if (dial.turn === null) dial.range.value = String(found.value);
+}
 
-  /** The text has come to rest: sliders are those of its definitions. */
-  async refresh(): Promise<void> {
-    const { rows } = this;
-    const sliders = await editor.askCurrent<Slider[]>("pinhole/sliders", {});
-    // A hand that turns one keeps it.
-    if (sliders === null || rows.some(row => row.dial.turn)) return;
-    if (sliders.some(({ name }, i) => rows[i]?.name !== name) || sliders.length < rows.length) {
-      this.rows = sliders.map(({ name }) => this.createRow(name));
-      this.panel.replaceChildren(...this.rows.map(row => row.element));
-    }
-    this.panel.hidden = sliders.length === 0;
-    sliders.forEach(({ range, limits, step }, i) => {
-      const row = this.rows[i] as Row;
-      Object.assign(row, { at: editor.offset(range.start), step });
-      const found = row.dial.literal();
-      if (found !== null) row.dial.offer(found, limits);
-      this.show(row);
-    });
+/** The text has come to rest: sliders are those of its definitions. */
+export async function refreshSliders(): Promise<void> {
+  const sliders = await editor.askCurrent<Slider[]>("pinhole/sliders", {});
+  // A hand that turns one keeps it.
+  if (sliders === null || rows.some(row => row.dial.turn)) return;
+  if (sliders.some(({ name }, i) => rows[i]?.name !== name) || sliders.length < rows.length) {
+    rows = sliders.map(({ name }) => createRow(name));
+    byId("sliders").replaceChildren(...rows.map(row => row.element));
   }
+  byId("sliders").hidden = sliders.length === 0;
+  sliders.forEach(({ range, limits, step }, i) => {
+    const row = rows[i] as Row;
+    Object.assign(row, { at: editor.offset(range.start), step });
+    const found = row.dial.literal();
+    if (found !== null) row.dial.offer(found, limits);
+    show(row);
+  });
+}
 
-  private createRow(name: string): Row {
-    const { view } = editor;
-    const dial = new Dial(view, () => {
-      const found = literalAt(view.state, row.at + 1);
-      return found && { ...found, step: row.step ?? found.step };
-    });
-    dial.range.setAttribute("aria-label", name);
-    dial.range.addEventListener("input", () => {
-      if (this.playing === row) this.stop();
-      frames.dragging ??= dial;
-    });
-    dial.range.addEventListener("change", () => this.end(row));
-    const [element, value] = [create("div", "slider-row"), create("output")];
-    const button = createButton("", "", () => this.play(row));
-    element.append(create("span", "", name), dial.range, value, button);
-    const row: Row = { name, at: 0, step: null, dial, element, value, button };
-    label(row, "▶", "Play");
-    return row;
-  }
+function createRow(name: string): Row {
+  const dial = new Dial(() => {
+    const found = literalAt(row.at + 1);
+    return found && { ...found, step: row.step ?? found.step };
+  });
+  dial.range.setAttribute("aria-label", name);
+  dial.range.addEventListener("input", () => {
+    if (playing === row) stop();
+    frames.dragging ??= dial;
+  });
+  dial.range.addEventListener("change", () => end(row));
+  const [element, value] = [create("div", "slider-row"), create("output")];
+  const button = createButton("", "", () => play(row));
+  element.append(create("span", "", name), dial.range, value, button);
+  const row: Row = { name, at: 0, step: null, dial, element, value, button };
+  label(row, "▶", "Play");
+  return row;
+}
 
-  private end({ dial }: Row): void {
-    dial.end();
-    frames.released(dial);
-  }
+function end({ dial }: Row): void {
+  dial.end();
+  frames.released(dial);
+}
 
-  private stop(): void {
-    const row = this.playing;
-    this.playing = null;
-    if (row === null) return;
-    label(row, "▶", "Play");
-    this.end(row);
-  }
+function stop(): void {
+  const row = playing;
+  playing = null;
+  if (row === null) return;
+  label(row, "▶", "Play");
+  end(row);
+}
 
-  /** Moves a number to and fro until it is stopped; it begins where it is. */
-  private play(row: Row): void {
-    const isNew = this.playing !== row;
-    this.stop();
-    if (!isNew) return;
-    this.playing = row;
-    label(row, "⏸", "Stop");
-    const { dial, dial: { range } } = row;
-    const [least, most] = [Number(range.min), Number(range.max)];
-    const begin = performance.now() - PLAY * (Number(range.value) - least) / (most - least);
-    const go = async () => {
-      if (this.playing !== row) return;
-      const part = ((performance.now() - begin) / PLAY) % 2;
-      range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
-      frames.dragging ??= dial;
-      await dial.set(Number(range.value));
-      await frames.coarse;
-      // Whoever changes the number otherwise, or undoes that, has it rest.
-      if (dial.turn === null || dial.turn.isOver) this.stop();
-      else requestAnimationFrame(() => void go());
-    };
-    void go();
-  }
+/** Moves a number to and fro until it is stopped; it begins where it is. */
+function play(row: Row): void {
+  const isNew = playing !== row;
+  stop();
+  if (!isNew) return;
+  playing = row;
+  label(row, "⏸", "Stop");
+  const { dial, dial: { range } } = row;
+  const [least, most] = [Number(range.min), Number(range.max)];
+  const begin = performance.now() - PLAY * (Number(range.value) - least) / (most - least);
+  const go = async () => {
+    if (playing !== row) return;
+    const part = ((performance.now() - begin) / PLAY) % 2;
+    range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
+    frames.dragging ??= dial;
+    await dial.set(Number(range.value));
+    await frames.coarse;
+    // Whoever changes the number otherwise, or undoes that, has it rest.
+    if (dial.turn === null || dial.turn.isOver) stop();
+    else requestAnimationFrame(() => void go());
+  };
+  void go();
 }
 
 /** What a row's button shows, and what it does. */
@@ -125,5 +120,3 @@ function label({ name, button }: Row, sign: string, does: string): void {
   setText(button, sign);
   button.setAttribute("aria-label", `${does} ${name}`);
 }
-
-export const sliders = new Sliders();

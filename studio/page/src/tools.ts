@@ -5,12 +5,8 @@ import { picture } from "./picture";
 import type { Along } from "./protocol";
 import { setText } from "./visible";
 
-/** The tools, by the keys that choose them. All but the first move the camera. */
-export const TOOLS = {
-  m: "move", o: "orbit", p: "pan", d: "dolly", r: "roll", v: "view_distance", l: "look",
-} as const;
-
-export type Tool = (typeof TOOLS)[keyof typeof TOOLS];
+/** What a drag moves; all but the first move the camera. */
+export type Tool = "move" | "orbit" | "pan" | "dolly" | "roll" | "view_distance" | "look";
 
 /** A handle goes so many screen pixels at once, unless the control key is held. */
 const STEP = 8;
@@ -26,28 +22,22 @@ class Tools {
   private hasFloor = false;
 
   constructor() {
-    for (const input of radios("tool")) {
-      input.addEventListener("change", () => this.choose(input.value as Tool));
-    }
-    for (const input of radios("along")) {
-      input.addEventListener("change", () => this.hold(input.value as Along | ""));
-    }
-  }
-
-  choose(tool: Tool): void {
-    this.tool = tool;
-    picture.stage.dataset["tool"] = tool;
-    for (const input of radios("tool")) input.checked = input.value === tool;
-    const name = tool.replace("_", " ");
     const summary = document.querySelector("#camera-menu summary") as Element;
-    if (tool !== "move") setText(summary, `Camera: ${name}`);
+    for (const input of radios("tool")) input.addEventListener("change", () => {
+      this.tool = input.value as Tool;
+      picture.stage.dataset["tool"] = this.tool;
+      if (this.tool !== "move") setText(summary, `Camera: ${this.tool.replace("_", " ")}`);
+    });
+    for (const input of radios("along")) {
+      input.addEventListener("change", () => (this.chosen = input.value as Along | ""));
+    }
   }
 
   /** Offers what is of use: there is an object to drag, and there may be a floor under it. */
   offer(isSelected: boolean, hasFloor: boolean): void {
     this.hasFloor = hasFloor;
     byId("along").hidden = !isSelected;
-    this.hold(this.chosen);
+    for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
   /** What drags are held to, if no key frees them. */
@@ -59,14 +49,6 @@ class Tools {
 
   /** So far something goes at once, in pixels of the picture. */
   get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
-
-  hold(along: Along | "" | undefined): void {
-    this.chosen = along;
-    for (const input of radios("along")) input.checked = input.value === this.kept;
-  }
-
-  /** The same by a key, which frees if it is pressed again. */
-  toggle(along: Along): void { this.hold(this.kept === along ? "" : along); }
 }
 
 export const tools = new Tools();

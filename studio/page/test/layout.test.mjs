@@ -35,7 +35,7 @@ for (const [name, start] of HOSTS) {
       await page.waitForFunction(() => /mine\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), example);
       // The new scene can be saved again, but no file that was there before.
-      await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere {}\n");
+      await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere { center (0, 1, 0) }\n");
       await page.keyboard.press("Control+s");
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
       assert.match(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), /9/);
@@ -98,7 +98,7 @@ test("an opened file of this computer is a new scene, of a host, too", async t =
   const started = await host(t);
   const page = await open(await launch(t), started);
   const other = path.join(started.folder, "other.scn");
-  writeFileSync(other, "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\nsphere {}\n");
+  writeFileSync(other, "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\nsphere { center (0, 0, 0) }\n");
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), menu(page, "File", "#open")]);
   await chooser.setFiles(other);
   await page.waitForFunction(() => document.querySelector("#file-name").textContent === "other.scn");
