@@ -2,7 +2,7 @@
 
 import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
-import type { KeyBinding, ViewUpdate } from "@codemirror/view";
+import { EditorView, type KeyBinding } from "@codemirror/view";
 import type { CodeAction, Diagnostic as ServerDiagnostic, PublishDiagnosticsParams } from
   "vscode-languageserver-protocol";
 import { byId, create, createButton } from "./dom";
@@ -19,7 +19,7 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   const isRight = published.diagnostics.length === 0;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
-    { range: editor.whole, context: { diagnostics: [] } });
+    { range: editor.range(), context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
@@ -45,9 +45,7 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
 }
 
 /** What is the same of a diagnostic and of that which an action names. */
-function keyOf({ message, range: { start, end } }: ServerDiagnostic): string {
-  return `${start.line} ${start.character} ${end.line} ${end.character} ${message}`;
-}
+const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
@@ -69,28 +67,34 @@ function fix(action: CodeAction): Action {
   };
 }
 
-/** Whether an update of the editor brings other diagnostics, or moves them. */
-export function changesDiagnostics(update: ViewUpdate): boolean {
-  return update.docChanged || update.transactions.some(
-    it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
-}
+/** Problems are shown anew where an update of the editor brings others, or moves them. */
+export const problemsFollow = EditorView.updateListener.of(({ docChanged, transactions }) => {
+  const areOther = transactions.some(it => it.effects.some(it => it.is(setDiagnosticsEffect)));
+  if (docChanged || areOther) showProblems();
+});
 
 const button = byId("problems");
+const isOpen = () => button.getAttribute("aria-expanded") === "true";
 button.addEventListener("click", () => {
-  button.ariaExpanded = String(button.ariaExpanded !== "true");
+  button.setAttribute("aria-expanded", String(!isOpen()));
   showProblems();
 });
 
-/** Shows what is wrong under the text: the first of it, or all. */
-export function showProblems(): void {
+/** What is wrong, with its places. */
+function diagnosed(): [Diagnostic, number, number][] {
   const found: [Diagnostic, number, number][] = [];
   forEachDiagnostic(editor.view.state, (...it) => found.push(it));
+  return found;
+}
+
+/** Shows what is wrong under the text: the first of it, or all. */
+export function showProblems(): void {
+  const found = diagnosed();
   const { length } = found;
-  setText(button, length === 0 ? "No problems" : length === 1 ? "1 problem"
-    : `${length} problems`);
+  setText(button, length === 0 ? "No problems" : length === 1 ? "1 problem" : `${length} problems`);
   button.toggleAttribute("data-some", length > 0);
   const list = byId("problem-list");
-  const isWhole = button.ariaExpanded === "true";
+  const isWhole = isOpen();
   list.hidden = length === 0;
   list.toggleAttribute("data-all", isWhole);
   // What is not shown is not made: a drag changes the text many times a second.
@@ -117,8 +121,7 @@ export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {
     const { head } = view.state.selection.main;
-    const fixable: [Diagnostic, number, number][] = [];
-    forEachDiagnostic(view.state, (...it) => { if (it[0].actions?.length) fixable.push(it); });
+    const fixable = diagnosed().filter(([{ actions }]) => actions?.length);
     const chosen = fixable.find(([, from, to]) => from <= head && head <= to) ?? fixable[0];
     chosen?.[0].actions?.[0]?.apply(view, chosen[1], chosen[2]);
     return chosen !== undefined;

@@ -23,10 +23,12 @@ export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className 
   return element;
 }
 
-export function createButton(text: string, className: string,
-  press: () => void): HTMLButtonElement {
+/** A button, which may have another name than its text. */
+export function createButton(text: string, className: string, press: () => void,
+  name: string | null = null): HTMLButtonElement {
   const button = create("button", className, text);
   button.type = "button";
+  if (name !== null) button.setAttribute("aria-label", name);
   button.addEventListener("click", press);
   return button;
 }
@@ -43,16 +45,15 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   end: () => void): void {
   const following = new AbortController();
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
-    act: (event: PointerEvent) => void) =>
-    document.addEventListener(type, event => event.pointerId === pressed.pointerId && act(event),
-      { signal: following.signal });
+    act: (event: PointerEvent) => void) => document.addEventListener(type,
+    event => event.pointerId === pressed.pointerId && act(event), { signal: following.signal });
+  const over = () => {
+    following.abort();
+    end();
+  };
   hear("pointermove", move);
-  for (const type of ["pointerup", "pointercancel"] as const) {
-    hear(type, () => {
-      following.abort();
-      end();
-    });
-  }
+  hear("pointerup", over);
+  hear("pointercancel", over);
 }
 
 /** Does one thing after the other: of those that come while one is done, the newest alone. */

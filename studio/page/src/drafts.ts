@@ -12,10 +12,8 @@ import { setText } from "./visible";
 
 /** How long a text waits until it is kept, in milliseconds, however fast one types. */
 const BEHIND = 500;
-
 /** So many drafts are in the browser. */
 const MOST = 10;
-
 /** So many are offered at once. */
 const OFFERED = 3;
 interface Kept extends Draft { id: string }
@@ -56,7 +54,7 @@ export async function keepDraft(): Promise<void> {
 }
 
 function newDraft(): Kept {
-  const { textToSave: text, base } = files;
+  const { textToSave: text, at: { base } } = files;
   return { text, base, time: Math.floor(Date.now() / 1000), id };
 }
 
@@ -76,7 +74,7 @@ function show(): void {
   setText(byId("draft"), `${were} not saved:`);
   byId("draft-choices").replaceChildren(...unanswered.slice(0, OFFERED).map(draft => {
     const time = new Date(draft.time * 1000).toLocaleString();
-    const isNewer = isServed && draft.base !== files.seen;
+    const isNewer = isServed && draft.base !== files.at.seen;
     const newer = isNewer ? " The file has changed since; Save will ask." : "";
     const lines = draft.text.split("\n").length;
     const row = create("li", "", `of ${time}, ${lines} lines.${newer}`);
@@ -103,10 +101,7 @@ function answer(draft: Draft, isRestored: boolean): void {
   editor.view.focus();
 }
 
-async function all(): Promise<Kept[]> {
-  const drafts = await values<Kept>(store());
-  return drafts.sort((a, b) => b.time - a.time);
-}
+const all = async () => (await values<Kept>(store())).sort((a, b) => b.time - a.time);
 
 /** Keeps a draft in this browser and forgets the oldest ones, or forgets one by its key. */
 async function stored(draft: Kept | string): Promise<void> {

@@ -52,9 +52,9 @@ let count = 0;
 export class Drag {
   private readonly uri = `drag:${++count}`;
   /** The text at the press, what has become of it, and by which changes. */
-  private base: Text;
-  private current: Text;
-  private written: ChangeSet;
+  private base!: Text;
+  private current!: Text;
+  private written!: ChangeSet;
   /** Where the hand is, and what was asked for last. */
   private target: Point;
   private asked: Point;
@@ -63,18 +63,14 @@ export class Drag {
   private busy = false;
   private ending = false;
   private over = false;
-  private gesture: Gesture;
+  private gesture!: Gesture;
   private readonly holding: Promise<Held | null>;
   private settle: () => void = () => {};
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** What is held may be found out only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
-    const { view } = editor;
-    this.base = this.current = view.state.doc;
-    this.written = ChangeSet.empty(this.base.length);
     this.target = this.asked = press;
-    this.gesture = new Gesture(view);
     const before = frames.dragging instanceof Drag ? frames.dragging : null;
     frames.dragging = this;
     this.holding = this.begin(before, hold);
@@ -82,14 +78,18 @@ export class Drag {
 
   /** The drag before this one may not have come to its end yet. */
   private async begin(before: Drag | null, hold: () => Promise<Held | null> | Held) {
+    this.take();
     if (before !== null) {
       await before.done;
-      const { view } = editor;
-      this.base = this.current = view.state.doc;
-      this.written = ChangeSet.empty(this.base.length);
-      this.gesture = new Gesture(view);
+      this.take();
     }
     return hold();
+  }
+
+  private take(): void {
+    this.base = this.current = editor.view.state.doc;
+    this.written = ChangeSet.empty(this.base.length);
+    this.gesture = new Gesture(editor.view);
   }
 
   to(target: Point): void {
@@ -124,7 +124,7 @@ export class Drag {
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
     const { base, press, uri } = this;
     this.asked = place;
-    if (!this.isOpen) editor.openAside(uri, base.toString());
+    if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];

@@ -1,5 +1,4 @@
-// The editor: CodeMirror with what the server gives through the language client. Fixes and hints
-// have files of their own.
+// The editor: CodeMirror with what the server gives through the language client.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
@@ -10,11 +9,10 @@ import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, renameK
 import { diff } from "@codemirror/merge";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec,
-  type Extension } from "@codemirror/state";
+  type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
-import type { Position, PublishDiagnosticsParams, Range, TextEdit } from
-  "vscode-languageserver-protocol";
+import type { Position, Range, TextEdit } from "vscode-languageserver-protocol";
 import { connection } from "./connection";
 import { byId, meta } from "./dom";
 import { gestureHistory, rewrite } from "./gesture";
@@ -76,23 +74,15 @@ class SceneEditor {
   readonly client: LSPClient;
   /** The address by which the server knows the scene; empty until it has been told. */
   uri = "";
-  /** What to do with the diagnostics that the server publishes. */
-  diagnosed: (published: PublishDiagnosticsParams) => void = () => undefined;
-
-  /** What hears of each update. */
-  onUpdate: (update: ViewUpdate) => void = () => undefined;
+  onNotification: (method: string, params: any) => void = () => {};
+  onUpdate: (update: ViewUpdate) => void = () => {};
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new LSPClient({
       // A busy machine may take its time; a lost connection is told by the connection.
       timeout: 60_000,
       sanitizeHTML: sanitized,
-      notificationHandlers: {
-        "textDocument/publishDiagnostics": (_, params) => {
-          this.diagnosed(params);
-          return true;
-        },
-      },
+      unhandledNotification: (_, method, params) => this.onNotification(method, params),
       extensions: [serverCompletion(), hoverTooltips(), signatureHelp()],
     });
     connection.ready = () => this.client.initializing;
@@ -103,8 +93,7 @@ class SceneEditor {
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        bracketMatching(), closeBrackets(), closingBrace, replacedLines,
-        gestureHistory(),
+        bracketMatching(), closeBrackets(), closingBrace, replacedLines, gestureHistory(),
         sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
           spellcheck: "false", autocapitalize: "off" }),
@@ -116,7 +105,8 @@ class SceneEditor {
           ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
-          if (it.docChanged) this.sync();
+          // Without a connection, the server hears of it later.
+          if (it.docChanged && connection.state === "open") this.client.sync();
           this.onUpdate(it);
         }),
       ],
@@ -153,10 +143,9 @@ class SceneEditor {
     return this.view.state.doc === doc ? answer : null;
   }
 
-  /** The place of all the text. */
-  get whole(): Range {
-    return { start: { line: 0, character: 0 },
-      end: { line: this.view.state.doc.lines, character: 0 } };
+  /** The place of all the text, or of a part of it. */
+  range(from = 0, to = this.view.state.doc.length): Range {
+    return { start: this.position(from), end: this.position(to) };
   }
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */
@@ -165,18 +154,13 @@ class SceneEditor {
     rewrite(this.view, { changes, selection: { anchor: 0 } });
   }
 
-  /** Tells the server about a text beside the scene's, under an address of its own; forgets it. */
-  openAside(uri: string, text: string): void {
-    const textDocument = { uri, languageId: "pinhole", version: 0, text };
-    this.tell("textDocument/didOpen", { textDocument });
+  /** Tells the server about a text beside the scene's, under an address of its own. */
+  openAside(uri: string, doc: Text): void {
+    const file = { uri, languageId: "pinhole", version: 0, doc, getView: () => null };
+    if (connection.state === "open") this.client.didOpen(file);
   }
 
-  closeAside(uri: string): void { this.tell("textDocument/didClose", { textDocument: { uri } }); }
-
-  private tell(method: string, params: object): void {
-    if (connection.state !== "open") return;
-    connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
-  }
+  closeAside(uri: string): void { if (connection.state === "open") this.client.didClose(uri); }
 
   /** Tells the server about the text, unless it was told already. */
   start(): void {
@@ -200,13 +184,6 @@ class SceneEditor {
     this.client.connect(connection);
   }
 
-  disconnected(): void { this.client.disconnect(); }
-
-  /** Moves the cursor to a place of the text, and shows it. */
-  jump(position: Position): void {
-    this.view.dispatch({ selection: { anchor: this.offset(position) }, scrollIntoView: true });
-  }
-
   offset({ line, character }: Position, doc = this.view.state.doc): number {
     if (line >= doc.lines) return doc.length;
     const { from, to } = doc.line(line + 1);
@@ -224,9 +201,6 @@ class SceneEditor {
       ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });
     return ChangeSet.of(edits.map(change), doc.length, "\n");
   }
-
-  /** Tells the server what has changed; without a connection, it hears of it later. */
-  private sync(): void { if (connection.state === "open") this.client.sync(); }
 }
 
 export const editor = new SceneEditor(byId("editor"), meta("nonce"));

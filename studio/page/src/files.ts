@@ -23,19 +23,20 @@ const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
 
 /** A scene, and where it is kept. */
-interface Scene {
-  name: string;
+class Scene {
   /** What its file held when it was last seen; null where there was none. */
-  seen: string | null;
+  seen: string | null = null;
   /** What the page's text was made from: Save asks if the file holds something else. */
-  base: string | null;
+  base: string | null = null;
   /** Whether the file has gone since. */
-  isGone: boolean;
-  handle: FileSystemFileHandle | null;
+  isGone = false;
+  handle: FileSystemFileHandle | null = null;
   /** Whether the host is still to make a file of it, under a name that Save asks for. */
-  isNew: boolean;
+  isNew = isServed;
   /** The text that it starts with, which is not worth saving; null for a file. */
-  untouched: string | null;
+  untouched: string | null = null;
+
+  constructor(public name = "scene.scn") {}
 }
 
 /** Another scene comes in the place of one, and goes again by Undo. */
@@ -56,11 +57,9 @@ const MOST_CHANGES = 3000;
 /** The host's file as the page last saw it; a static page has local files alone. */
 class Files {
   onSaved: () => void = () => {};
-  private opened = false;
   /** The host's scene, and the one that the page shows. */
-  private hosts: Scene = { name: "scene.scn", seen: null, base: null, isGone: false, handle: null,
-    isNew: false, untouched: null };
-  private at = this.hosts;
+  private hosts = new Scene();
+  at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
   constructor() {
@@ -74,17 +73,13 @@ class Files {
     byId("new").addEventListener("click", () => this.begin(EMPTY));
     for (const [name, text] of EXAMPLES) byId("examples").append(
       createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
-        () => this.begin(text, { name: `${name}.scn` })));
+        () => this.begin(text, new Scene(`${name}.scn`))));
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
-  get name(): string { return this.at.name; }
-  get base(): string | null { return this.at.base; }
-
-  /** Puts another scene in place, which has no file if nothing else is said. */
-  private begin(text: string, more: Partial<Scene> = {}): void {
-    const to: Scene = { name: "scene.scn", seen: null, base: more.seen ?? null, isGone: false,
-      handle: null, isNew: isServed, untouched: withLf(text), ...more };
+  /** Puts another scene in place; Undo brings back the one before. */
+  private begin(text: string, to = new Scene()): void {
+    to.untouched = to.seen === null ? withLf(text) : null;
     const { view } = editor;
     view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
       selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
@@ -104,13 +99,9 @@ class Files {
   get isUnsaved(): boolean {
     const { text } = editor;
     const { isGone, seen, untouched } = this.at;
-    return this.opened && text !== untouched
+    return editor.uri !== "" && text !== untouched
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
-
-  /** What the file held when it was last seen; null where there was none. */
-  get seen(): string | null { return this.at.seen; }
-  private set seen(text: string | null) { this.at.seen = this.at.base = text; }
 
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.at.seen ?? "", editor.text); }
@@ -128,9 +119,8 @@ class Files {
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // What becomes of the host's file is told when its scene is there again, and is saved.
     if (this.at !== this.hosts) return this.show();
-    if (!this.opened) {
-      this.opened = true;
-      this.seen = saved ? text : null;
+    if (editor.uri === "") {
+      this.at.seen = this.at.base = saved ? text : null;
       const start = isServed ? (text ?? "") : FIGURE;
       this.at.untouched = saved ? null : withLf(start);
       editor.open(start);
@@ -158,7 +148,7 @@ class Files {
       this.conflict.close();
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
       this.conflict.close();
-      this.seen = text;
+      this.at.seen = this.at.base = text;
       editor.replace(text);
       say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
@@ -210,10 +200,8 @@ class Files {
     const slow = setTimeout(() => say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await connection.request<Saved>("studio/save", about);
-      if (answer.ok) {
-        this.saved(name, text);
-        this.at.isNew = false;
-      } else if (answer.text === null) this.changed(null);
+      if (answer.ok) this.saved(name, text);
+      else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
@@ -221,8 +209,8 @@ class Files {
   }
 
   private saved(name: string, text: string): void {
-    this.seen = text;
-    Object.assign(this.at, { name, isGone: false, untouched: null });
+    this.at.seen = this.at.base = text;
+    Object.assign(this.at, { name, isGone: false, isNew: false, untouched: null });
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = this.at;
     say(`${this.shownName} is saved.`);
@@ -257,9 +245,8 @@ class Files {
     const text = this.textToSave;
     const about = { ...SCENES, suggestedName: this.at.name };
     this.at.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
-    if (this.at.handle === null) {
-      download(this.at.name, text, "text/plain");
-    } else {
+    if (this.at.handle === null) download(this.at.name, text, "text/plain");
+    else {
       // The browser writes into a copy, which takes the file's place as a whole on closing.
       const file = await this.at.handle.createWritable();
       await file.write(text);
@@ -269,13 +256,10 @@ class Files {
   }
 
   private async open(): Promise<void> {
+    if (isServed || pickers.showOpenFilePicker === undefined) return byId("file").click();
     try {
-      if (!isServed && pickers.showOpenFilePicker !== undefined) {
-        const [handle] = await pickers.showOpenFilePicker(SCENES);
-        if (handle !== undefined) await this.take(await handle.getFile(), handle);
-        return;
-      }
-      byId("file").click();
+      const [handle] = await pickers.showOpenFilePicker(SCENES);
+      if (handle !== undefined) await this.take(await handle.getFile(), handle);
     } catch (error) { this.failed(error as Error); }
   }
 
@@ -284,8 +268,10 @@ class Files {
       // Other encodings would come back from Save as another text.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
-      const seen = isServed ? null : text;
-      this.begin(text, { name: file.name, handle, seen, untouched: seen === null ? text : null });
+      const scene = new Scene(file.name);
+      scene.handle = handle;
+      if (!isServed) scene.seen = scene.base = text;
+      this.begin(text, scene);
       this.tellLone();
     } catch { say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
@@ -302,7 +288,7 @@ class Files {
       const { returnValue: choice } = this.conflict;
       // Saving will ask again, because the page's text is still made from an older one.
       if (choice === "") return;
-      this.seen = theirs;
+      this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();
       else editor.replace(theirs);
       this.show();
@@ -311,8 +297,7 @@ class Files {
   }
 }
 
-/** A text with the ends of lines that a file has; a new line ends as the one before it. A carriage
- *  return alone ends none. */
+/** A text with the ends of lines that a file has; a new line ends as the one before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];

@@ -23,10 +23,8 @@ const COARSE_PIXELS = 320 * 180;
 /** More than this a canvas cannot hold in every browser. */
 const MOST_PIXELS = 16_000_000;
 const LONGEST_SIDE = 8192;
-
 /** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
 const HAND_RESTS = 20;
-
 /** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
 const SOON = 200;
 

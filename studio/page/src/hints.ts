@@ -1,5 +1,4 @@
-// What the editor shows between the letters: values that the server works out, and a swatch before
-// each colour, which opens a picker.
+// Between the letters: values that the server works out, and a swatch before each colour.
 
 import { StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
@@ -83,7 +82,7 @@ export const openSwatch: Command = view => {
 export async function refreshHints(): Promise<void> {
   const { doc } = editor.view.state;
   const [hints, colors] = await Promise.all([
-    editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
+    editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.range() }),
     editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
   ]);
   // A newer text or connection brings new ones.
@@ -105,10 +104,9 @@ export async function refreshHints(): Promise<void> {
 async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
   const { doc } = editor.view.state;
   const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
-  const start = editor.position(offset);
   const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
   const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
-  const range = { start, end: { line: start.line, character: start.character + written.length } };
+  const range = editor.range(offset, offset + written.length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
   const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))

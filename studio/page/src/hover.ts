@@ -25,14 +25,14 @@ picture.stage.addEventListener("pointerleave", () => {
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
 const hover = newestOf(async (at: Point | null) => {
-  const pick = at !== null && picture.isInside(at)
-    ? await editor.ask<Pick>("pinhole/pick", { point: at }) : null;
+  const isInside = at !== null && picture.isInside(at);
+  const pick = isInside ? await editor.ask<Pick>("pinhole/pick", { point: at }) : null;
   tell(pick === null || at === null ? "" : described(pick, at));
   overlays.hover(pick?.object?.index ?? null);
-  const pixel = at === null || pick === null ? null : at.map(Math.floor) as unknown as Point;
-  const isShown = pixel !== null && overlays.isOn("samples");
-  overlays.showSamples(isShown ? pixel : [0, 0], isShown
-    ? await editor.ask<Samples>("pinhole/samples", { pixel }) : null);
+  if (pick === null || at === null || !overlays.isOn("samples")) return overlays.showSamples(null);
+  const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
+  const samples = await editor.ask<Samples>("pinhole/samples", { pixel });
+  overlays.showSamples(samples && { pixel, samples });
 });
 
 /** A sentence on what is seen at a point. */

@@ -1,5 +1,4 @@
-// The scene language as the editor colours it while one types. What names mean is the server's
-// business.
+// The scene language as the editor colours it. What names mean is the server's business.
 
 import { StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { classHighlighter } from "@lezer/highlight";

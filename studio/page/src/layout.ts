@@ -20,7 +20,8 @@ const share = (percent: number) => {
   divider.setAttribute("aria-valuenow", String(bounded));
   remember("text-share", String(bounded));
 };
-const orient = () => (divider.ariaOrientation = isNarrow.matches ? "horizontal" : "vertical");
+const orient = () =>
+  divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal" : "vertical");
 isNarrow.addEventListener("change", orient);
 orient();
 share(Number(remembered("text-share") ?? 42));
@@ -58,17 +59,19 @@ for (const id of ["keys", "language"]) {
 }
 
 // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
-for (const menu of document.querySelectorAll<HTMLDetailsElement>("details.menu")) {
-  document.addEventListener("pointerdown", event => {
-    if (!menu.contains(event.target as Node)) menu.open = false;
-  });
-  menu.addEventListener("keydown", event => {
-    if (event.key !== "Escape") return;
-    menu.open = false;
+const menus = [...document.querySelectorAll<HTMLDetailsElement>("details.menu")];
+const closeMenus = (except?: EventTarget | null) => {
+  for (const menu of menus) if (!menu.contains(except as Node | null)) menu.open = false;
+};
+document.addEventListener("pointerdown", ({ target }) => closeMenus(target));
+for (const menu of menus) {
+  menu.addEventListener("keydown", ({ key }) => {
+    if (key !== "Escape") return;
+    closeMenus();
     menu.querySelector("summary")?.focus();
   });
-  menu.addEventListener("click", event => {
-    if ((event.target as Element).closest("button, [type=radio]")) menu.open = false;
+  menu.addEventListener("click", ({ target }) => {
+    if ((target as Element).closest("button, [type=radio]")) closeMenus();
   });
 }
 
@@ -80,7 +83,7 @@ const paint = () => {
   const other = colors() === "dark" ? "Light" : "Dark";
   document.documentElement.dataset["theme"] = colors();
   setText(byId("theme"), other);
-  byId("theme").ariaLabel = `${other} colours`;
+  byId("theme").setAttribute("aria-label", `${other} colours`);
   const isDark = EditorView.darkTheme.of(colors() === "dark");
   editor.view.dispatch({ effects: editorTheme.reconfigure(isDark) });
 };

@@ -3,9 +3,9 @@
 
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
-import { keymap, type ViewUpdate } from "@codemirror/view";
+import { keymap } from "@codemirror/view";
 import { connection } from "./connection";
-import { changesDiagnostics, fixKey, publishDiagnostics, showProblems } from "./diagnostics";
+import { fixKey, problemsFollow, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
 import { draftChanged, keepDraft, offerDrafts } from "./drafts";
 import { editor } from "./editor";
@@ -18,11 +18,11 @@ import { numberControls } from "./numbers";
 import { listObjects, refreshOutlines } from "./outlines";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
-import { feedProjectors, isProjector, project } from "./projector";
+import { feedProjectors, isProjector } from "./projector";
 import "./pointers";
 import type { HostedFile } from "./protocol";
 import { selection } from "./selection";
-import { offerSharing, sceneInAddress, showProgress } from "./share";
+import { sceneInAddress, showProgress } from "./share";
 import { mapSliders, refreshSliders } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
@@ -31,7 +31,7 @@ import { setText } from "./visible";
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
-  hintField, sceneHistory]);
+  hintField, problemsFollow, sceneHistory]);
 editor.onUpdate = update => {
   if (update.docChanged) {
     selection.mapped(update.changes);
@@ -40,13 +40,12 @@ editor.onUpdate = update => {
   }
   if (update.selectionSet) selection.cursorMoved();
   if (update.docChanged) changed();
-  if (changesDiagnostics(update)) showProblems();
-  showUndo(update);
+  byId<HTMLButtonElement>("undo").disabled = undoDepth(update.state) === 0;
+  byId<HTMLButtonElement>("redo").disabled = redoDepth(update.state) === 0;
 };
-editor.diagnosed = published => void publishDiagnostics(published);
 frames.onShow = shown => {
   status.picture(shown.size, shown.fineness);
-  feedProjectors(shown);
+  feedProjectors({ image: shown.bitmap, size: shown.size, fineness: shown.fineness });
   picture.show(shown);
 };
 frames.onState = state => {
@@ -77,18 +76,11 @@ function rested(): void {
   draftChanged();
   clearTimeout(resting);
   resting = setTimeout(() => {
-    if (editor.uri === "") return;
     hoverAgain();
     void refreshHints();
     void refreshSliders();
     void listObjects();
   }, REST);
-}
-
-/** Undo and Redo are offered where there is something. */
-function showUndo({ state }: ViewUpdate): void {
-  byId<HTMLButtonElement>("undo").disabled = undoDepth(state) === 0;
-  byId<HTMLButtonElement>("redo").disabled = redoDepth(state) === 0;
 }
 
 overlays.onNeed = selection.onChange = () => void refreshOutlines();
@@ -98,27 +90,29 @@ picture.onView = () => {
 };
 
 connection.onHang = isHanging => status.connection(isHanging ? "hanging" : "open", true);
-let isConnected = false;
 connection.onState = state => {
   status.connection(state, editor.uri !== "");
   if (state === "open") {
     editor.connected();
     changed();
-  } else if (isConnected) editor.disconnected();
-  isConnected = state === "open";
+  } else editor.client.disconnect();
 };
 
 const linked = sceneInAddress();
-connection.onNotification = async (method, params) => {
-  if (method === "studio/progress") showProgress((params as { share: number }).share);
-  if (method !== "studio/file") return;
+editor.onNotification = (method, params) => {
+  if (method === "textDocument/publishDiagnostics") void publishDiagnostics(params);
+  if (method === "studio/progress") showProgress(params.share);
+  if (method === "studio/file") void hosted(params);
+};
+
+async function hosted(file: HostedFile): Promise<void> {
   const text = await linked;
   const first = editor.uri === "";
-  files.hosted(params as HostedFile, text);
+  files.hosted(file, text);
   if (!first) return;
   changed();
-  void offerDrafts((params as HostedFile).draft ?? null);
-};
+  void offerDrafts(file.draft ?? null);
+}
 
 addEventListener("hashchange", async () => {
   const token = takeToken();
@@ -131,22 +125,9 @@ addEventListener("hashchange", async () => {
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
-document.addEventListener("keydown", event => {
-  const key = event.key.toLowerCase();
-  if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-  const isElsewhere = !editor.view.hasFocus
-    && !(event.target instanceof HTMLInputElement && event.target.type === "text");
-  if (key === "s") void files.save();
-  else if (isElsewhere && key === "z") (event.shiftKey ? redo : undo)(editor.view);
-  else if (isElsewhere && key === "y") redo(editor.view);
-  else return;
-  event.preventDefault();
-});
 // The editor has no more lines in the page than are seen.
 addEventListener("beforeprint", () => {
   picture.fit();
-  setText(byId("print-text"), `${files.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
+  setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);
 });
-offerSharing();
-project();
 if (!isProjector) connection.open();

@@ -1,5 +1,4 @@
-// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that
-// opens below a number on a click or by Alt-Enter.
+// Numbers in the text that one can turn: by a drag with the alt key, and by a slider below them.
 
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type Extension } from "@codemirror/state";
@@ -64,8 +63,7 @@ function bounds({ step }: Literal, limits: Limits | null): [number, number] {
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
-/** The same for a slider, which has to end somewhere: about the value that is there, unless both
- *  bounds are known. */
+/** The same for a slider: about the value that is there, unless both bounds are known. */
 function offered(literal: Literal, limits: Limits | null): [number, number] {
   const span = Math.max(Math.abs(literal.value), 50 * literal.step);
   const [least, most] = bounds(literal, limits);
@@ -163,7 +161,7 @@ function createSlider({ state }: EditorView): TooltipView {
   const adapt = () => {
     const found = literal();
     if (found === null || dial.turn !== null) return;
-    range.ariaLabel = `Value ${found.value}`;
+    range.setAttribute("aria-label", `Value ${found.value}`);
     dial.offer(found, limits);
   };
   range.addEventListener("keydown", event => {
@@ -172,10 +170,8 @@ function createSlider({ state }: EditorView): TooltipView {
     show(null);
     editor.view.focus();
   });
-  const less = createButton("−", "", () => turnOnce(literal(), -1));
-  less.ariaLabel = "Less";
-  const more = createButton("+", "", () => turnOnce(literal(), 1));
-  more.ariaLabel = "More";
+  const less = createButton("−", "", () => turnOnce(literal(), -1), "Less");
+  const more = createButton("+", "", () => turnOnce(literal(), 1), "More");
   const grip = create("span", "grip", "↔");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
   grip.addEventListener("pointerdown", event => scrub(event, literal()));

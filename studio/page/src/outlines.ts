@@ -5,12 +5,15 @@ import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
 import { overlays } from "./overlays";
+import { picture } from "./picture";
 import type { Overlays, SceneObject } from "./protocol";
 import { nameOf, selection } from "./selection";
 import { setText } from "./visible";
 
 /** So many objects are described to those who do not see the picture. */
 const DESCRIBED = 6;
+
+let described = "";
 
 /** Says what is seen, and where; changes of it are announced. */
 function describe({ size, objects }: Overlays, count: number): void {
@@ -23,12 +26,10 @@ function describe({ size, objects }: Overlays, count: number): void {
   });
   if (count > objects.length) places.push(`${count - objects.length} more`);
   const text = places.length === 0 ? "A scene without objects" : places.join("; ");
-  const canvas = document.querySelector("canvas");
   // At first nothing has changed.
-  const isNew = canvas?.dataset["seen"] !== undefined && canvas.ariaLabel !== text;
-  if (isNew) setText(byId("seen"), text);
-  canvas?.setAttribute("aria-label", text);
-  canvas?.setAttribute("data-seen", "");
+  if (described !== "" && described !== text) setText(byId("seen"), text);
+  described = text;
+  picture.canvas.setAttribute("aria-label", text);
 }
 
 /** The text has come to rest: its objects are listed, with their names and places. */

@@ -1,5 +1,4 @@
-// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the
-// horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
+// What is drawn over the picture: layers that can be switched on, and what is selected or hovered.
 
 import { byId, createSvg, remember, remembered } from "./dom";
 import { picture } from "./picture";
@@ -14,7 +13,6 @@ const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 /** From this zoom on a grid of pixels can be seen, and samples in a pixel. */
 const GRID_ZOOM = 6;
 const SAMPLES_ZOOM = 4;
-
 /** So far from the stage's border arrows end, in screen pixels. */
 const EDGE = 14;
 
@@ -44,9 +42,7 @@ class OverlayLayer {
   isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
   /** Whether anything is switched on that the server has to be asked about. */
-  get needsAny(): boolean {
-    return this.needsAll || (["horizon", "near"] as const).some(layer => this.isOn(layer));
-  }
+  get needsAny(): boolean { return this.needsAll || this.isOn("horizon") || this.isOn("near"); }
 
   /** Whether something is switched on that all objects have. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
@@ -63,8 +59,9 @@ class OverlayLayer {
     if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
-  showSamples(pixel: Point, samples: Samples | null): void {
-    this.samples = samples === null ? null : { pixel, samples };
+  showSamples(samples: typeof this.samples): void {
+    if (samples === null && this.samples === null) return;
+    this.samples = samples;
     this.draw();
   }
 
@@ -104,8 +101,7 @@ class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
-  /** Marks a point with its coordinates; one that is outside of the stage by an arrow at its
-   *  border. */
+  /** Marks a point with its coordinates; outside of the stage it is an arrow at the border. */
   private mark(point: Point, name: string, text: string): void {
     const [x, y] = picture.toScreen(point);
     const { clientWidth: width, clientHeight: height } = picture.stage;

@@ -4,7 +4,7 @@
 import { followPointer } from "./dom";
 import { Drag, type Held } from "./drag";
 import { editor } from "./editor";
-import { keys } from "./keys";
+import { endKeys, space } from "./keys";
 import { picture } from "./picture";
 import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
@@ -44,10 +44,10 @@ function press(event: PointerEvent): void {
   const at = picture.local(event);
   places.set(event.pointerId, at);
   stage.setPointerCapture(event.pointerId);
-  keys.end();
+  endKeys();
   // A second finger zooms: what the first one has begun does not count.
   if (places.size > 1) return giveUp();
-  if (keys.space) return;
+  if (space) return;
   tools.held = event;
   const start = picture.toPicture(at);
   const tool = BUTTONS[event.button] ?? tools.tool;
@@ -99,7 +99,7 @@ function shift(event: PointerEvent): void {
     const distance = ([x, y]: Point) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
     picture.zoomBy(distance(at) / distance(before), other);
     picture.panBy((at[0] - before[0]) / 2, (at[1] - before[1]) / 2);
-  } else if (keys.space && event.buttons === 1) {
+  } else if (space && event.buttons === 1) {
     picture.panBy(at[0] - before[0], at[1] - before[1]);
   }
   places.set(event.pointerId, at);

@@ -2,11 +2,11 @@
 
 import { inAddress } from "./address";
 import { byId } from "./dom";
-import type { Fineness, Shown } from "./frames";
+import type { Fineness } from "./frames";
 import { picture } from "./picture";
 
 /** What goes to the windows: a picture, as the bytes of an image. */
-interface Fed { image: ImageBitmap | Blob; size: [number, number]; fineness: Fineness }
+interface Fed { image: ImageBitmap; size: [number, number]; fineness: Fineness }
 
 const KEY = "projector";
 const of = inAddress(KEY);
@@ -18,27 +18,18 @@ const channel = new BroadcastChannel(`pinhole-${name}`);
 let isFed = false;
 
 /** Hands a picture on, as long as anybody has asked for one. */
-export function feedProjectors({ bitmap, size, fineness }: Pick<Shown, "bitmap" | "size"
-  | "fineness">): void {
-  if (!isProjector && isFed) channel.postMessage({ image: bitmap, size, fineness });
-}
+export function feedProjectors(fed: Fed): void { if (isFed) channel.postMessage(fed); }
 
-/** Offers the window; in it, shows what comes. */
-export function project(): void {
-  if (isProjector) {
-    document.body.classList.add("projector");
-    channel.onmessage = async ({ data: { image, size, fineness } }: MessageEvent<Fed>) => {
-      picture.show({ bitmap: await createImageBitmap(image), size, fineness, version: 0 });
-    };
-    channel.postMessage("ready");
-    return;
-  }
-  channel.onmessage = async () => {
-    isFed = true;
-    const { canvas, size, isEmpty } = picture;
-    const fineness = canvas.dataset["fineness"] as Fineness;
-    if (!isEmpty) feedProjectors({ bitmap: await createImageBitmap(canvas), size, fineness });
-  };
-  byId("projector").addEventListener("click", () =>
-    open(`${location.pathname}#${KEY}=${name}`, "_blank", "popup,width=1280,height=720"));
-}
+if (isProjector) {
+  document.body.classList.add("projector");
+  channel.onmessage = async ({ data: { image, size, fineness } }: MessageEvent<Fed>) =>
+    picture.show({ bitmap: await createImageBitmap(image), size, fineness, version: 0 });
+  channel.postMessage("ready");
+} else channel.onmessage = async () => {
+  isFed = true;
+  const { canvas, size, isEmpty } = picture;
+  const fineness = canvas.dataset["fineness"] as Fineness;
+  if (!isEmpty) feedProjectors({ image: await createImageBitmap(canvas), size, fineness });
+};
+byId("projector").addEventListener("click", () =>
+  open(`${location.pathname}#${KEY}=${name}`, "_blank", "popup,width=1280,height=720"));

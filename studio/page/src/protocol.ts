@@ -1,5 +1,4 @@
-// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and
-// `studio/…`, as docs/protocol.md describes them.
+// The answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
 
 import type { Range, TextEdit } from "vscode-languageserver-protocol";
 

@@ -32,7 +32,6 @@ class Selection {
   private placed: Placed[] = [];
   /** Whether the object at the cursor is not to be selected, until the cursor moves. */
   private deselected = false;
-  private offered = 0;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
 
@@ -77,7 +76,8 @@ class Selection {
     // The list has the first objects alone.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
-    editor.jump(object.selection.start);
+    const anchor = editor.offset(object.selection.start);
+    editor.view.dispatch({ selection: { anchor }, scrollIntoView: true });
     this.cursorMoved();
   }
 
@@ -93,12 +93,10 @@ class Selection {
     const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
     const index = found?.object.index ?? null;
     this.menu.value = index === null ? "" : String(index);
-    if (index !== this.index || this.placed.length !== this.offered) {
-      this.offered = this.placed.length;
-      queueMicrotask(() => this.offer());
-    }
-    if (index === this.index) return;
+    const isSame = index === this.index;
     this.index = index;
+    this.offer();
+    if (isSame) return;
     overlays.select(index);
     this.draw();
     this.onChange();
@@ -145,10 +143,9 @@ class Selection {
   }
 
   private createHandle(object: DrawnObject, { handle, label }: Handle): HTMLButtonElement {
-    const button = createButton("", "handle", () => {});
+    const button = createButton("", "handle", () => {}, `${nameOf(object)}: ${label}`);
     button.dataset["handle"] = handle;
     button.dataset["object"] = String(object.index);
-    button.setAttribute("aria-label", `${nameOf(object)}: ${label}`);
     button.append(create("span", "handle-label", label));
     return button;
   }

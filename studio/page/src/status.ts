@@ -1,5 +1,4 @@
-// The line at the bottom: what is under the pointer, what has happened, how far the picture is, and
-// whether the engine answers.
+// The line at the bottom, and the bar that says what is wrong with the connection.
 
 import type { ConnectionState } from "./connection";
 import { byId } from "./dom";
@@ -36,8 +35,7 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Says whether there is a connection, or that nothing comes back over it, and what becomes of the
- *  text until then. */
+/** Says what is wrong with the connection, and what becomes of the text until it is not. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

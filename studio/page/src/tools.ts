@@ -43,9 +43,7 @@ class Tools {
   /** What drags are held to, if no key frees them. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
-  get along(): Along | undefined {
-    return this.held.shiftKey ? undefined : this.kept || undefined;
-  }
+  get along(): Along | undefined { return this.held.shiftKey ? undefined : this.kept || undefined; }
 
   /** So far something goes at once, in pixels of the picture. */
   get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
