@@ -30,8 +30,9 @@ pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     Some(of_field(path.field_row()?, unit))
 }
 
-/// The numbers and angles that a `let` is, with its name and its place, and their bounds: those of the line comment
-/// behind it, as `// [1:5]` or `// [1:0.1:5]`, or else those of the fields that it stands in.
+/// The numbers and angles that a `let` is, with its name and its place, and their bounds: those of
+/// the line comment behind it, as `// [1:5]` or `// [1:0.1:5]`, or else those of the fields that it
+/// stands in.
 pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<(&'a str, Span, Limits)> {
     let slider = |definition: &'a Definition<'_>| {
         let (name, value) = (definition.name.as_ref()?, &definition.value);

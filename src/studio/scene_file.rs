@@ -1,4 +1,5 @@
-//! The scene's own file. Studio reads and writes no others, except for its draft and new scenes beside it.
+//! The scene's own file. Studio reads and writes no others, except for its draft and new scenes
+//! beside it.
 
 use std::{
     io,

@@ -1,4 +1,5 @@
-//! A block that is new: one of a kind, in front of the camera, or one that stands there already, a little aside.
+//! A block that is new: one of a kind, in front of the camera, or one that stands there already, a
+//! little aside.
 
 use glam::{DVec2, DVec3};
 
@@ -28,8 +29,8 @@ pub struct Added {
     pub cursor: usize,
 }
 
-/// A block of a kind at the end of the text, in front of the camera: on a floor, if there is one below the eye, and beside
-/// what is there already. None if that is no kind of an object.
+/// A block of a kind at the end of the text, in front of the camera: on a floor, if there is one
+/// below the eye, and beside what is there already. None if that is no kind of an object.
 pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option<Added> {
     let row = schema::block(kind).filter(|row| row.is_object)?;
     let (place, size) = scene.map_or((DVec3::Y, 1.0), free_place);
@@ -63,7 +64,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     })
 }
 
-/// An object's block another time on the next line, a twentieth of the picture to the right where its numbers are its own.
+/// An object's block another time on the next line, a twentieth of the picture to the right where
+/// its numbers are its own.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -111,7 +113,8 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// A place in front of the camera where nothing is yet, and half of the size that something may have there.
+/// A place in front of the camera where nothing is yet, and half of the size that something may
+/// have there.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);

@@ -42,7 +42,8 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// What a point moves along.
     pub along: Option<Along>,
-    /// So many pixels a handle may go at once: its numbers are multiples of the greatest power of ten that moves it no farther.
+    /// So many pixels a handle may go at once: its numbers are multiples of the greatest power of
+    /// ten that moves it no farther.
     pub step: Option<f64>,
 }
 
