@@ -47,7 +47,7 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         "sphere" => format!("center {at}  radius {size}"),
         "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {twice})"),
         "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
-        _ => "y 0".to_owned(),
+        _ => format!("y {}", short(scene.map_or(0.0, free_height))),
     };
     let name = free_name(analysis, kind);
     let text = analysis.text();
@@ -111,6 +111,14 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
             .any(|it| analysis.slice(it.span) == name)
     };
     names.into_iter().find(is_free).unwrap_or(capital)
+}
+
+/// The height of a board that is seen from above: the origin's, unless the eye is not above that.
+fn free_height(scene: &Scene) -> f64 {
+    match scene.camera.eye.y > 0.0 {
+        true => 0.0,
+        false => scene.camera.eye.y.floor() - 1.0,
+    }
 }
 
 /// A place in front of the camera where nothing is yet, and half of the size that something may
