@@ -229,8 +229,8 @@ fn what_is_added_is_seen() {
         "",
         camera,
         "let Sphere1 = 2\n",
-        "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nsphere Sphere1 { center (0, 0, 0) }\n\
-         checkerboard { y -1 }",
+        "camera { eye (0, 0, 5) lookat (0, -1, 0) }\nsphere Sphere1 { center (0, 0, 0) }\n\
+         checkerboard { y -2 }",
         "sphere { center (0, 1, 0) radios 1 }",
     ] {
         for (kind, name) in [
