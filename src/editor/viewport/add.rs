@@ -45,7 +45,7 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     let twice = short(2.0 * size.parse().unwrap_or(1.0));
     let fields = match row.name {
         "sphere" => format!("center {at}  radius {size}"),
-        "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {twice})"),
+        "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})"),
         "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
         _ => format!("y {}", short(scene.map_or(0.0, free_height))),
     };
