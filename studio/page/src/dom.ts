@@ -61,11 +61,12 @@ export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<v
   let next: { it: T } | null = null;
   let work: Promise<void> | null = null;
   const go = async () => {
-    for (let now = next; now !== null; now = next) {
-      next = null;
-      await act(now.it);
-    }
-    work = null;
+    try {
+      for (let now = next; now !== null; now = next) {
+        next = null;
+        await act(now.it);
+      }
+    } finally { work = null; }
   };
   return it => {
     next = { it };
