@@ -123,8 +123,10 @@ pub enum Count {
 /// One object of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its name, unique if it has one.
+    /// Its name, unique if it has one: `Ball`, or `Ball[3, 1]` where its block stands for several.
     pub name: Option<String>,
+    /// The values of its block's indices, in their order.
+    pub indices: Box<[u32]>,
     /// What it is.
     pub shape: Shape,
     /// Its whole block in the text.

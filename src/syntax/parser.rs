@@ -26,8 +26,8 @@ use super::{
     scan::Scan,
     tokens::{Lexer, TokenKind},
     tree::{
-        Block, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad, call,
-        chain, group, negation, number,
+        Block, Definition, Element, Field, Index, Item, Name, Operator, Repetition, Value,
+        ValueKind, bad, call, chain, group, negation, number,
     },
     vocabulary::Vocabulary,
 };
@@ -256,6 +256,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             match part.as_rule() {
                 Rule::name if block.kind.is_none() => block.kind = Some(self.name(&part)),
                 Rule::name => block.name = Some(self.name(&part)),
+                Rule::repetition => block.repetition = Some(Box::new(self.repetition(part))),
                 Rule::open => block.open = Some(self.span(&part)),
                 Rule::close => block.close = Some(self.span(&part)),
                 Rule::field => block.fields.push(self.field(part)),
@@ -269,6 +270,37 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         let is_doubtful = |field: &Field<'_>| self.words.is_doubtful(kind, field);
         self.doubtful |= block.fields.iter().any(is_doubtful);
         block
+    }
+
+    fn repetition(&mut self, pair: Pair<'_, Rule>) -> Repetition<'s> {
+        let mut repetition = Repetition::begun(self.span(&pair));
+        for part in pair.into_inner() {
+            let span = self.span(&part);
+            match (part.as_rule(), repetition.indices.last_mut()) {
+                (Rule::for_word, _) => repetition.keyword = span,
+                (Rule::comma, Some(last)) => last.comma = Some(span),
+                _ => repetition.push(self.index(part)),
+            }
+        }
+        repetition
+    }
+
+    fn index(&mut self, pair: Pair<'_, Rule>) -> Index<'s> {
+        let span = self.span(&pair);
+        let mut index = Index {
+            name: Name { text: "", span },
+            less: span,
+            count: bad(span),
+            comma: None,
+        };
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::name => index.name = self.name(&part),
+                Rule::less => index.less = self.span(&part),
+                _ => index.count = self.value(part),
+            }
+        }
+        index
     }
 
     fn field(&mut self, pair: Pair<'_, Rule>) -> Field<'s> {

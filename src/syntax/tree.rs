@@ -72,13 +72,15 @@ impl Definition<'_> {
     }
 }
 
-/// `KIND NAME? { FIELD VALUE … }`
+/// `KIND NAME? { FIELD VALUE … }`, or `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {
     /// What it is a block of; none if it was left out.
     pub kind: Option<Name<'s>>,
     /// The name of the object.
     pub name: Option<Name<'s>>,
+    /// The indices of several objects; it lies apart, as few blocks have one.
+    pub repetition: Option<Box<Repetition<'s>>>,
     /// `{`; none if it was left out.
     pub open: Option<Span>,
     /// The fields in their order.
@@ -97,6 +99,7 @@ impl Block<'_> {
         Self {
             kind: None,
             name: None,
+            repetition: None,
             open: None,
             fields: Vec::new(),
             bad: Vec::new(),
@@ -113,6 +116,47 @@ impl Block<'_> {
             (None, None) => self.span,
         }
     }
+}
+
+/// `for INDEX < COUNT, …`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repetition<'s> {
+    /// `for`
+    pub keyword: Span,
+    /// The indices in their order, at least one.
+    pub indices: Vec<Index<'s>>,
+    /// From `for` to the last count.
+    pub span: Span,
+}
+
+impl<'s> Repetition<'s> {
+    /// One of which nothing is known yet but its `for`.
+    pub(super) fn begun(keyword: Span) -> Self {
+        Self {
+            keyword,
+            indices: Vec::new(),
+            span: keyword,
+        }
+    }
+
+    /// Goes on with an index.
+    pub(super) fn push(&mut self, index: Index<'s>) {
+        self.span = self.keyword.to(index.count.span);
+        self.indices.push(index);
+    }
+}
+
+/// `INDEX < COUNT`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Index<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// `<`
+    pub less: Span,
+    /// How many values it has.
+    pub count: Value<'s>,
+    /// The comma after it.
+    pub comma: Option<Span>,
 }
 
 /// `FIELD VALUE`
@@ -138,6 +182,11 @@ pub struct Value<'s> {
 impl<'s> Value<'s> {
     pub(super) fn new(kind: ValueKind<'s>, span: Span) -> Self {
         Self { kind, span }
+    }
+
+    /// Whether a name stands in it.
+    pub fn mentions(&self, name: &str) -> bool {
+        self.kind == ValueKind::Name(name) || self.parts().iter().any(|part| part.mentions(name))
     }
 
     /// The values that it is made of, in order.

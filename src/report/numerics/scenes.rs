@@ -103,6 +103,7 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
         }
         Object {
             name: None,
+            indices: Box::default(),
             shape,
             span: Span::new(SourceId::File, 0, 0),
         }

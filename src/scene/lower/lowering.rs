@@ -22,6 +22,8 @@ pub(super) struct Lowering<'s> {
     pub(super) names: Names<'s>,
     /// The blocks that are no objects, each the first of its kind.
     pub(super) blocks: Vec<Block<'s>>,
+    /// Whether the sum of the indices is odd in the block that is read, if that has indices.
+    pub(super) is_odd: Option<bool>,
     /// The objects.
     pub(super) objects: Vec<Object>,
     /// The checkerboards, each with the number of its squares' side, or its keyword.
@@ -49,6 +51,7 @@ impl<'s> Lowering<'s> {
             cut: false,
             names,
             blocks: Vec::new(),
+            is_odd: None,
             objects: Vec::new(),
             boards: Vec::new(),
             has_items: false,
@@ -66,8 +69,12 @@ impl<'s> Lowering<'s> {
     }
 }
 
+/// The words of a text.
+pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+}
+
 /// Whether a word stands in a text.
 pub(super) fn mentions(text: &str, word: &str) -> bool {
-    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
-    text.split(other).any(|found| found == word)
+    words(text).any(|found| found == word)
 }

@@ -170,7 +170,17 @@ impl<'s> Recovery<'_, 's> {
         let mut block = Block::empty(self.here());
         if self.is_name(0) {
             block.kind = Some(self.name());
-            block.name = self.is_name(0).then(|| self.name());
+            let has_name = self.is_name(0) && !self.is_repetition(0);
+            block.name = has_name.then(|| self.name());
+        }
+        if self.is_repetition(0) {
+            match self.repetition() {
+                Ok(repetition) => block.repetition = Some(Box::new(repetition)),
+                Err(bad) => block.bad.push(bad),
+            }
+            if !self.is(0, "{") {
+                return self.items.push(Item::Bad(block.span.to(self.behind())));
+            }
         }
         self.open_block(block);
     }

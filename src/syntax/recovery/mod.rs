@@ -2,7 +2,7 @@
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
 //! each slip. A reader by recursive descent over the lexer's tokens: items stand in `items`, fields
-//! in `fields`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
+//! in `fields`, indices in `repetition`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
 //! languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
@@ -17,6 +17,7 @@ mod items;
 mod joined;
 mod lists;
 mod numbers;
+mod repetition;
 mod values;
 
 use std::collections::BTreeMap;
@@ -310,10 +311,11 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Whether a block starts at a token ahead: `sphere {` or `sphere Ball {`.
+    /// Whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for i`.
     fn is_head(&mut self, ahead: usize) -> bool {
+        let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);
         self.is_name(ahead)
-            && (self.is(ahead + 1, "{") || (self.is_name(ahead + 1) && self.is(ahead + 2, "{")))
+            && (ends(self, ahead + 1) || (self.is_name(ahead + 1) && ends(self, ahead + 2)))
     }
 
     /// Whether a block of a known kind starts here.
