@@ -67,6 +67,8 @@ pub struct CameraFacts {
 pub struct ObjectFacts {
     /// Its name.
     pub name: Option<String>,
+    /// The values of its block's indices.
+    pub indices: Box<[u32]>,
     /// The line it begins in, counted from 1.
     pub line: usize,
     /// What it is.
@@ -82,6 +84,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let basis = Basis::new(&scene.camera, &scene.image);
     let objects = scene.objects.iter().map(|object| ObjectFacts {
         name: object.name.clone(),
+        indices: object.indices.clone(),
         line: source.line(object.span.start),
         shape: object.shape,
     });
@@ -176,6 +179,9 @@ impl Inspection {
                 "name": object.name,
                 "line": object.line,
             });
+            if !object.indices.is_empty() {
+                facts["indices"] = json!(object.indices);
+            }
             for (key, value) in shape_facts(&object.shape) {
                 facts[key] = value;
             }

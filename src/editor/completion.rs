@@ -288,13 +288,23 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     })
 }
 
-/// The `let`s that are defined before the place.
+/// The indices of the block, and the `let`s that are defined before the place.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,
     is_color: Option<bool>,
 ) -> Vec<Completion> {
     let mut completions = Vec::new();
+    let block = analysis.path(situation.word.start).block;
+    let indices = block.and_then(|block| block.repetition.as_ref());
+    for index in indices.iter().flat_map(|it| &it.indices) {
+        if is_color != Some(true) && index.name.span.end < situation.word.start {
+            let about = ["an index".to_owned(), hover::about_index(analysis, index)];
+            let rank = rank(situation, Some(Type::Number));
+            let kind = CompletionKind::Definition;
+            completions.push(word(situation, index.name.text, kind, about, rank));
+        }
+    }
     for definition in analysis.model.definitions() {
         let Some(name) = definition.name else {
             continue;

@@ -69,7 +69,7 @@ pub fn utf16(span: Span) -> Diagnostic {
 /// What other languages say: the words that start it, what it is, and what to do instead.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
-    ["for while loop repeat foreach", "loops", "write each object by itself, or write the file by a program"],
+    ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
     ["import include require use #include", "including of other files", "write all of a scene into one file"],
     ["#version #declare #local #macro #define #if #end", "directives", "name a value with `let NAME = VALUE`; a comment begins with `//`"],
     ["print echo printf console", "output", "take it away; `pinhole inspect` shows what a scene's values are"],
