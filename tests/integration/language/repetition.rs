@@ -103,7 +103,7 @@ fn a_mistake_of_many_objects_is_reported_once() {
         sphere for i < 9 { center (i, 1, 0) radus 3 } -> unknown_field: radus
         sphere for i < 9 { center (i, 1, x) radius x } -> unknown_name: x, x and here
         triangle for i < 9 { v0 (0, 0, 0) v1 (1, 1, i) v2 (2, 2, 8) } -> on_one_line: (2, 2, 8), (1, 1, i) the second, (0, 0, 0) the first, for i < 9 here i = 4
-        sphere for i < 9 { center (i, 1, 0) radius max(1e-999, i + 1) } -> number_underflow: 1e-999
+        sphere for i < 9 { center (i, 1, 0) radius max(1e-999, i + 1) } -> number_underflow: 1e-999, for i < 9 here i = 0
         sphere for red < 9 { center (red, 1, 0) } -> predefined_name: red
         sphere for i < 9, i < 3 { center (i, 1, 0) } -> duplicate_let: i, i first here
         let i = 2 sphere for i < 9 { center (i, 1, 0) } -> duplicate_let: i, i first here
