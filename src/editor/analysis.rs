@@ -186,7 +186,7 @@ fn item_at<'a, 's>(item: &'a Item<'s>, at: usize) -> Path<'a, 's> {
         Item::Block(block) => {
             let mut fields = block.fields.iter().rev();
             let field = fields.find(|field| field.span.start <= at && at <= field.span.end);
-            let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
+            let indices = block.repetition.iter().flat_map(|it| &it.indices);
             let count = indices
                 .map(|index| &index.count)
                 .find(|count| holds(count, at));

@@ -86,7 +86,7 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         name: name.map_or(kind.text, |name| name.text).to_owned(),
         detail: match &block.repetition {
             Some(repetition) => {
-                let repeated = shorten(analysis.slice(repetition.span));
+                let repeated = shorten(analysis.slice(repetition.span()));
                 [name.map_or("", |_| kind.text), &repeated]
                     .join(" ")
                     .trim_start()

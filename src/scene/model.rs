@@ -133,6 +133,13 @@ pub struct Object {
     pub span: Span,
 }
 
+impl Object {
+    /// Whether it stands with another one in a block that is repeated.
+    pub fn is_beside(&self, other: &Self) -> bool {
+        !self.indices.is_empty() && self.span == other.span
+    }
+}
+
 /// A shape with its colour. Lengths in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {

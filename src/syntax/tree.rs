@@ -93,12 +93,12 @@ pub struct Block<'s> {
     pub span: Span,
 }
 
-impl Block<'_> {
-    /// A block of which nothing is known yet but its place.
-    pub fn empty(span: Span) -> Self {
+impl<'s> Block<'s> {
+    /// A block of which no more is known yet than its place, its kind and its name.
+    pub fn new(span: Span, kind: Option<Name<'s>>, name: Option<Name<'s>>) -> Self {
         Self {
-            kind: None,
-            name: None,
+            kind,
+            name,
             repetition: None,
             open: None,
             fields: Vec::new(),
@@ -125,24 +125,14 @@ pub struct Repetition<'s> {
     pub keyword: Span,
     /// The indices in their order, at least one.
     pub indices: Vec<Index<'s>>,
-    /// From `for` to the last count.
-    pub span: Span,
 }
 
-impl<'s> Repetition<'s> {
-    /// One of which nothing is known yet but its `for`.
-    pub(super) fn begun(keyword: Span) -> Self {
-        Self {
-            keyword,
-            indices: Vec::new(),
-            span: keyword,
-        }
-    }
-
-    /// Goes on with an index.
-    pub(super) fn push(&mut self, index: Index<'s>) {
-        self.span = self.keyword.to(index.count.span);
-        self.indices.push(index);
+impl Repetition<'_> {
+    /// From `for` to the last count.
+    pub fn span(&self) -> Span {
+        let last = self.indices.last();
+        self.keyword
+            .to(last.map_or(self.keyword, |last| last.count.span))
     }
 }
 
@@ -157,6 +147,18 @@ pub struct Index<'s> {
     pub count: Value<'s>,
     /// The comma after it.
     pub comma: Option<Span>,
+}
+
+impl<'s> Index<'s> {
+    /// An index of which no more is known yet than its name.
+    pub(super) fn begun(name: Name<'s>) -> Self {
+        Self {
+            name,
+            less: name.span,
+            count: bad(name.span),
+            comma: None,
+        }
+    }
 }
 
 /// `FIELD VALUE`
@@ -184,11 +186,6 @@ impl<'s> Value<'s> {
         Self { kind, span }
     }
 
-    /// Whether a name stands in it.
-    pub fn mentions(&self, name: &str) -> bool {
-        self.kind == ValueKind::Name(name) || self.parts().iter().any(|part| part.mentions(name))
-    }
-
     /// The values that it is made of, in order.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
@@ -200,12 +197,7 @@ impl<'s> Value<'s> {
                 let operands = rest.iter().map(|step| &step.operand);
                 std::iter::once(&**first).chain(operands).collect()
             }
-            ValueKind::Number(_)
-            | ValueKind::Angle { .. }
-            | ValueKind::ColorCode(_)
-            | ValueKind::Name(_)
-            | ValueKind::Missing
-            | ValueKind::Bad => Vec::new(),
+            _ => Vec::new(),
         }
     }
 }
@@ -326,6 +318,12 @@ pub enum Operator {
 }
 
 impl Operator {
+    /// The one that is written so.
+    pub fn of(sign: &str) -> Option<Self> {
+        let mut all = [Self::Add, Self::Subtract, Self::Multiply, Self::Divide].into_iter();
+        all.find(|operator| sign.chars().eq([operator.sign()]))
+    }
+
     /// Whether it is `*` or `/`, which come before `+` and `-`.
     pub fn is_of_product(self) -> bool {
         matches!(self, Self::Multiply | Self::Divide)

@@ -5,7 +5,7 @@
 //! pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a
 //! condition of the language.
 
-use std::iter;
+use std::{iter, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
@@ -17,10 +17,11 @@ use super::{
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
+    inspect,
+    numbers::short,
     projection::Projection,
     scene::{self, Image, Part, Scene, Shape},
-    schema,
-    source::{Source, SourceId, Sources},
+    source::{Source, SourceId, Sources, Span},
     syntax::tree::Block,
 };
 
@@ -40,6 +41,9 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// What a point moves along.
     pub along: Option<Along>,
+    /// So many pixels a handle may go at once: its numbers are multiples of the greatest power of
+    /// ten that moves it no farther.
+    pub step: Option<f64>,
 }
 
 /// What has to change in the text, and what becomes of the fields that do; nothing at all where
@@ -50,19 +54,19 @@ pub struct Dragged {
     pub edits: Vec<Edit>,
     /// The fields with their new values, as `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Fields of other blocks that change with them, as `camera.lookat`.
+    /// Fields of other blocks that change with them, as `camera.lookat`, and of other objects of
+    /// the same block.
     pub also: Vec<String>,
 }
 
-/// The text of a scene with spaces in the place of all objects but one, so that what is left stands
-/// where it stood and is read quickly.
+/// The text of a scene with spaces in the place of all blocks of objects but that of one, so that
+/// what is left stands where it stood and is read quickly.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
-    let objects = scene.objects.iter().enumerate();
-    for (_, other) in objects.filter(|(index, _)| Some(*index) != object) {
-        text.push_str(source.slice(text.len()..other.span.start));
-        for letter in source.slice(other.span.range()).chars() {
+    for other in other_blocks(scene, object) {
+        text.push_str(source.slice(text.len()..other.start));
+        for letter in source.slice(other.range()).chars() {
             match letter {
                 '\n' => text.push('\n'),
                 _ => text.extend(iter::repeat_n(' ', letter.len_utf8())),
@@ -71,6 +75,16 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     }
     text.push_str(source.slice(text.len()..source.text().len()));
     Sources::new(Source::from_text(source.name(), text))
+}
+
+/// The blocks of all objects but one.
+fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
+    let own = object
+        .and_then(|index| scene.objects.get(index))
+        .map(|it| it.span);
+    let blocks = scene.objects.chunk_by(|one, next| one.span == next.span);
+    let blocks = blocks.filter_map(|block| block.first()).map(|it| it.span);
+    blocks.filter(move |span| Some(*span) != own)
 }
 
 /// What has to change in a text that means a scene where a handle is moved; `alone` is that text
@@ -121,37 +135,61 @@ pub fn drag(
         drag,
         points: points.ok_or(not_seen)?,
     };
-    if !view.agree(ideal, ideal) {
+    if !view.agree(ideal, ideal, TOLERANCE) {
         return Err(not_seen.to_owned());
     }
-    if view.agree(ideal, current) {
+    if view.agree(ideal, current, TOLERANCE) {
         return Ok(Dragged::default());
     }
-    let objects = scene.objects.iter().enumerate();
-    let others = objects.filter(|(index, _)| Some(*index) != drag.object);
-    let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
+    let others = other_blocks(scene, drag.object);
+    let without_others: Vec<Edit> = others.map(|span| Edit::new(span, "")).collect();
+    let of_block = scene.objects.iter().filter(|it| it.span == block.span);
+    let scene_alone = Scene {
+        objects: Arc::new(of_block.cloned().collect()),
+        ..scene.clone()
+    };
+    // Where it stands among the objects of its block.
+    let place = drag.object.map(|index| {
+        let before = scene.objects.iter().take(index);
+        before.filter(|it| it.span == block.span).count()
+    });
     let tied = || tied(analysis, block, &name, &changes);
     let mut refusal = tied();
     let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
+    let snapped = drag
+        .step
+        .and_then(|step| view.snapped(current, &changes, step));
+    let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
+    let first = snapped.map_or(first, |(decimals, _)| decimals);
     for decimals in first..=first + DIGITS {
         let edits = edits(analysis, block, &changes, decimals);
+        // The place of the press is one of those that it snaps to.
+        let is_back = snapped.is_some() && rounded(current, &changes, decimals) == Some(current);
+        if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
+            return Ok(Dragged::default());
+        }
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
             continue;
         };
         let read_alone = read(analysis.source(), [&edits, &without_others]);
-        match read_alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
-            Ok(Some(found)) if view.agree(ideal, found) => {
+        match read_alone.map(|scene| (part(&scene, place), scene)) {
+            Ok((Some(found), after)) if view.agree(ideal, found, tolerance) => {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
                 let also = match edits.iter().all(is_own) {
-                    true => Vec::new(),
+                    true => others_changed(analysis, place, &changes, [&scene_alone, &after]),
                     false => {
-                        let whole = read(&sources.file, [&edits, &[]])?;
-                        others_changed(&Analysis::new(sources), drag.object, [scene, &whole])
+                        let after = read(&sources.file, [&edits, &[]])?;
+                        others_changed(
+                            &Analysis::new(sources),
+                            drag.object,
+                            &changes,
+                            [scene, &after],
+                        )
                     }
                 };
                 let value = |change: &Change| {
@@ -159,7 +197,8 @@ pub fn drag(
                     let is_new = after != change.from;
                     is_new.then(|| format!("{name}.{} = {after}", change.name))
                 };
-                let values = changes.iter().filter_map(value).collect();
+                let values = changes.iter().filter_map(value);
+                let values = values.chain(lens(image, &changes, found)).collect();
                 return Ok(Dragged {
                     edits,
                     values,
@@ -170,12 +209,23 @@ pub fn drag(
             // More digits might slip by what the language forbids, and nobody would see the
             // difference.
             Err(why) => match rounded(current, &changes, decimals) {
-                Some(rounded) if view.agree(ideal, rounded) => return Err(why),
+                Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
             },
         }
     }
     Err(refusal)
+}
+
+/// How much a camera sees, in all of the ways that the language has, where one of them has changed.
+fn lens(image: &Image, changes: &[Change], found: Part) -> Option<String> {
+    let is_lens = |change: &Change| matches!(change.name, "d" | "fov" | "hfov" | "view_height");
+    let (Part::Camera(camera), true) = (found, changes.iter().any(is_lens)) else {
+        return None;
+    };
+    let (seen, _) = inspect::inspect_camera(&camera, image);
+    let (d, fov, high) = (short(seen.d), seen.fov_deg, short(camera.view_height));
+    Some(format!("d {d} = fov {fov:.1}° of a window {high} high"))
 }
 
 /// Why fields cannot take the values that they should have, where the text could be changed so that
@@ -219,34 +269,43 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// The fields of the camera and of other objects in which two scenes differ that have the same
-/// blocks.
+/// The fields of the camera and of other objects, by the names of their blocks, in which two scenes
+/// differ that have the same blocks.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
+    changes: &[Change],
     scenes: [&Scene; 2],
 ) -> Vec<String> {
-    let mut objects = 0;
+    let mut next = 0;
     let mut changed = Vec::new();
     for block in analysis.blocks() {
         let Some(kind) = block.kind else { continue };
-        let index = match schema::block(kind.text) {
-            Some(row) if row.is_object => {
-                objects += 1;
-                Some(objects - 1)
-            }
-            _ if kind.text == "camera" => None,
-            _ => continue,
+        let first = next;
+        let objects = scenes[0].objects.get(first..).unwrap_or_default();
+        next += objects
+            .iter()
+            .take_while(|it| it.span == block.span)
+            .count();
+        let of_block: Vec<_> = match kind.text {
+            "camera" => vec![None],
+            _ => (first..next).map(Some).collect(),
         };
-        let [Some(before), Some(after)] = scenes.map(|scene| part(scene, index)) else {
-            continue;
-        };
-        if index == dragged {
-            continue;
-        }
+        let others = of_block.into_iter().filter(|index| *index != dragged);
+        let parts = others.map(|index| scenes.map(|scene| part(scene, index)));
+        let parts: Vec<_> = parts.collect();
         let name = block.name.map_or(kind.text, |name| name.text);
-        let fields = block.fields.iter().map(|field| field.name.text);
-        let differ = fields.filter(|field| before.value(field) != after.value(field));
+        let fields: Vec<&str> = match dragged.is_some_and(|index| (first..next).contains(&index)) {
+            true => changes.iter().map(|change| change.name).collect(),
+            false => block.fields.iter().map(|it| it.name.text).collect(),
+        };
+        let differ = fields.into_iter().filter(|field| {
+            let differs = |[before, after]: &[Option<Part>; 2]| match (before, after) {
+                (Some(before), Some(after)) => before.value(field) != after.value(field),
+                _ => false,
+            };
+            parts.iter().any(differs)
+        });
         changed.extend(differ.map(|field| format!("{name}.{field}")));
     }
     changed
@@ -290,9 +349,30 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Whether everything in the picture or near to it, and what is held, is seen within half a
-    /// pixel of where it should be.
-    fn agree(&self, ideal: Part, found: Part) -> bool {
+    /// The number of decimals of the greatest power of ten that moves what is held by no more than
+    /// `step` pixels, and that `step`; none of what is not a handle's. Beyond the digits that
+    /// numbers have, nothing snaps.
+    fn snapped(&self, part: Part, changes: &[Change], step: f64) -> Option<(i32, f64)> {
+        let held = |part: Part| {
+            let mut marks = self.marks(part).into_iter();
+            marks.find_map(|(is_held, at)| at.filter(|_| is_held))
+        };
+        let here = held(part).filter(|_| self.drag.object.is_some())?;
+        let is_small = |decimals: &i32| {
+            let parts = changes
+                .iter()
+                .flat_map(|change| change.with_unit(part, *decimals));
+            let ways: Vec<f64> = parts
+                .filter_map(|it| Some(held(it)?.distance(here)))
+                .collect();
+            !ways.is_empty() && ways.iter().all(|way| *way <= step)
+        };
+        Some(((-9..=12).find(is_small)?, step))
+    }
+
+    /// Whether everything in the picture or near to it, and what is held, is seen no farther than
+    /// this from where it should be.
+    fn agree(&self, ideal: Part, found: Part, tolerance: f64) -> bool {
         let size = self.projection.size;
         let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
         marks.all(|((is_held, ideal), (_, found))| {
@@ -300,7 +380,7 @@ impl View<'_> {
                 return !is_held;
             };
             let is_near = (ideal.cmpge(-size) & ideal.cmple(2.0 * size)).all();
-            let agrees = found.is_some_and(|found| found.distance(ideal) <= TOLERANCE);
+            let agrees = found.is_some_and(|found| found.distance(ideal) <= tolerance);
             agrees || !(is_held || is_near)
         })
     }

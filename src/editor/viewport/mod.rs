@@ -7,8 +7,10 @@
 //!
 //! `lines` says where lines of the world are seen. `handles` knows where an object's handles are
 //! and how one moves the object, `camera` how the pointer moves the camera; `edits` writes the
-//! fields that change into the text. `drag` is all of that together.
+//! fields that change into the text. `drag` is all of that together. `add` writes blocks that
+//! are new.
 
+mod add;
 mod camera;
 mod drag;
 mod edits;
@@ -23,6 +25,7 @@ use crate::{
     source::Span,
 };
 
+pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
 pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};
@@ -30,9 +33,14 @@ pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
 /// For each object the place that stands for it: its name, or the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
-    let mut blocks = analysis.blocks();
+    let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
-        let block = blocks.find(|block| block.span == object.span);
+        // Several objects may stand in one block.
+        while blocks
+            .next_if(|block| block.span.start < object.span.start)
+            .is_some()
+        {}
+        let block = blocks.peek().filter(|block| block.span == object.span);
         block.map_or(object.span, |block| {
             block.name.map_or(block.keyword(), |name| name.span)
         })

@@ -89,7 +89,7 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Gives an index a value, within its block; none if it cannot have that name.
+    /// Gives an index a value, within its block; none while it is not known yet.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let place = name.span;
         let from = SourceId::File;
@@ -98,8 +98,10 @@ impl<'s> Names<'s> {
     }
 
     /// Forgets an index behind its block.
-    pub fn forget_index(&mut self, name: &str) {
-        self.defined.remove(name);
+    pub fn forget_index(&mut self, name: Name<'s>) {
+        if self.place(name.text) == Some(name.span) {
+            self.defined.remove(name.text);
+        }
     }
 
     /// Knows the words of what cannot be told, such as what was to be a name and cannot be one.

@@ -69,12 +69,8 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// The words of a text.
-pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-}
-
 /// Whether a word stands in a text.
 pub(super) fn mentions(text: &str, word: &str) -> bool {
-    words(text).any(|found| found == word)
+    let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
+    text.split(other).any(|found| found == word)
 }
