@@ -13,7 +13,8 @@ use crate::{
 impl<'s> Recovery<'_, 's> {
     /// Whether indices start at a token ahead: a line that starts with `for` is for others to tell.
     pub(super) fn is_repetition(&mut self, ahead: usize) -> bool {
-        let is_word = self.is(ahead, "for") && !self.is_on_new_line(ahead);
+        let words = ["for", "foreach", "loop", "repeat", "while"];
+        let is_word = words.contains(&self.word(ahead)) && !self.is_on_new_line(ahead);
         let next = ahead + 1;
         is_word
             && (self.is_name(next) || self.is(next, "(") || self.kind(next) == TokenKind::Number)
@@ -23,8 +24,9 @@ impl<'s> Recovery<'_, 's> {
     /// stands before the `{`.
     pub(super) fn repetition(&mut self) -> Result<Repetition<'s>, Span> {
         let told = self.problems.len();
-        let (keyword, mut indices) = (self.bump(), Vec::new());
-        while self.is_name(0) && self.is(1, "<") && !self.is(2, "=") {
+        let (is_for, keyword) = (self.is(0, "for"), self.bump());
+        let mut indices = Vec::new();
+        while is_for && self.is_name(0) && self.is(1, "<") && !self.is(2, "=") {
             let (name, less, count) = (self.name(), self.bump(), self.expression());
             let comma = self.is(0, ",").then(|| self.bump());
             indices.push(Index {
