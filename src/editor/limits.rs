@@ -98,8 +98,10 @@ fn of_field(field: &schema::Field, unit: Option<Unit>) -> Limits {
             Condition::MoreThan(bound) => {
                 (limits.least, limits.is_open) = (Some(bound), true);
             }
-            Condition::AtMostTwoTo(power) | Condition::LessThanTwoTo(power) => {
-                limits.most = Some((1_u64 << power) as f64);
+            Condition::AtMostTwoTo(power) => limits.most = Some((1_u64 << power) as f64),
+            // Only whole numbers have this one.
+            Condition::LessThanTwoTo(power) => {
+                limits.most = Some(((1_u64 << power) - 1) as f64);
             }
             Condition::EachMoreThanZero => {
                 (limits.least, limits.is_open) = (Some(0.0), true);

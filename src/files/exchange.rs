@@ -16,8 +16,9 @@ use super::{
 /// Has a temporary file take the place of what was read.
 ///
 /// Another program may save the file right then, after it was looked at for the last time. So the
-/// two exchange their names, and what was there is looked at again: if it is not what was read, they
-/// exchange them back. Where the system cannot do that, the file is replaced without another look.
+/// two exchange their names, and what was there is looked at again: if it is not what was read,
+/// they exchange them back. Where the system cannot do that, the file is replaced without another
+/// look.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
     // It will have the name of a temporary file, and nobody may take it for one that was left.
     let found = kind::open(path).ok();

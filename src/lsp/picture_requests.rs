@@ -15,6 +15,7 @@ use crate::{
         self, Analysis,
         viewport::{self, Along, Drag, Shown, Vanishing},
     },
+    scene::{Object, Shape},
     source::Span,
 };
 
@@ -124,7 +125,14 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
 /// The objects without what is drawn of them.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
-    let listed = (0..version.scene.objects.len()).filter(|index| shown.has(*index));
+    let objects = &version.scene.objects;
+    // Objects stand on the first board, wherever it stands in the text.
+    let is_board = |object: &Object| matches!(object.shape, Shape::Checkerboard(_));
+    let floor = match shown {
+        Shown::First(_) => objects.iter().position(is_board),
+        Shown::Only(_) => None,
+    };
+    let listed = (0..objects.len()).filter(|index| shown.has(*index) || Some(*index) == floor);
     Ok(listed
         .map(|index| object(index, converter, version))
         .collect())

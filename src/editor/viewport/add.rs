@@ -16,6 +16,7 @@ use crate::{
     scene::{Part, Scene, Shape},
     schema,
     source::SourceId,
+    tracer::vertices,
 };
 
 /// A block that is new.
@@ -91,12 +92,16 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     edits.sort_by_key(|edit| edit.span);
     let text = analysis.text();
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
-    let rest = text.len() - block.span.end;
-    let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest]);
+    let rest = &text[block.span.end..];
+    let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest.len()]);
+    // A comment behind the block is one on this block.
+    let behind = rest.lines().next().unwrap_or_default();
+    let is_comment = behind.trim_start().starts_with("//");
+    let end = block.span.end + if is_comment { behind.len() } else { 0 };
     Some(Added {
-        edit: Edit::insert(SourceId::File, block.span.end, copy),
+        edit: Edit::insert(SourceId::File, end, copy),
         name,
-        cursor: text[..block.span.end].encode_utf16().count() + 1,
+        cursor: text[..end].encode_utf16().count() + 1,
     })
 }
 
@@ -113,12 +118,23 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// The height of a board that is seen from above: the origin's, unless the eye is not above that.
+/// The height of a board that is seen from above: the origin's, unless the eye is not above that, or
+/// something reaches below it; and no other board's.
 fn free_height(scene: &Scene) -> f64 {
-    match scene.camera.eye.y > 0.0 {
+    let below_eye = match scene.camera.eye.y > 0.0 {
         true => 0.0,
         false => scene.camera.eye.y.floor() - 1.0,
-    }
+    };
+    let bottoms = scene.objects.iter().map(|object| match object.shape {
+        Shape::Sphere(sphere) => sphere.center.y - sphere.radius,
+        Shape::Box(cuboid) => cuboid.min.y,
+        Shape::Triangle(triangle) => {
+            let [y0, y1, y2] = vertices(&triangle).map(|vertex| vertex.y);
+            y0.min(y1).min(y2)
+        }
+        Shape::Checkerboard(board) => board.y - 1.0,
+    });
+    bottoms.fold(below_eye, f64::min)
 }
 
 /// A place in front of the camera where nothing is yet, and half of the size that something may

@@ -7,7 +7,6 @@ declare module "pinhole-engine" {
     advance(): string[];
     isBusy(): boolean;
   }
-  export function initSync(options: { module: BufferSource }): void;
   export default function init(options: { module_or_path: URL }): Promise<unknown>;
 }
 

@@ -109,11 +109,14 @@ class Connection implements Transport {
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);
-    await this.ready();
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      // Before anybody is ready, the connection may be lost, or the answer not wanted any more.
+      this.ready().then(() => {
+        if (!this.waiting.has(id)) return;
+        this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      }).catch(reject);
       wanted?.addEventListener("abort", () => {
         const cancel = { jsonrpc: "2.0", method: "$/cancelRequest", params: { id } };
         if (this.waiting.delete(id)) this.send(JSON.stringify(cancel));

@@ -1,6 +1,6 @@
 // What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
 
-import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
+import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
 import { EditorView, type KeyBinding } from "@codemirror/view";
 import type { CodeAction, Diagnostic as ServerDiagnostic, PublishDiagnosticsParams } from
@@ -16,15 +16,19 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
   // A drag is told of every text that nothing is wrong with it.
-  if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   const isRight = published.diagnostics.length === 0;
+  if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
     { range: editor.range(), context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
+/** Whether there may be marks of mistakes, also of such whose text is gone. */
+let hasMarks = false;
+
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+  hasMarks = diagnostics.length > 0;
   const mending = new Map<string, CodeAction[]>();
   for (const action of actions) for (const it of action.diagnostics ?? []) {
     mending.set(keyOf(it), [...mending.get(keyOf(it)) ?? [], action]);

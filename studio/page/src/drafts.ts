@@ -7,8 +7,8 @@ import { connection, isServed } from "./connection";
 import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { files } from "./files";
-import type { Draft } from "./protocol";
-import { setText } from "./visible";
+import { Refusal, type Draft } from "./protocol";
+import { say } from "./status";
 
 /** How long a text waits until it is kept, in milliseconds, however fast one types. */
 const BEHIND = 500;
@@ -25,11 +25,13 @@ let timer = 0;
 let isKept = false;
 /** What is offered and not answered yet, the newest first. */
 let unanswered: Draft[] = [];
-let id = `${Date.now()} ${Math.random()}`;
+const freshId = () => `${Date.now()} ${Math.random()}`;
+let id = freshId();
 const bar = byId("draft-bar");
 
 byId("draft-later").addEventListener("click", () => (bar.hidden = true));
 addEventListener("pagehide", () => void keepDraft());
+files.onLeave = leave;
 
 /** The text has changed. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
@@ -47,9 +49,10 @@ export async function keepDraft(): Promise<void> {
       const own = isUnsaved ? newDraft() : { text: null };
       await connection.request("studio/draft", { ...own, earlier });
     } else await stored(isUnsaved ? newDraft() : id);
-  } catch {
+  } catch (error) {
     // Without a connection the text is kept when there is one.
     isKept = true;
+    if (error instanceof Refusal) say(`No draft is kept: ${error.message}`, "warning");
   }
 }
 
@@ -68,14 +71,12 @@ export async function offerDrafts(kept: Draft | null): Promise<void> {
 }
 
 function show(): void {
-  const { length } = unanswered;
-  bar.hidden = length === 0;
-  const were = length === 1 ? "A text was" : `${length} texts were`;
-  setText(byId("draft"), `${were} not saved:`);
+  bar.hidden = unanswered.length === 0;
   byId("draft-choices").replaceChildren(...unanswered.slice(0, OFFERED).map(draft => {
     const time = new Date(draft.time * 1000).toLocaleString();
-    const isNewer = isServed && draft.base !== files.at.seen;
-    const newer = isNewer ? " The file has changed since; Save will ask." : "";
+    const isOther = isServed && draft.base !== files.at.seen;
+    const newer = !isOther ? "" : draft.base === null ? " It was a scene of its own."
+      : " The file has changed since; Save will ask.";
     const lines = draft.text.split("\n").length;
     const row = create("li", "", `of ${time}, ${lines} lines.${newer}`);
     row.append(createButton("Restore", "primary", () => answer(draft, true)),
@@ -88,17 +89,22 @@ function answer(draft: Draft, isRestored: boolean): void {
   unanswered.splice(unanswered.indexOf(draft), 1);
   isKept = true;
   if (isRestored) {
-    // What was written meanwhile is offered in its turn.
-    if (files.isUnsaved) {
-      unanswered.unshift(newDraft());
-      if (!isServed) void stored(newDraft());
-    }
+    leave();
     if (!isServed) id = (draft as Kept).id;
     files.restore(draft);
   } else if (!isServed) void stored((draft as Kept).id);
   show();
   void keepDraft();
   editor.view.focus();
+}
+
+/** Something else comes in the place of what is written, which is offered in its turn. */
+function leave(): void {
+  if (!files.isUnsaved) return;
+  unanswered.unshift(newDraft());
+  if (!isServed) void stored(newDraft());
+  id = freshId();
+  show();
 }
 
 const all = async () => (await values<Kept>(store())).sort((a, b) => b.time - a.time);

@@ -3,7 +3,7 @@
 // server is asked about that text, which it has under an address of its own meanwhile.
 
 import { ChangeSet, type Text } from "@codemirror/state";
-import { byId } from "./dom";
+import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
 import { Gesture } from "./gesture";
@@ -55,25 +55,23 @@ export class Drag {
   private base!: Text;
   private current!: Text;
   private written!: ChangeSet;
-  /** Where the hand is, and what was asked for last. */
+  /** Where the hand is. */
   private target: Point;
-  private asked: Point;
-  private held: Held | null = null;
   private isOpen = false;
-  private busy = false;
-  private ending = false;
   private over = false;
   private gesture!: Gesture;
   private readonly holding: Promise<Held | null>;
+  /** Settles when the last place of the hand has been reached. */
+  private work: Promise<unknown>;
   private settle: () => void = () => {};
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** What is held may be found out only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
-    this.target = this.asked = press;
+    this.target = press;
     const before = frames.dragging instanceof Drag ? frames.dragging : null;
     frames.dragging = this;
-    this.holding = this.begin(before, hold);
+    this.work = this.holding = this.begin(before, hold);
   }
 
   /** The drag before this one may not have come to its end yet. */
@@ -94,36 +92,26 @@ export class Drag {
 
   to(target: Point): void {
     this.target = target;
-    void this.run();
+    this.work = this.go(target);
   }
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
   /** Ends when the last place of the hand has been reached. */
-  end(): void {
-    this.ending = true;
-    void this.holding.then(() => this.busy || this.finish());
-  }
+  end(): void { void this.work.then(() => this.finish()); }
 
   cancel(): void {
     this.back();
     this.finish();
   }
 
-  private async run(): Promise<void> {
-    if (this.busy || this.over) return;
-    this.busy = true;
-    this.held = await this.holding;
-    while (!this.over && this.held !== null && this.target !== this.asked) {
-      await this.step(this.held, this.target);
-    }
-    this.busy = false;
-    if (this.ending) this.finish();
-  }
+  private readonly go = newestOf(async (place: Point) => {
+    const held = await this.holding;
+    if (held !== null && !this.over && place === this.target) await this.step(held, place);
+  });
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
     const { base, press, uri } = this;
-    this.asked = place;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.

@@ -33,10 +33,13 @@ class Scene {
   handle: FileSystemFileHandle | null = null;
   /** Whether the host is still to make a file of it, under a name that Save asks for. */
   isNew = isServed;
-  /** The text that it starts with, which is not worth saving; null for a file. */
+  /** What it starts with, which is not worth saving; null for a file. */
   untouched: string | null = null;
 
   constructor(public name = "scene.scn") {}
+
+  /** The text of its file as far as it is known, or what it starts with. */
+  get held(): string { return this.seen ?? this.untouched ?? ""; }
 }
 
 /** Another scene comes in the place of one, and goes again by Undo. */
@@ -49,14 +52,15 @@ export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effec
 const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
-const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
 /** Of texts with more changed lines than these it is not said which ones stay. */
 const MOST_CHANGES = 3000;
 
-/** The host's file as the page last saw it; a static page has local files alone. */
+/** The host's file and others; a static page has local files alone. */
 class Files {
   onSaved: () => void = () => {};
+  /** Told before another scene comes in the place of one. */
+  onLeave: () => void = () => {};
   /** The host's scene, and the one that the page shows. */
   private hosts = new Scene();
   at = this.hosts;
@@ -79,7 +83,9 @@ class Files {
 
   /** Puts another scene in place; Undo brings back the one before. */
   private begin(text: string, to = new Scene()): void {
-    to.untouched = to.seen === null ? withLf(text) : null;
+    if (editor.uri === "") return say("Studio is not ready yet.", "warning");
+    this.onLeave();
+    to.untouched = to.seen === null ? text : null;
     const { view } = editor;
     view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
       selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
@@ -99,12 +105,12 @@ class Files {
   get isUnsaved(): boolean {
     const { text } = editor;
     const { isGone, seen, untouched } = this.at;
-    return editor.uri !== "" && text !== untouched
+    return editor.uri !== "" && (untouched === null || text !== withLf(untouched))
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string { return withEndsOf(this.at.seen ?? "", editor.text); }
+  get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
   /** Puts a draft in place. */
   restore(draft: Draft): void {
@@ -122,7 +128,7 @@ class Files {
     if (editor.uri === "") {
       this.at.seen = this.at.base = saved ? text : null;
       const start = isServed ? (text ?? "") : FIGURE;
-      this.at.untouched = saved ? null : withLf(start);
+      this.at.untouched = saved ? null : start;
       editor.open(start);
       this.tellLone();
       if (linked !== null) editor.replace(linked);
@@ -158,7 +164,7 @@ class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE.test(this.at.seen ?? "")) say(`${this.shownName} has carriage returns `
+    if (LONE.test(this.at.held)) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
@@ -193,27 +199,34 @@ class Files {
 
   private async saveAs(name: string): Promise<void> {
     if (connection.state !== "open") throw new Error(NOT_SAVED);
-    const text = this.textToSave;
-    const { isGone, isNew, base } = this.at;
-    const isHosts = this.at === this.hosts && !isNew;
+    const { at: scene, hosts, textToSave: text } = this;
+    const { isGone, isNew, base } = scene;
+    const isHosts = scene === hosts && !isNew;
+    const isTaken = !isHosts && !hosts.isNew && name === hosts.name;
+    if (isTaken) throw new Refusal(0, `${name} is there already; choose another name.`);
     const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
-    const slow = setTimeout(() => say(NOT_YET, "warning"), SLOW);
+    const slow = setTimeout(
+      () => say("Nothing is saved yet: Studio does not answer.", "warning"), SLOW);
     try {
       const answer = await connection.request<Saved>("studio/save", about);
-      if (answer.ok) this.saved(name, text);
+      if (answer.ok) this.saved(scene, name, text);
+      // Meanwhile another scene may have come in its place.
+      else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
+      // A host that was started anew does not know what it has made: Save asks for another name.
+      scene.isNew ||= scene !== hosts && error instanceof Refusal;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
   }
 
-  private saved(name: string, text: string): void {
-    this.at.seen = this.at.base = text;
-    Object.assign(this.at, { name, isGone: false, isNew: false, untouched: null });
+  private saved(scene: Scene, name: string, text: string): void {
+    scene.seen = scene.base = text;
+    Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
     // A host without a file has that one from now on.
-    if (this.hosts.isNew) this.hosts = this.at;
-    say(`${this.shownName} is saved.`);
+    if (this.hosts.isNew) this.hosts = scene;
+    say(`${visibleLine(name)} is saved.`);
     this.onSaved();
   }
 
@@ -242,17 +255,17 @@ class Files {
   }
 
   private async saveLocal(): Promise<void> {
-    const text = this.textToSave;
-    const about = { ...SCENES, suggestedName: this.at.name };
-    this.at.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
-    if (this.at.handle === null) download(this.at.name, text, "text/plain");
+    const { at: scene, textToSave: text } = this;
+    const about = { ...SCENES, suggestedName: scene.name };
+    scene.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
+    if (scene.handle === null) download(scene.name, text, "text/plain");
     else {
       // The browser writes into a copy, which takes the file's place as a whole on closing.
-      const file = await this.at.handle.createWritable();
+      const file = await scene.handle.createWritable();
       await file.write(text);
       await file.close();
     }
-    this.saved(this.at.handle?.name ?? this.at.name, text);
+    this.saved(scene, scene.handle?.name ?? scene.name, text);
   }
 
   private async open(): Promise<void> {

@@ -45,7 +45,7 @@ editor.onUpdate = update => {
 };
 frames.onShow = shown => {
   status.picture(shown.size, shown.fineness);
-  feedProjectors({ image: shown.bitmap, size: shown.size, fineness: shown.fineness });
+  feedProjectors(shown);
   picture.show(shown);
 };
 frames.onState = state => {
@@ -64,6 +64,7 @@ function changed(): void {
   // The coarse picture comes first.
   void frames.coarse.then(() => refreshOutlines());
   files.show();
+  draftChanged();
   // Nobody looks at these while a hand moves.
   if (frames.dragging === null) rested();
   status.changed();
@@ -73,7 +74,6 @@ let resting: ReturnType<typeof setTimeout>;
 
 /** What a text at rest has comes a little later. */
 function rested(): void {
-  draftChanged();
   clearTimeout(resting);
   resting = setTimeout(() => {
     hoverAgain();

@@ -5,6 +5,7 @@ import { StateEffect, StateField, type Extension } from "@codemirror/state";
 import { EditorView, keymap, showTooltip, type TooltipView } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { editor } from "./editor";
+import { frames } from "./frames";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
 import type { Limits } from "./protocol";
@@ -15,6 +16,8 @@ export interface Literal { from: number; to: number; end: number; value: number;
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
+/** Bounds so far apart leave nothing to turn on a slider, as those of a seed. */
+const FAR = 1e6;
 /** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
@@ -63,11 +66,11 @@ function bounds({ step }: Literal, limits: Limits | null): [number, number] {
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
-/** The same for a slider: about the value that is there, unless both bounds are known. */
+/** The same for a slider: about the value that is there, unless both bounds are known and near. */
 function offered(literal: Literal, limits: Limits | null): [number, number] {
   const span = Math.max(Math.abs(literal.value), 50 * literal.step);
   const [least, most] = bounds(literal, limits);
-  if (limits?.open === false && Number.isFinite(most - least)) return [least, most];
+  if (limits?.open === false && most - least < FAR) return [least, most];
   return [Math.max(least, literal.value - span), Math.min(most, literal.value + span)];
 }
 
@@ -119,12 +122,14 @@ export class Dial {
   async set(value: number): Promise<void> {
     const found = this.literal();
     if (found !== null) this.turn ??= new Turn(found);
+    frames.dragging ??= this;
     await this.turn?.set(value);
   }
 
   end(): void {
     this.turn?.end();
     this.turn = null;
+    frames.released(this);
   }
 
   /** Shows the number between the ends that its limits leave. */

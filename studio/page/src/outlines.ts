@@ -22,7 +22,8 @@ function describe({ size, objects }: Overlays, count: number): void {
     const [x, y] = object.handles[0]?.at ?? [NaN, NaN];
     const down = third(y / size[1], ["top", "middle", "bottom"]);
     const across = third(x / size[0], ["left", "centre", "right"]);
-    return `${nameOf(object)}: ${down && across ? `${down} ${across}` : "not in the picture"}`;
+    const beside = object.outline.length > 0 ? "middle beside the picture" : "not in the picture";
+    return `${nameOf(object)}: ${down && across ? `${down} ${across}` : beside}`;
   });
   if (count > objects.length) places.push(`${count - objects.length} more`);
   const text = places.length === 0 ? "A scene without objects" : places.join("; ");

@@ -137,7 +137,7 @@ class OverlayLayer {
   }
 
   private drawSamples(): void {
-    if (this.samples === null) return;
+    if (this.samples === null || picture.zoom < SAMPLES_ZOOM) return;
     const { pixel, samples } = this.samples;
     const [x, y] = picture.toScreen(pixel);
     const size = picture.zoom;

@@ -2,11 +2,8 @@
 
 import { inAddress } from "./address";
 import { byId } from "./dom";
-import type { Fineness } from "./frames";
+import type { Fineness, Shown } from "./frames";
 import { picture } from "./picture";
-
-/** What goes to the windows: a picture, as the bytes of an image. */
-interface Fed { image: ImageBitmap; size: [number, number]; fineness: Fineness }
 
 const KEY = "projector";
 const of = inAddress(KEY);
@@ -18,18 +15,17 @@ const channel = new BroadcastChannel(`pinhole-${name}`);
 let isFed = false;
 
 /** Hands a picture on, as long as anybody has asked for one. */
-export function feedProjectors(fed: Fed): void { if (isFed) channel.postMessage(fed); }
+export function feedProjectors(shown: Shown): void { if (isFed) channel.postMessage(shown); }
 
 if (isProjector) {
   document.body.classList.add("projector");
-  channel.onmessage = async ({ data: { image, size, fineness } }: MessageEvent<Fed>) =>
-    picture.show({ bitmap: await createImageBitmap(image), size, fineness, version: 0 });
+  channel.onmessage = ({ data }: MessageEvent<Shown>) => picture.show(data);
   channel.postMessage("ready");
 } else channel.onmessage = async () => {
   isFed = true;
-  const { canvas, size, isEmpty } = picture;
-  const fineness = canvas.dataset["fineness"] as Fineness;
-  if (!isEmpty) feedProjectors({ image: await createImageBitmap(canvas), size, fineness });
+  const { canvas, canvas: { dataset }, size, isEmpty } = picture;
+  if (!isEmpty) feedProjectors({ bitmap: await createImageBitmap(canvas), size,
+    fineness: dataset["fineness"] as Fineness, version: Number(dataset["version"]) });
 };
 byId("projector").addEventListener("click", () =>
   open(`${location.pathname}#${KEY}=${name}`, "_blank", "popup,width=1280,height=720"));

@@ -179,7 +179,7 @@ byId("delete").addEventListener("click", remove);
 /** Adds a block, which the server writes: one of a kind, or a copy. */
 async function add(about: object): Promise<void> {
   const added = await editor.askCurrent<Added>("pinhole/add", about);
-  if (added === null) return;
+  if (added === null) return say("Nothing was added: the text has errors, or has changed.");
   // The cursor in it has it selected, as soon as it is known as an object.
   editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
     selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });

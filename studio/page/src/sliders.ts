@@ -65,30 +65,20 @@ function createRow(name: string): Row {
     return found && { ...found, step: row.step ?? found.step };
   });
   dial.range.setAttribute("aria-label", name);
-  dial.range.addEventListener("input", () => {
-    if (playing === row) stop();
-    frames.dragging ??= dial;
-  });
-  dial.range.addEventListener("change", () => end(row));
+  dial.range.addEventListener("input", () => { if (playing === row) stop(); });
   const [element, value] = [create("div", "slider-row"), create("output")];
-  const button = createButton("", "", () => play(row));
+  const button = createButton("", "play", () => play(row), `Play ${name}`);
   element.append(create("span", "", name), dial.range, value, button);
   const row: Row = { name, at: 0, step: null, dial, element, value, button };
-  label(row, "▶", "Play");
   return row;
-}
-
-function end({ dial }: Row): void {
-  dial.end();
-  frames.released(dial);
 }
 
 function stop(): void {
   const row = playing;
   playing = null;
   if (row === null) return;
-  label(row, "▶", "Play");
-  end(row);
+  row.button.removeAttribute("aria-pressed");
+  row.dial.end();
 }
 
 /** Moves a number to and fro until it is stopped; it begins where it is. */
@@ -97,26 +87,20 @@ function play(row: Row): void {
   stop();
   if (!isNew) return;
   playing = row;
-  label(row, "⏸", "Stop");
+  row.button.setAttribute("aria-pressed", "true");
   const { dial, dial: { range } } = row;
   const [least, most] = [Number(range.min), Number(range.max)];
   const begin = performance.now() - PLAY * (Number(range.value) - least) / (most - least);
   const go = async () => {
     if (playing !== row) return;
+    if (frames.dragging !== null && frames.dragging !== dial) return stop();
     const part = ((performance.now() - begin) / PLAY) % 2;
     range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
-    frames.dragging ??= dial;
     await dial.set(Number(range.value));
     await frames.coarse;
-    // Whoever changes the number otherwise, or undoes that, has it rest.
-    if (dial.turn === null || dial.turn.isOver) stop();
+    // Whoever drags something, changes the number otherwise, or undoes that, has it rest.
+    if (frames.dragging !== dial || (dial.turn?.isOver ?? true)) stop();
     else requestAnimationFrame(() => void go());
   };
   void go();
-}
-
-/** What a row's button shows, and what it does. */
-function label({ name, button }: Row, sign: string, does: string): void {
-  setText(button, sign);
-  button.setAttribute("aria-label", `${does} ${name}`);
 }

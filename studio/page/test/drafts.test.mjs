@@ -2,10 +2,10 @@
 // another program that saves the file.
 
 import assert from "node:assert/strict";
-import { readdirSync } from "node:fs";
+import { readdirSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, FIGURE, finished, host, launch, open, rested, serve, STATE, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, finished, host, launch, menu, open, openFile, rested, serve, STATE, text, type } from "./helpers.mjs";
 
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
@@ -71,7 +71,6 @@ test("what is written while an offer stands unanswered is kept beside it, and so
   page = await open(browser, third);
   await offered(page);
   assert.equal((await offers(page)).length, 2);
-  assert.match(await page.textContent("#draft"), /2 texts were not saved/);
   // Another one is written before one is restored.
   await andFinished(page, () => type(page, NEARER));
   await andFinished(page, () => choose(page, "Restore"));
@@ -116,6 +115,56 @@ test("reloading offers the draft; Forget forgets it, and Undo back to the file d
   await finished(page);
   await page.waitForTimeout(300);
   assert.ok(await page.isHidden("#draft-bar"));
+});
+
+for (const [name, go] of [
+  ["New", page => menu(page, "File", "#new")],
+  ["an example", page => menu(page, "File", "text='farther is smaller'")],
+  ["a file of this computer", (page, { folder }) => {
+    writeFileSync(path.join(folder, "other.scn"), NEARER);
+    return openFile(page, path.join(folder, "other.scn"));
+  }],
+]) {
+  test(`what is not saved is offered when ${name} comes in its place, also after a reload`, async t => {
+    const started = await host(t);
+    const page = await open(await launch(t), started);
+    page.on("dialog", dialog => dialog.accept());
+    await andFinished(page, () => type(page, LARGER));
+    await andFinished(page, () => go(page, started));
+    await offered(page);
+    // The new scene is written on, too.
+    await type(page, `${NEARER}// on\n`);
+    await kept(page);
+    await page.reload();
+    await finished(page);
+    await offered(page);
+    const texts = [];
+    for (let i = 0; i < 2; i++) {
+      await andFinished(page, () => choose(page, "Restore"));
+      texts.push(await text(page));
+      await andFinished(page, () => page.keyboard.press("Control+z"));
+    }
+    assert.deepEqual(texts.sort(), [LARGER, `${NEARER}// on\n`].sort());
+    assert.equal(started.text(), FIGURE);
+  });
+}
+
+test("while a number is played, what was written is kept", async t => {
+  const started = await host(t, FIGURE.replace(/^/, "let r = 1  // [0.5:0.25:2]\n").replace("radius 1", "radius r"));
+  const page = await open(await launch(t), started);
+  page.on("dialog", dialog => dialog.accept());
+  await type(page, `${started.text()}// mine\n`);
+  await page.waitForSelector("#sliders:not([hidden])");
+  await page.click('[aria-label="Play r"]');
+  await kept(page);
+  await started.stop("SIGKILL");
+  await leave(page);
+  const again = await serve(started.file);
+  t.after(() => again.stop());
+  const other = await open(await launch(t), again);
+  await offered(other);
+  await andFinished(other, () => choose(other, "Restore"));
+  assert.match(await text(other), /\/\/ mine/);
 });
 
 test("a draft is not written over a file that is newer without a question", async t => {

@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, finished, host, launch, open, pixels, rendered, serve, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, host, launch, menu, open, pixels, rendered, rested, serve, text, type } from "./helpers.mjs";
 
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
@@ -126,6 +126,82 @@ test("the page asks nobody but its host", async t => {
   await Promise.all([page.waitForEvent("download"), page.click("#download-png")]);
   const { origin, host: name } = new URL(started.address);
   assert.deepEqual([...asked].filter(it => it !== origin && it !== name && it !== "null"), []);
+});
+
+const saved = page => page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+
+test("a save that is answered late belongs to the scene that was saved", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  process.kill(started.pid, "SIGSTOP");
+  await page.keyboard.press("Control+s");
+  await menu(page, "File", "#new");
+  process.kill(started.pid, "SIGCONT");
+  await rested(page);
+  assert.equal(started.text(), LARGER);
+  await andFinished(page, () => type(page, NEARER));
+  assert.equal(await page.textContent("#file-state"), "not saved");
+  await page.keyboard.press("Control+s");
+  await page.waitForSelector("#name-dialog[open]");
+  // The name of the host's own scene is taken.
+  await page.fill("#name-field", "scene.scn");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));
+  assert.equal(started.text(), LARGER);
+  await page.keyboard.press("Escape");
+  await page.click("#undo");
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), LARGER);
+  assert.equal(await page.textContent("#file-state"), "");
+});
+
+test("a scene beside the host's can be saved when the host was started anew", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  page.on("dialog", dialog => dialog.accept());
+  await menu(page, "File", "#new");
+  await andFinished(page, () => type(page, LARGER));
+  await page.keyboard.press("Control+s");
+  await page.fill("#name-field", "beside");
+  await page.keyboard.press("Enter");
+  await saved(page);
+  const { port } = new URL(started.address);
+  await started.stop("SIGKILL");
+  const again = await serve(started.file, { port });
+  t.after(() => again.stop());
+  await page.goto(again.address);
+  await page.waitForSelector("#connection-bar", { state: "hidden" });
+  await andFinished(page, () => type(page, NEARER));
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#said").dataset.tone === "warning");
+  assert.equal(readFileSync(path.join(started.folder, "beside.scn"), "utf8"), LARGER);
+  await page.keyboard.press("Control+s");
+  await page.fill("#name-field", "beside 2");
+  await page.keyboard.press("Enter");
+  await saved(page);
+  assert.equal(readFileSync(path.join(started.folder, "beside 2.scn"), "utf8"), NEARER);
+  assert.equal(started.text(), FIGURE);
+});
+
+test("New says that it has to wait as long as the scene is not there", async t => {
+  const started = await host(t);
+  const context = await (await launch(t)).newContext();
+  // What the host says comes late.
+  await context.addInitScript(() => {
+    window.WebSocket = class extends WebSocket {
+      addEventListener(type, hear) {
+        super.addEventListener(type, type === "message" ? event => setTimeout(() => hear(event), 1500) : hear);
+      }
+    };
+  });
+  const page = await context.newPage();
+  await page.goto(started.address);
+  await menu(page, "File", "#new");
+  assert.match(await page.textContent("#said"), /not ready/);
+  await finished(page);
+  assert.equal(await text(page), FIGURE);
 });
 
 test("a new scene gets its name by Save", async t => {

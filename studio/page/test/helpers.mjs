@@ -155,7 +155,8 @@ export async function tab(page, name) {
 /** Puts another text into the editor, as pasting does. */
 export async function type(page, text) {
   await tab(page, "text");
-  await page.click(".cm-content");
+  // At its corner: elsewhere may be a colour, whose picker would open.
+  await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(text);
 }
@@ -192,6 +193,18 @@ export async function drag(page, from, to) {
   const [x, y] = await onPage(page, to);
   await page.mouse.move(x, y, { steps: 5 });
   await page.mouse.up();
+}
+
+/** Opens a menu and clicks at something in it. */
+export async function menu(page, name, item) {
+  await page.click(`summary:text("${name}")`);
+  await page.click(item);
+}
+
+/** Chooses a file of this computer in the page's own menu. */
+export async function openFile(page, file) {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), menu(page, "File", "#open")]);
+  await chooser.setFiles(file);
 }
 
 /** Takes hold at a place of the page, moves on by steps at a hand's pace, and lets go. */

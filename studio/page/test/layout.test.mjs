@@ -1,20 +1,15 @@
 // The page as a stranger meets it: scenes from the menu, objects that are added, sliders, the first problem, a second window.
 
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { FIGURE, finished, hand, handle, host, launch, onPage, open, rested, site, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, finished, hand, handle, host, launch, menu, onPage, open, openFile, rested, site, text, type } from "./helpers.mjs";
 
 const { SITE } = process.env;
 
 /** Both hosts; the static page where there is one. */
 const HOSTS = [["served", t => host(t)], ...(SITE === undefined ? [] : [["static", t => site(t, SITE)]])];
-
-const menu = async (page, name, item) => {
-  await page.click(`summary:text("${name}")`);
-  await page.click(item);
-};
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
@@ -98,9 +93,10 @@ test("an opened file of this computer is a new scene, of a host, too", async t =
   const started = await host(t);
   const page = await open(await launch(t), started);
   const other = path.join(started.folder, "other.scn");
-  writeFileSync(other, "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\nsphere { center (0, 0, 0) }\n");
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), menu(page, "File", "#open")]);
-  await chooser.setFiles(other);
+  // Its lines end as they do on Windows.
+  const scene = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\r\nsphere { center (0, 0, 0) }\r\n";
+  writeFileSync(other, scene);
+  await openFile(page, other);
   await page.waitForFunction(() => document.querySelector("#file-name").textContent === "other.scn");
   await page.click("#save");
   await page.waitForSelector("#name-dialog[open]");
@@ -110,7 +106,7 @@ test("an opened file of this computer is a new scene, of a host, too", async t =
   await page.fill("#name-field", "third");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /third\.scn is saved/.test(document.querySelector("#said").textContent));
-  assert.ok(existsSync(path.join(started.folder, "third.scn")));
+  assert.equal(readFileSync(path.join(started.folder, "third.scn"), "utf8"), scene);
   assert.equal(started.text(), FIGURE);
 });
 
@@ -211,13 +207,43 @@ test("definitions have sliders with their ranges, which one undo takes back, and
     seen.add(number(await text(page), "let r ="));
     await page.waitForTimeout(100);
   }
-  await page.click('[aria-label="Stop r"]');
+  await page.click('[aria-label="Play r"][aria-pressed=true]');
   await rested(page);
   assert.ok(seen.size >= 4, [...seen].join());
   for (const it of seen) assert.ok(it >= 0.5 && it <= 2 && it % 0.25 === 0, `${it}`);
   await page.click("#undo");
   await rested(page);
   assert.equal(await text(page), scene);
+});
+
+test("a number that is played rests as soon as something is dragged", async t => {
+  const scene = FIGURE.replace(/^/, "let r = 1  // [0.5:0.25:2]\n").replace("radius 1", "radius r");
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForSelector("#sliders:not([hidden])");
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  await rested(page);
+  await page.click('[aria-label="Play r"]');
+  await page.waitForFunction(() => /let r = (?!1 )/.test(document.querySelector(".cm-line").textContent));
+  await hand(page, await handle(page, "Crate: center"), [40, 0]);
+  await rested(page);
+  assert.equal(await page.locator("[aria-pressed=true].play").count(), 0);
+  assert.notEqual(/box.*/.exec(await text(page))[0], /box.*/.exec(scene)[0], "the drag has come to its place");
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(/box.*/.exec(await text(page))[0], /box.*/.exec(scene)[0]);
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+});
+
+test("a text that is pasted over one with mistakes has none of their marks", async t => {
+  const page = await open(await launch(t), await host(t));
+  await type(page, FIGURE.replace("radius 1", "radios 1"));
+  await page.waitForSelector(".cm-lint-marker");
+  await andFinished(page, () => type(page, FIGURE));
+  await rested(page);
+  assert.equal(await page.textContent("#problems"), "No problems");
+  assert.equal(await page.locator(".cm-lint-marker, .cm-lintRange").count(), 0);
 });
 
 test("the first problem stands under the text with its fix, before the sliders; the list holds a thousand", async t => {

@@ -150,6 +150,14 @@ fn overlays_are_not_more_than_a_page_can_show() {
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
+    // Objects stand on the floor, wherever it stands.
+    let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
+    let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
+    let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
+    let listed = Talk::with(&(camera.to_owned() + &floor)).ask("pinhole/objects", json!({}));
+    let last = &listed.as_array().expect("a list")[1000..];
+    assert_eq!(last.len(), 1);
+    assert_eq!(last[0]["kind"], "checkerboard");
     for (only, indices) in [
         (json!([]), vec![]),
         (json!([1400, 3]), vec![3, 1400]),
@@ -265,6 +273,62 @@ fn what_is_added_is_seen() {
                 "{text}"
             );
         }
+    }
+}
+
+/// A board is under what is there, and not where another one is.
+#[test]
+fn a_board_is_added_under_everything() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for (before, y) in [
+        ("", "y 0 }"),
+        ("sphere { center (0, 0.8, 0) radius 1 }", "y -0.2 }"),
+        ("box { center (0, 0.5, 0) size (1, 3, 1) }", "y -1 }"),
+        (
+            "triangle { v0 (0, -2, 0) v1 (1, 0, 0) v2 (0, 1, 0) }",
+            "y -2 }",
+        ),
+        ("sphere { center (0, 5, 0) radius 1 }", "y 0 }"),
+        ("checkerboard { y 0 }", "y -1 }"),
+        ("checkerboard { y 0 }\ncheckerboard { y -1 }", "y -2 }"),
+    ] {
+        let mut talk = Talk::with(&format!("{camera}{before}"));
+        let found = talk.ask("pinhole/add", json!({ "kind": "checkerboard" }));
+        let written = found["edits"][0]["newText"].as_str().expect("a text");
+        assert!(written.ends_with(y), "{before}: {written}");
+    }
+}
+
+/// A comment behind a block stays behind it when the block is copied.
+#[test]
+fn a_copy_leaves_the_comment() {
+    let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
+    let block = "sphere Ball { center (0, 0, 0) }";
+    for behind in [
+        "",
+        "  // the ball",
+        " // π\n// of the next line\n",
+        "  sphere { center (1, 1, 1) }",
+    ] {
+        let text = format!("{camera}{block}{behind}");
+        let found = Talk::with(&text).ask("pinhole/add", json!({ "object": 0 }));
+        let edit = &found["edits"][0];
+        let at = &edit["range"]["start"];
+        let own = behind.lines().next().unwrap_or_default();
+        let stays = if own.contains("//") {
+            own.chars().count()
+        } else {
+            0
+        };
+        assert_eq!(at["line"], 1, "{found}");
+        assert_eq!(at["character"], block.len() + stays, "{found}");
+        assert_eq!(
+            found["cursor"],
+            camera.len() + block.len() + stays + 1,
+            "{found}"
+        );
+        let written = edit["newText"].as_str().expect("a text");
+        assert!(written.starts_with("\nsphere Sphere1 {"), "{found}");
     }
 }
 
