@@ -230,10 +230,13 @@ fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
             ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
             ("color", json!(triangle.color.to_string())),
         ],
-        Shape::Box(Cuboid { min, max, color }) => vec![
-            ("min", json!(min.to_array())),
-            ("max", json!(max.to_array())),
-            ("color", json!(color.to_string())),
+        Shape::Box(cuboid) => vec![
+            ("min", json!(cuboid.min.to_array())),
+            ("max", json!(cuboid.max.to_array())),
+            match cuboid.faces {
+                None => ("color", json!(cuboid.color.to_string())),
+                Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
+            },
         ],
         Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
             ("y", json!(y)),
@@ -332,9 +335,17 @@ pub fn summary(shape: &Shape) -> String {
                 Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {}", triangle.color),
             }
         }
-        Shape::Box(Cuboid { min, max, color }) => {
+        Shape::Box(Cuboid {
+            min,
+            max,
+            color,
+            faces,
+        }) => {
             let (min, max) = (short_vector(min), short_vector(max));
-            format!("from {min} to {max}, {color}")
+            match faces {
+                None => format!("from {min} to {max}, {color}"),
+                Some([x, y, z]) => format!("from {min} to {max}, {x}, {y} and {z}"),
+            }
         }
         Shape::Checkerboard(Checkerboard { y, square, colors }) => {
             let [even, odd] = colors;

@@ -244,11 +244,13 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         return methods(situation);
     }
     let wanted = situation.wanted;
-    let is_color = wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors));
+    let is_color =
+        wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors | Type::FaceColors));
+    let lists = [Some(Type::Colors), Some(Type::FaceColors)];
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
-    if wanted == Some(Type::Colors) {
-        // Two of them: one colour would not do.
+    if lists.contains(&wanted) {
+        // Two of them, or three: one colour would not do.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -319,8 +321,11 @@ fn definitions(
         let value = analysis.model.defined(definition);
         let kind = value.map(|value| value.kind());
         let fits = match (is_color, kind) {
-            (_, Some(kind)) if situation.wanted == Some(Type::Colors) => kind == Type::Colors,
-            (Some(is_color), Some(kind)) => is_color == matches!(kind, Type::Color | Type::Colors),
+            (_, Some(kind @ (Type::Colors | Type::FaceColors))) => situation.wanted == Some(kind),
+            (_, Some(_)) if matches!(situation.wanted, Some(Type::Colors | Type::FaceColors)) => {
+                false
+            }
+            (Some(is_color), Some(kind)) => is_color == (kind == Type::Color),
             _ => true,
         };
         if !fits {

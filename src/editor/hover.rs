@@ -113,6 +113,10 @@ fn described(value: Value) -> String {
             let [first, second] = colors.map(about_color);
             format!("{noun}: {first}\n\nand {second}")
         }
+        Value::FaceColors(colors) => {
+            let colors = colors.map(about_color);
+            format!("{noun}: {}", colors.join("\n\nand "))
+        }
         Value::Angle(angle) => {
             let degrees = Value::Angle(Angle::from_degrees(angle.in_degrees()));
             format!("{noun}: `{degrees}`, `{}rad`", short(angle.in_radians()))

@@ -172,6 +172,7 @@ impl Parameter {
             Value::Vector(vector) => vector.to_array().to_vec(),
             Value::Color(color) => color.srgb.to_vec(),
             Value::Colors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
+            Value::FaceColors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
             Value::Method(_) => Vec::new(),
         };
         self.values(scene).into_iter().flat_map(numbers).collect()
@@ -205,6 +206,7 @@ impl Parameter {
             let (own, others) = rest.split_at(match before {
                 Value::Vector(_) | Value::Color(_) => 3,
                 Value::Colors(_) => 6,
+                Value::FaceColors(_) => 9,
                 _ => 1,
             });
             rest = others;
@@ -215,6 +217,7 @@ impl Parameter {
                 Value::Vector(_) => Value::Vector(DVec3::from_slice(own)),
                 Value::Color(_) => Value::Color(color(0)),
                 Value::Colors(_) => Value::Colors([color(0), color(3)]),
+                Value::FaceColors(_) => Value::FaceColors([0, 3, 6].map(color)),
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
@@ -290,6 +293,7 @@ impl Parameter {
         let step = |(field, value): (&&'static str, Value)| match (*field, value) {
             (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
             (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
+            (_, Value::FaceColors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
             ("direction", Value::Vector(direction)) => {
                 vec![direction.length() * projection.pitch; 3]

@@ -213,8 +213,10 @@ pub struct Cuboid {
     pub min: DVec3,
     /// The corner of greatest coordinates, > min on every axis.
     pub max: DVec3,
-    /// Its colour.
+    /// Its colour, if all of its faces have one.
     pub color: Color,
+    /// The colours of its faces across x, y and z, in the place of `color`.
+    pub faces: Option<[Color; 3]>,
 }
 
 /// The infinite checkerboard in a horizontal plane.
@@ -239,13 +241,15 @@ impl Shape {
         }
     }
 
-    /// Its first and its second colour, which are one but for a checkerboard.
-    pub fn colors(&self) -> [Color; 2] {
+    /// Its colours: of a box those of the faces across x, y and z, of a checkerboard those of the
+    /// even and of the odd squares, and then again the last.
+    pub fn colors(&self) -> [Color; 3] {
         match self {
-            Self::Sphere(Sphere { color, .. })
-            | Self::Triangle(Triangle { color, .. })
-            | Self::Box(Cuboid { color, .. }) => [*color; 2],
-            Self::Checkerboard(board) => board.colors,
+            Self::Sphere(Sphere { color, .. }) | Self::Triangle(Triangle { color, .. }) => {
+                [*color; 3]
+            }
+            Self::Box(cuboid) => cuboid.faces.unwrap_or([cuboid.color; 3]),
+            Self::Checkerboard(Checkerboard { colors, .. }) => [colors[0], colors[1], colors[1]],
         }
     }
 }

@@ -54,6 +54,7 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
         min,
         max,
         color: Color::BLACK,
+        faces: None,
     })
 }
 

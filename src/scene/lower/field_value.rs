@@ -29,7 +29,9 @@ impl<'s> Lowering<'s> {
         let before = self.problems.len();
         let value = match (row.takes, &tree.kind) {
             (Type::Method, ValueKind::Name(written)) => return self.method(written, tree),
-            (Type::Vector | Type::Colors, _) => self.evaluate(tree, Some(row.takes))?,
+            (Type::Vector | Type::Colors | Type::FaceColors, _) => {
+                self.evaluate(tree, Some(row.takes))?
+            }
             (Type::Color, ValueKind::Tuple(elements))
                 if elements.len() == 2 && self.is_odd.is_some() =>
             {

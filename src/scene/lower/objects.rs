@@ -138,6 +138,10 @@ impl<'s> Lowering<'s> {
                 min,
                 max,
                 color: block.color("color")?,
+                faces: match block.given("colors") {
+                    Some(_) => Some(block.face_colors("colors")?),
+                    None => None,
+                },
             }));
         };
         let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
