@@ -77,7 +77,8 @@ groups! {
     "Definitions": missing_let missing_equals missing_name bad_name missing_value misplaced_let duplicate_let predefined_name used_before_definition
         unknown_name;
     "Blocks": missing_kind unknown_kind bad_head unopened_block unclosed_block nested_braces stray_closing outside_block duplicate_block
-        unexpected_name reserved_name duplicate_name missing_camera no_objects;
+        unexpected_name reserved_name duplicate_name bad_repetition bad_count unused_index
+        missing_camera no_objects;
     "Fields": unknown_field missing_field missing_field_name missing_space duplicate_field conflicting_fields needless_equals needless_separator
         wrong_type out_of_range;
     "Numbers and angles": bad_number decimal_comma plus_sign spaced_unit bare_angle number_too_large number_underflow;

@@ -67,6 +67,8 @@ pub struct CameraFacts {
 pub struct ObjectFacts {
     /// Its name.
     pub name: Option<String>,
+    /// The values of its block's indices.
+    pub indices: Box<[u32]>,
     /// The line it begins in, counted from 1.
     pub line: usize,
     /// What it is.
@@ -82,6 +84,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let basis = Basis::new(&scene.camera, &scene.image);
     let objects = scene.objects.iter().map(|object| ObjectFacts {
         name: object.name.clone(),
+        indices: object.indices.clone(),
         line: source.line(object.span.start),
         shape: object.shape,
     });
@@ -176,6 +179,9 @@ impl Inspection {
                 "name": object.name,
                 "line": object.line,
             });
+            if !object.indices.is_empty() {
+                facts["indices"] = json!(object.indices);
+            }
             for (key, value) in shape_facts(&object.shape) {
                 facts[key] = value;
             }
@@ -224,10 +230,13 @@ fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
             ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
             ("color", json!(triangle.color.to_string())),
         ],
-        Shape::Box(Cuboid { min, max, color }) => vec![
-            ("min", json!(min.to_array())),
-            ("max", json!(max.to_array())),
-            ("color", json!(color.to_string())),
+        Shape::Box(cuboid) => vec![
+            ("min", json!(cuboid.min.to_array())),
+            ("max", json!(cuboid.max.to_array())),
+            match cuboid.faces {
+                None => ("color", json!(cuboid.color.to_string())),
+                Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
+            },
         ],
         Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
             ("y", json!(y)),
@@ -326,9 +335,17 @@ pub fn summary(shape: &Shape) -> String {
                 Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {}", triangle.color),
             }
         }
-        Shape::Box(Cuboid { min, max, color }) => {
+        Shape::Box(Cuboid {
+            min,
+            max,
+            color,
+            faces,
+        }) => {
             let (min, max) = (short_vector(min), short_vector(max));
-            format!("from {min} to {max}, {color}")
+            match faces {
+                None => format!("from {min} to {max}, {color}"),
+                Some([x, y, z]) => format!("from {min} to {max}, {x}, {y} and {z}"),
+            }
         }
         Shape::Checkerboard(Checkerboard { y, square, colors }) => {
             let [even, odd] = colors;

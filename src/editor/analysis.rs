@@ -5,10 +5,10 @@ use std::cell::OnceCell;
 use super::tokens::{self, Token};
 use crate::{
     diagnostic::Diagnostic,
-    scene::{self, Parts, Scene, SemanticModel},
+    scene::{self, Object, Parts, Scene, SemanticModel},
     schema::{self, Value},
     source::{Source, SourceId, Sources, Span},
-    syntax::tree::{self, Block, Definition, Field, Item},
+    syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
 /// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a
@@ -116,6 +116,22 @@ impl<'s> Analysis<'s> {
         Path::new(self.items(), at)
     }
 
+    /// The block around a place that has an index of this name, and the index.
+    pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
+        let block = self.path(at).block?;
+        let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
+        Some((block, indices.find(|index| index.name.text == name)?))
+    }
+
+    /// The objects that a block of the scene stands for.
+    pub(super) fn objects_of(&self, block: &Block<'_>) -> &[Object] {
+        let objects = &self.model.parts.objects;
+        let first = objects.partition_point(|it| it.span.start < block.span.start);
+        let objects = objects.get(first..).unwrap_or_default();
+        let count = objects.partition_point(|it| it.span.start == block.span.start);
+        objects.get(..count).unwrap_or_default()
+    }
+
     /// What a value of a definition or a field is.
     pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
         let takes = path.row().and_then(|row| row.field(path.field?.name.text));
@@ -170,12 +186,15 @@ fn item_at<'a, 's>(item: &'a Item<'s>, at: usize) -> Path<'a, 's> {
         Item::Block(block) => {
             let mut fields = block.fields.iter().rev();
             let field = fields.find(|field| field.span.start <= at && at <= field.span.end);
+            let indices = block.repetition.iter().flat_map(|it| &it.indices);
+            let count = indices
+                .map(|index| &index.count)
+                .find(|count| holds(count, at));
+            let value = field.map(|field| &field.value).or(count);
             Path {
                 block: Some(block),
                 field,
-                values: field
-                    .map(|field| values_at(&field.value, at))
-                    .unwrap_or_default(),
+                values: value.map(|value| values_at(value, at)).unwrap_or_default(),
                 ..Path::default()
             }
         }

@@ -244,11 +244,13 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         return methods(situation);
     }
     let wanted = situation.wanted;
-    let is_color = wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors));
+    let is_color =
+        wanted.map(|wanted| matches!(wanted, Type::Color | Type::Colors | Type::FaceColors));
+    let lists = [Some(Type::Colors), Some(Type::FaceColors)];
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
-    if wanted == Some(Type::Colors) {
-        // Two of them: one colour would not do.
+    if lists.contains(&wanted) {
+        // Two of them, or three: one colour would not do.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -288,13 +290,23 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     })
 }
 
-/// The `let`s that are defined before the place.
+/// The indices of the block, and the `let`s that are defined before the place.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,
     is_color: Option<bool>,
 ) -> Vec<Completion> {
     let mut completions = Vec::new();
+    let block = analysis.path(situation.word.start).block;
+    let indices = block.and_then(|block| block.repetition.as_ref());
+    for index in indices.iter().flat_map(|it| &it.indices) {
+        if is_color != Some(true) && index.name.span.end < situation.word.start {
+            let about = ["an index".to_owned(), hover::about_index(analysis, index)];
+            let rank = rank(situation, Some(Type::Number));
+            let kind = CompletionKind::Definition;
+            completions.push(word(situation, index.name.text, kind, about, rank));
+        }
+    }
     for definition in analysis.model.definitions() {
         let Some(name) = definition.name else {
             continue;
@@ -309,8 +321,11 @@ fn definitions(
         let value = analysis.model.defined(definition);
         let kind = value.map(|value| value.kind());
         let fits = match (is_color, kind) {
-            (_, Some(kind)) if situation.wanted == Some(Type::Colors) => kind == Type::Colors,
-            (Some(is_color), Some(kind)) => is_color == matches!(kind, Type::Color | Type::Colors),
+            (_, Some(kind @ (Type::Colors | Type::FaceColors))) => situation.wanted == Some(kind),
+            (_, Some(_)) if matches!(situation.wanted, Some(Type::Colors | Type::FaceColors)) => {
+                false
+            }
+            (Some(is_color), Some(kind)) => is_color == (kind == Type::Color),
             _ => true,
         };
         if !fits {

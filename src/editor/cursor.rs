@@ -234,7 +234,7 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
                 schema::function(call.function.text)?.parameter(index)
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
-                Some(Type::Colors) => Some(Type::Color),
+                Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
                 // Parentheses around a part of an expression, or those of a vector: both hold
                 // numbers most of the time.
                 Some(Type::Vector) => Some(Type::Number),

@@ -8,13 +8,13 @@ use crate::{
     color::Color,
     explain, inspect,
     math::Angle,
-    numbers::short,
-    scene::describe::{ABOUT_LET, about_block, about_field, about_function},
+    numbers::{grouped, short},
+    scene::describe::{ABOUT_FOR, ABOUT_LET, about_block, about_field, about_function},
     schema::{self, Block, Kind, Value, css},
     source::Span,
     syntax::{
         shorten,
-        tree::{self, Definition, ValueKind},
+        tree::{self, Definition, Index, ValueKind},
     },
 };
 
@@ -76,7 +76,11 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
             let (_, help) = methods.find(|(method, _)| method.name() == word)?;
             Some(plain(format!("`{word}`: {help}")))
         }
-        Role::Defined => Some(plain(about_definition(analysis, path.definition?))),
+        Role::Defined => Some(plain(match analysis.index_at(word, at) {
+            Some((_, index)) => about_index(analysis, index),
+            None => about_definition(analysis, path.definition?),
+        })),
+        Role::Repeat => Some(plain(ABOUT_FOR.to_owned())),
         _ => value(analysis, &path, token),
     }
 }
@@ -108,6 +112,10 @@ fn described(value: Value) -> String {
         Value::Colors(colors) => {
             let [first, second] = colors.map(about_color);
             format!("{noun}: {first}\n\nand {second}")
+        }
+        Value::FaceColors(colors) => {
+            let colors = colors.map(about_color);
+            format!("{noun}: {}", colors.join("\n\nand "))
         }
         Value::Angle(angle) => {
             let degrees = Value::Angle(Angle::from_degrees(angle.in_degrees()));
@@ -142,15 +150,30 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
-    let objects = &analysis.model.parts.objects;
-    let index = objects.partition_point(|object| object.span.start < block.span.start);
-    let object = objects
-        .get(index)
-        .filter(|object| object.span == block.span);
-    Some(match object {
-        Some(object) => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
-        None => format!("{kind} `{name}`"),
+    let objects = analysis.objects_of(block);
+    Some(match objects {
+        _ if block.repetition.is_some() => {
+            let count = grouped(objects.len() as u64);
+            let mut found = format!("`{name}`: {count} objects of the kind `{kind}`");
+            if let [first, .., last] = objects {
+                for object in [first, last] {
+                    let name = object.name.as_deref().unwrap_or_default();
+                    found += &format!("\n\n`{name}`: {}", inspect::summary(&object.shape));
+                }
+            }
+            found
+        }
+        [object] => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
+        _ => format!("{kind} `{name}`"),
     })
+}
+
+/// An index of the block's head.
+pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String {
+    let (name, count) = (index.name.text, shorten(analysis.slice(index.count.span)));
+    format!(
+        "`{name} < {count}`: an index, a whole number from 0 up to {count} - 1; the block stands for an object for each"
+    )
 }
 
 /// Which of the values around a place there is something to say of: the smallest one; or what a number, a list or a sign is an operand or an
@@ -178,6 +201,9 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
     let about = |span, markdown| Some(Hover { span, markdown });
     match &value.kind {
         ValueKind::Name(name) => {
+            if let Some((_, index)) = analysis.index_at(name, value.span.start) {
+                return about(value.span, about_index(analysis, index));
+            }
             let definition = analysis.model.definition_at(name, value.span.start);
             if let Some(definition) = definition {
                 return about(value.span, about_definition(analysis, definition));

@@ -1,7 +1,8 @@
 //! The names that a text defines: where each is defined, where it is used, and what it could be
 //! called instead.
 //!
-//! A `let` and an object may have the same name, and have nothing to do with each other then.
+//! A `let` and an object may have the same name, and have nothing to do with each other then. An
+//! index is known in its block alone.
 
 use super::{
     analysis::Analysis,
@@ -42,7 +43,11 @@ pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
         return Vec::new();
     };
     let tokens = analysis.tokens().iter();
-    let same = tokens.filter(|token| analysis.slice(token.span) == analysis.slice(name.span));
+    let word = analysis.slice(name.span);
+    let scope = |at| analysis.index_at(word, at).map(|(block, _)| block.span);
+    let own_scope = scope(at);
+    let same = tokens.filter(|token| analysis.slice(token.span) == word);
+    let same = same.filter(|token| space == Space::Objects || scope(token.span.start) == own_scope);
     let occurrences: Vec<Occurrence> = same
         .filter(|token| space_of(token.role) == Some(space))
         .map(|token| Occurrence {
@@ -67,7 +72,7 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
         return Ok(token.span);
     }
     Err(match token.role {
-        Role::Field | Role::Kind | Role::Let | Role::Function | Role::Method => {
+        Role::Field | Role::Kind | Role::Let | Role::Repeat | Role::Function | Role::Method => {
             format!("`{word}` is a word of the language")
         }
         Role::Name | Role::Defined => match predefined(word) {
@@ -92,8 +97,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             "`{new}` is no name: a name is made of the letters a to z, digits and `_`, and does not start with a digit"
         ));
     }
-    if new == "let" {
-        return Err("`let` is a word of the language".to_owned());
+    if matches!(new, "let" | "for") {
+        return Err(format!("`{new}` is a word of the language"));
     }
     let is_reserved = |name: &str| schema::block(name).is_some_and(|row| !row.is_object);
     match (space, predefined(new)) {

@@ -75,7 +75,7 @@ pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
 fn classified(analysis: &Analysis<'_>, token: &Token) -> Option<SemanticToken> {
     let word = analysis.slice(token.span);
     let kind = match token.role {
-        Role::Let | Role::Kind => SemanticKind::Keyword,
+        Role::Let | Role::Repeat | Role::Kind => SemanticKind::Keyword,
         Role::Field => SemanticKind::Property,
         Role::Defined => SemanticKind::Variable,
         Role::ObjectName => SemanticKind::Class,

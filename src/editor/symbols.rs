@@ -84,7 +84,16 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         .filter(|name| name.span.start >= block.span.start);
     Some(Symbol {
         name: name.map_or(kind.text, |name| name.text).to_owned(),
-        detail: name.map_or("", |_| kind.text).to_owned(),
+        detail: match &block.repetition {
+            Some(repetition) => {
+                let repeated = shorten(analysis.slice(repetition.span()));
+                [name.map_or("", |_| kind.text), &repeated]
+                    .join(" ")
+                    .trim_start()
+                    .to_owned()
+            }
+            None => name.map_or("", |_| kind.text).to_owned(),
+        },
         kind: match row.is_some_and(|row| row.is_object) {
             true => SymbolKind::Object,
             false => SymbolKind::Setting,

@@ -27,7 +27,9 @@ pub struct Token {
 pub enum Role {
     /// `let`
     Let,
-    /// The name that a `let` defines.
+    /// `for`
+    Repeat,
+    /// The name that a `let` defines, or a head's index.
     Defined,
     /// The word that a block starts with.
     Kind,
@@ -45,7 +47,7 @@ pub enum Role {
     Number,
     /// `#rgb` or `#rrggbb`.
     ColorCode,
-    /// `+ - * / =`
+    /// `+ - * / = <`
     Operator,
     /// Anything else: a brace, a comma, or nothing of the language.
     Other,
@@ -94,7 +96,7 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<Token> {
             TokenKind::Number => Role::Number,
             TokenKind::Color => Role::ColorCode,
             TokenKind::Sign => match text.get(token.start..token.end) {
-                Some("+" | "-" | "*" | "/" | "=") => Role::Operator,
+                Some("+" | "-" | "*" | "/" | "=" | "<") => Role::Operator,
                 _ => Role::Other,
             },
             TokenKind::Name | TokenKind::Quoted | TokenKind::Word => Role::Other,
@@ -124,6 +126,13 @@ impl Roles {
         }
         if let Some(name) = block.name {
             self.is(name.span, Role::ObjectName);
+        }
+        if let Some(repetition) = &block.repetition {
+            self.is(repetition.keyword, Role::Repeat);
+            for index in &repetition.indices {
+                self.is(index.name.span, Role::Defined);
+                self.value(&index.count, None);
+            }
         }
         let row = block.kind.and_then(|kind| schema::block(kind.text));
         for field in &block.fields {

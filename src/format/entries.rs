@@ -169,6 +169,17 @@ impl<'s> Reader<'_, 's> {
             self.token(written.span, Before::Space, &mut head);
             name = head.last().map(|word| word.text);
         }
+        if let Some(repetition) = &block.repetition {
+            self.token(repetition.keyword, Before::Space, &mut head);
+            for index in &repetition.indices {
+                self.token(index.name.span, Before::Space, &mut head);
+                self.token(index.less, Before::Space, &mut head);
+                self.value(&index.count, Before::Space, 0, &mut head);
+                if let Some(comma) = index.comma {
+                    self.token(comma, Before::Nothing, &mut head);
+                }
+            }
+        }
         let open_on_new_line = self.comments(open.start, Before::Space, &mut head) == Before::Line;
         self.skip(open);
         let is_on_one_line = !self.has_line_end(open.end, close.start);

@@ -11,7 +11,7 @@ use crate::{
     area::Area,
     color::Color,
     projection::Projection,
-    scene::{Checkerboard, Scene, Shape},
+    scene::{Checkerboard, Cuboid, Scene, Shape},
     textbook::{by_vertices, corners, crossings, vertices},
 };
 
@@ -101,7 +101,7 @@ struct Traced {
     /// The rectangle of the picture that it lies in, or all of it.
     bounds: [DVec2; 2],
     /// What is averaged of its first and its second colour.
-    colors: [[f64; 3]; 2],
+    colors: [[f64; 3]; 3],
 }
 
 /// A scene prepared.
@@ -205,14 +205,20 @@ impl FaultyTracer {
             }
         }
         let (object, t, _) = best?;
-        let is_second = match object.shape {
+        let point = eye + t * ray;
+        let color = match object.shape {
             Shape::Checkerboard(Checkerboard { square, .. }) => {
-                let point = (eye + t * ray) / square;
-                !self.behaviour.squares.is_first(point.x, point.z)
+                let [x, z] = [point.x, point.z].map(|at| at / square);
+                usize::from(!self.behaviour.squares.is_first(x, z))
             }
-            _ => false,
+            Shape::Box(Cuboid { min, max, .. }) => {
+                // That of the nearest face.
+                let off = (point - min).abs().min((point - max).abs());
+                off.min_position()
+            }
+            _ => 0,
         };
-        Some(object.colors[usize::from(is_second)])
+        Some(object.colors[color])
     }
 
     /// Whether a crossing counts.

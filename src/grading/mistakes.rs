@@ -15,7 +15,7 @@ use super::{
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
     math::Angle,
-    scene::{Lens, Shape, View},
+    scene::{Cuboid, Lens, Shape, View},
 };
 
 const ENCODE: &str = "encode each channel once, before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055";
@@ -32,6 +32,7 @@ const ORDER: &str = "a picture's channels are in the order red, green, blue";
 const CHANNELS: &str = "write each channel";
 const UP: &str = "u = (up × w)/|up × w|";
 const BOX: &str = "a box reaches from center − size/2 to center + size/2";
+const FACES: &str = "the first of the colors is that of the faces across x, the second across y, the third across z";
 
 const fn row(
     id: &'static str,
@@ -173,6 +174,12 @@ pub const OBJECT_ROWS: &[Row] = &[
         |c, object| stretch(c, object, [DVec3::new(0.0, 0.5, 0.0); 2])),
     row("box_doubled", InAreas, "is twice as large: its size counts on both sides of its center", BOX,
         |c, object| stretch(c, object, [DVec3::splat(-0.5), DVec3::splat(0.5)])),
+    row("faces_exchanged", InAreas, "has the colours of its faces across x and z exchanged", FACES,
+        |c, object| exchange_faces(c, object, [2, 1, 0])),
+    row("faces_exchanged", InAreas, "has the colours of its faces across x and y exchanged", FACES,
+        |c, object| exchange_faces(c, object, [1, 0, 2])),
+    row("faces_exchanged", InAreas, "has the colours of its faces across y and z exchanged", FACES,
+        |c, object| exchange_faces(c, object, [0, 2, 1])),
 ];
 
 /// Gray by a mean of encoded values.
@@ -258,6 +265,16 @@ fn zoom(c: &mut Candidate, by: f64) {
         Lens::HorizontalFov(angle) if is_less(angle / by) => Lens::HorizontalFov(angle / by),
         lens => lens,
     };
+}
+
+fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
+    if let Shape::Box(cuboid) = c.scene.objects[object].shape
+        && let Some(colors) = cuboid.faces
+    {
+        let faces = Some(order.map(|axis| colors[axis]));
+        let shape = Shape::Box(Cuboid { faces, ..cuboid });
+        Arc::make_mut(&mut c.scene.objects)[object].shape = shape;
+    }
 }
 
 /// A box's corners are moved, each by so many times its size.

@@ -25,7 +25,10 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
         return Vec::new();
     };
     let is_suspect = |parameter: &Parameter| match parameter.owner {
-        Owner::Object(object) => suspects.contains(&object),
+        Owner::Object(object) => suspects.iter().any(|&suspect| {
+            let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
+            object == suspect || own.is_beside(other)
+        }),
         _ => true,
     };
     let all = parameters::fitted(&candidate.scene).into_iter();

@@ -2,7 +2,7 @@
 //!
 //! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and the scene with others in their place.
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec3;
 
@@ -10,7 +10,7 @@ use crate::{
     color::Color,
     math::Angle,
     projection::Projection,
-    scene::{Part, Scene, Shape, View},
+    scene::{Object, Part, Scene, Shape, View},
     schema::{self, Field, Value},
 };
 
@@ -21,7 +21,7 @@ pub enum Owner {
     Image,
     /// The camera's.
     Camera,
-    /// An object's.
+    /// An object's, which stands for all of its block.
     Object(usize),
 }
 
@@ -48,7 +48,12 @@ pub fn fitted(scene: &Scene) -> Vec<Parameter> {
 /// All of a scene.
 fn all(scene: &Scene) -> Vec<Parameter> {
     let owners = [Owner::Image, Owner::Camera].into_iter();
-    let owners = owners.chain((0..scene.objects.len()).map(Owner::Object));
+    let blocks = scene.objects.chunk_by(Object::is_beside);
+    let firsts = blocks.scan(0, |next, block| {
+        *next += block.len();
+        Some(*next - block.len())
+    });
+    let owners = owners.chain(firsts.map(Owner::Object));
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
@@ -114,6 +119,16 @@ impl Owner {
         }
     }
 
+    /// The objects of its block that stand behind it.
+    fn others(self, scene: &Scene) -> Range<usize> {
+        let Self::Object(index) = self else {
+            return 0..0;
+        };
+        let behind = scene.objects.iter().skip(index + 1);
+        let others = behind.take_while(|it| it.is_beside(&scene.objects[index]));
+        index + 1..index + 1 + others.count()
+    }
+
     /// What it is called.
     pub fn name(self, scene: &Scene) -> String {
         match self {
@@ -128,6 +143,15 @@ impl Owner {
 }
 
 impl Parameter {
+    /// What has it is called.
+    pub fn owner_name(&self, scene: &Scene) -> String {
+        let name = self.owner.name(scene);
+        match self.owner.others(scene).is_empty() {
+            true => name,
+            false => format!("{name}, like the others of its block,"),
+        }
+    }
+
     /// Its values.
     pub fn values(&self, scene: &Scene) -> Vec<Value> {
         let part = self.owner.part(scene);
@@ -148,20 +172,41 @@ impl Parameter {
             Value::Vector(vector) => vector.to_array().to_vec(),
             Value::Color(color) => color.srgb.to_vec(),
             Value::Colors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
+            Value::FaceColors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
             Value::Method(_) => Vec::new(),
         };
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
-    /// A scene with other numbers, if they can be.
+    /// A scene with other numbers, if they can be. Those of the other objects of a block differ from
+    /// them as much as before.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
-        let mut part = self.owner.part(scene);
+        let mut changed = self.put_one(scene.clone(), numbers)?;
+        let before = self.numbers(scene);
+        for index in self.owner.others(scene) {
+            let fields = self.fields.clone();
+            let owner = Owner::Object(index);
+            let other = Self { owner, fields };
+            let own = other.numbers(scene).into_iter();
+            let own = own.zip(before.iter().zip(numbers));
+            let moved = own.map(|(own, (before, after))| match own == *before {
+                true => *after,
+                false => own + (after - before),
+            });
+            changed = other.put_one(changed, &Vec::from_iter(moved))?;
+        }
+        Some(changed)
+    }
+
+    fn put_one(&self, mut changed: Scene, numbers: &[f64]) -> Option<Scene> {
+        let mut part = self.owner.part(&changed);
         let mut rest = numbers;
         for field in &self.fields {
             let before = part.value(field)?;
             let (own, others) = rest.split_at(match before {
                 Value::Vector(_) | Value::Color(_) => 3,
                 Value::Colors(_) => 6,
+                Value::FaceColors(_) => 9,
                 _ => 1,
             });
             rest = others;
@@ -172,13 +217,13 @@ impl Parameter {
                 Value::Vector(_) => Value::Vector(DVec3::from_slice(own)),
                 Value::Color(_) => Value::Color(color(0)),
                 Value::Colors(_) => Value::Colors([color(0), color(3)]),
+                Value::FaceColors(_) => Value::FaceColors([0, 3, 6].map(color)),
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
             part = part.with(field, after)?;
         }
         part.is_possible().then(|| {
-            let mut changed = scene.clone();
             match (part, self.owner) {
                 (Part::Image(image), _) => changed.image = image,
                 (Part::Camera(camera), _) => changed.camera = camera,
@@ -191,13 +236,23 @@ impl Parameter {
         })
     }
 
-    /// The arguments that set it to what it is in a scene; none where its object has no name.
+    /// The arguments that set it to what it is in a scene; none where its object has no name, or
+    /// where it is not the same for all objects of its block.
     pub fn arguments(&self, scene: &Scene) -> Vec<String> {
+        let values = self.values(scene);
+        let is_same = |index| {
+            let part = Owner::Object(index).part(scene);
+            let own = self.fields.iter().filter_map(|field| part.value(field));
+            own.eq(values.iter().copied())
+        };
+        if !self.owner.others(scene).all(is_same) {
+            return Vec::new();
+        }
         let owner = match self.owner {
             Owner::Image => "image",
             Owner::Camera => "camera",
             Owner::Object(index) => match &scene.objects[index].name {
-                Some(name) => name,
+                Some(name) => name.split('[').next().unwrap_or(name),
                 None => return Vec::new(),
             },
         };
@@ -207,7 +262,7 @@ impl Parameter {
             Value::Vector(v) => format!("({}, {}, {})", v.x, v.y, v.z),
             other => other.to_string(),
         };
-        let values = self.fields.iter().zip(self.values(scene));
+        let values = self.fields.iter().zip(values);
         values
             .map(|(field, value)| format!("{owner}.{field}={}", written(value)))
             .collect()
@@ -238,6 +293,7 @@ impl Parameter {
         let step = |(field, value): (&&'static str, Value)| match (*field, value) {
             (_, Value::Color(color)) => color.srgb.map(inward).to_vec(),
             (_, Value::Colors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
+            (_, Value::FaceColors(colors)) => colors.map(|color| color.srgb.map(inward)).concat(),
             ("normal", Value::Vector(normal)) => vec![0.03 * normal.length(); 3],
             ("direction", Value::Vector(direction)) => {
                 vec![direction.length() * projection.pitch; 3]

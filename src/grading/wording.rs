@@ -50,7 +50,7 @@ impl Mistake {
             }
             Self::Numbers(parameter, numbers) => (parameter, numbers),
         };
-        let name = parameter.owner.name(scene);
+        let name = parameter.owner_name(scene);
         let (before, after) = (parameter.numbers(scene), parameter.put(scene, numbers));
         let is = after.map_or_else(Vec::new, |after| parameter.values(&after));
         let ([field], [is], [should]) =

@@ -11,6 +11,9 @@ use crate::{
 pub const ABOUT_LET: &str =
     "`let NAME = VALUE` gives a value a name, for what stands further down.";
 
+/// What `for` does.
+pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
+
 /// A word of the language, with all that it means and an example of each: a kind of block, a field, a method, a function, a
 /// constant, a colour.
 pub fn word(word: &str) -> Option<String> {
@@ -18,6 +21,10 @@ pub fn word(word: &str) -> Option<String> {
     let example = |text: &str| format!("\n\n```scn\n{text}\n```");
     if word == "let" {
         parts.push(ABOUT_LET.to_owned() + &example("let middle = (0, 1, 0)"));
+    }
+    if word == "for" {
+        let balls = "sphere Ball for i < 8, j < i { center (i, j, 0)  radius 0.4 }";
+        parts.push(ABOUT_FOR.to_owned() + &example(balls));
     }
     if let Some(row) = schema::block(word) {
         parts.push(block_page(row) + &example(&row.example()));
@@ -57,7 +64,7 @@ pub fn words() -> impl Iterator<Item = &'static str> {
     let fields = schema::BLOCKS.iter().flat_map(Block::field_names);
     let functions = schema::FUNCTIONS.iter().map(|function| function.name);
     let constants = schema::CONSTANTS.iter().map(|(name, ..)| *name);
-    let blocks = ["let"].into_iter().chain(schema::block_names());
+    let blocks = ["let", "for"].into_iter().chain(schema::block_names());
     blocks
         .chain(fields)
         .chain(schema::method_names())

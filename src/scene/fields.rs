@@ -29,6 +29,7 @@ enum Place<'a> {
     Vector(&'a mut DVec3),
     Color(&'a mut Color),
     Colors(&'a mut [Color; 2]),
+    FaceColors(&'a mut [Color; 3]),
 }
 
 impl Part {
@@ -46,6 +47,7 @@ impl Part {
             Place::Vector(vector) => Value::Vector(*vector),
             Place::Color(color) => Value::Color(*color),
             Place::Colors(colors) => Value::Colors(*colors),
+            Place::FaceColors(colors) => Value::FaceColors(*colors),
         })
     }
 
@@ -67,6 +69,7 @@ impl Part {
             (Place::Vector(place), Value::Vector(vector)) => *place = vector,
             (Place::Color(place), Value::Color(color)) => *place = color,
             (Place::Colors(place), Value::Colors(colors)) => *place = colors,
+            (Place::FaceColors(place), Value::FaceColors(colors)) => *place = colors,
             _ => return None,
         }
         Some(self)
@@ -97,7 +100,11 @@ impl Part {
             },
             (Shape::Box(cuboid), "min") => Place::Vector(&mut cuboid.min),
             (Shape::Box(cuboid), "max") => Place::Vector(&mut cuboid.max),
-            (Shape::Box(cuboid), "color") => Place::Color(&mut cuboid.color),
+            (Shape::Box(cuboid), "color" | "colors") => match (&mut cuboid.faces, field) {
+                (Some(faces), "colors") => Place::FaceColors(faces),
+                (None, "color") => Place::Color(&mut cuboid.color),
+                _ => return None,
+            },
             (Shape::Checkerboard(board), "y") => Place::Number(&mut board.y),
             (Shape::Checkerboard(board), "square") => Place::Number(&mut board.square),
             (Shape::Checkerboard(board), "colors") => Place::Colors(&mut board.colors),

@@ -123,12 +123,21 @@ pub enum Count {
 /// One object of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its name, unique if it has one.
+    /// Its name, unique if it has one: `Ball`, or `Ball[3, 1]` where its block stands for several.
     pub name: Option<String>,
+    /// The values of its block's indices, in their order.
+    pub indices: Box<[u32]>,
     /// What it is.
     pub shape: Shape,
     /// Its whole block in the text.
     pub span: Span,
+}
+
+impl Object {
+    /// Whether it stands with another one in a block that is repeated.
+    pub fn is_beside(&self, other: &Self) -> bool {
+        !self.indices.is_empty() && self.span == other.span
+    }
 }
 
 /// A shape with its colour. Lengths in metres.
@@ -204,8 +213,10 @@ pub struct Cuboid {
     pub min: DVec3,
     /// The corner of greatest coordinates, > min on every axis.
     pub max: DVec3,
-    /// Its colour.
+    /// Its colour, if all of its faces have one.
     pub color: Color,
+    /// The colours of its faces across x, y and z, in the place of `color`.
+    pub faces: Option<[Color; 3]>,
 }
 
 /// The infinite checkerboard in a horizontal plane.
@@ -230,13 +241,15 @@ impl Shape {
         }
     }
 
-    /// Its first and its second colour, which are one but for a checkerboard.
-    pub fn colors(&self) -> [Color; 2] {
+    /// Its colours: of a box those of the faces across x, y and z, of a checkerboard those of the
+    /// even and of the odd squares, and then again the last.
+    pub fn colors(&self) -> [Color; 3] {
         match self {
-            Self::Sphere(Sphere { color, .. })
-            | Self::Triangle(Triangle { color, .. })
-            | Self::Box(Cuboid { color, .. }) => [*color; 2],
-            Self::Checkerboard(board) => board.colors,
+            Self::Sphere(Sphere { color, .. }) | Self::Triangle(Triangle { color, .. }) => {
+                [*color; 3]
+            }
+            Self::Box(cuboid) => cuboid.faces.unwrap_or([cuboid.color; 3]),
+            Self::Checkerboard(Checkerboard { colors, .. }) => [colors[0], colors[1], colors[1]],
         }
     }
 }

@@ -42,7 +42,7 @@ pub fn negate(value: Value) -> Option<Value> {
         Value::Number(number) => Some(Value::Number(-number)),
         Value::Angle(angle) => Some(Value::Angle(-angle)),
         Value::Vector(vector) => Some(Value::Vector(-vector)),
-        Value::Color(_) | Value::Colors(_) | Value::Method(_) => None,
+        Value::Color(_) | Value::Colors(_) | Value::FaceColors(_) | Value::Method(_) => None,
     }
 }
 

@@ -194,11 +194,19 @@ pub const BLOCKS: &[Block] = &[
             min Vector Alternative "its corner of least coordinates, together with max" example("(-1, 0, -1)");
             max Vector Alternative "its corner of greatest coordinates, together with min" example("(1, 1, 1)");
             color Color Value("orange") "its colour" also_tried(COLOR);
+            colors FaceColors Nothing "the colours of its faces across x, y and z, instead of color" example("(tan, wheat, peru)")
+                also_tried("faces colours");
         },
-        choices: &[Choice {
-            ways: &[&["center", "size"], &["min", "max"]],
-            why: "a box is given by center and size, or by min and max",
-        }],
+        choices: &[
+            Choice {
+                ways: &[&["center", "size"], &["min", "max"]],
+                why: "a box is given by center and size, or by min and max",
+            },
+            Choice {
+                ways: &[&["color"], &["colors"]],
+                why: "a box has one colour, or one for its faces across each axis",
+            },
+        ],
         together: &["min < max on every axis"],
         also_tried: "cube cuboid block crate brick",
         ..BLOCK

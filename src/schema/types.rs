@@ -20,6 +20,8 @@ pub enum Type {
     Color,
     /// Two colours.
     Colors,
+    /// Three colours: of the faces of a box across x, y and z.
+    FaceColors,
     /// The name of a sampling technique.
     Method,
 }
@@ -33,6 +35,7 @@ impl Type {
             Self::Vector => "a vector",
             Self::Color => "a colour",
             Self::Colors => "a pair of colours",
+            Self::FaceColors => "a list of three colours",
             Self::Method => "a method",
         }
     }
@@ -47,6 +50,7 @@ impl Type {
     pub fn plural(self) -> String {
         match self {
             Self::Colors => "pairs of colours".to_owned(),
+            Self::FaceColors => "lists of three colours".to_owned(),
             _ => format!("{}s", self.word()),
         }
     }
@@ -59,6 +63,7 @@ impl Type {
             Self::Vector => "write three numbers, such as `(0, 1, 0)`",
             Self::Color => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
             Self::Colors => "write two colours, such as `(gray, white)`",
+            Self::FaceColors => "write three colours, such as `(tan, wheat, peru)`",
             Self::Method => "write a method, such as `jittered`",
         }
     }
@@ -68,6 +73,7 @@ impl Type {
         match self {
             Self::Vector => Some((Self::Number, 3)),
             Self::Colors => Some((Self::Color, 2)),
+            Self::FaceColors => Some((Self::Color, 3)),
             _ => None,
         }
     }
@@ -86,6 +92,8 @@ pub enum Value {
     Color(Color),
     /// A pair of colours.
     Colors([Color; 2]),
+    /// Three colours.
+    FaceColors([Color; 3]),
     /// A sampling technique.
     Method(Method),
 }
@@ -99,6 +107,7 @@ impl Value {
             Self::Vector(_) => Type::Vector,
             Self::Color(_) => Type::Color,
             Self::Colors(_) => Type::Colors,
+            Self::FaceColors(_) => Type::FaceColors,
             Self::Method(_) => Type::Method,
         }
     }
@@ -109,7 +118,7 @@ impl Value {
             Self::Number(number) => number.is_finite(),
             Self::Angle(angle) => angle.is_finite(),
             Self::Vector(vector) => vector.is_finite(),
-            Self::Color(_) | Self::Colors(_) | Self::Method(_) => true,
+            Self::Color(_) | Self::Colors(_) | Self::FaceColors(_) | Self::Method(_) => true,
         }
     }
 }
@@ -127,6 +136,7 @@ impl fmt::Display for Value {
             Self::Vector(vector) => f.write_str(&numbers::short_vector(*vector)),
             Self::Color(color) => write!(f, "{color}"),
             Self::Colors([first, second]) => write!(f, "({first}, {second})"),
+            Self::FaceColors([x, y, z]) => write!(f, "({x}, {y}, {z})"),
             Self::Method(method) => f.write_str(method.name()),
         }
     }

@@ -24,6 +24,7 @@ pub const MISSING_LET: Message = Message::new(["missing_let", "a value is given 
 pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stands within a block", "only fields stand here", "write it before the block"]);
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
+pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "an object is repeated by `for INDEX < COUNT`", "not written so", "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first"]);
 pub const UNOPENED_BLOCK: Message = Message::new(["unopened_block", "the block `{0}` lacks its braces", "the block's fields stand between `{` and `}`", "write its fields between braces, such as `sphere { center (0, 1, 0) }`"]).safe();
 pub const UNCLOSED_BLOCK: Message = Message::new(["unclosed_block", "the block of `{0}` is never closed", "opened here", ""]).safe();
 pub const NESTED_BRACES: Message = Message::new(["nested_braces", "{0}", "not in a block, or around one", "a block holds fields only; write each block by itself"]);
@@ -59,7 +60,7 @@ pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands rig
 /// What other languages say: the words that start it, what it is, and what to do instead.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
-    ["for while loop repeat foreach", "loops", "write each object by itself, or write the file by a program"],
+    ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
     ["import include require use #include", "including of other files", "write all of a scene into one file"],
     ["#version #declare #local #macro #define #if #end", "directives", "name a value with `let NAME = VALUE`; a comment begins with `//`"],
     ["print echo printf console", "output", "take it away; `pinhole inspect` shows what a scene's values are"],

@@ -26,8 +26,8 @@ use super::{
     scan::Scan,
     tokens::{Lexer, TokenKind},
     tree::{
-        Block, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad, call,
-        chain, group, negation, number,
+        Block, Definition, Element, Field, Index, Item, Name, Operator, Repetition, Value,
+        ValueKind, bad, call, chain, group, negation, number,
     },
     vocabulary::Vocabulary,
 };
@@ -240,6 +240,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             match part.as_rule() {
                 Rule::name if block.kind.is_none() => block.kind = Some(self.name(&part)),
                 Rule::name => block.name = Some(self.name(&part)),
+                Rule::repetition => block.repetition = Some(Box::new(self.repetition(part))),
                 Rule::open => block.open = Some(self.span(&part)),
                 Rule::close => block.close = Some(self.span(&part)),
                 Rule::field => block.fields.push(self.field(part)),
@@ -253,6 +254,25 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         let is_doubtful = |field: &Field<'_>| self.words.is_doubtful(kind, field);
         self.doubtful |= block.fields.iter().any(is_doubtful);
         block
+    }
+
+    fn repetition(&mut self, pair: Pair<'_, Rule>) -> Repetition<'s> {
+        let mut repetition = Repetition {
+            keyword: self.span(&pair),
+            indices: Vec::new(),
+        };
+        for part in pair.into_inner() {
+            let span = self.span(&part);
+            match (part.as_rule(), repetition.indices.last_mut()) {
+                (Rule::for_word, _) => repetition.keyword = span,
+                (Rule::name, _) => repetition.indices.push(Index::begun(self.name(&part))),
+                (Rule::less, Some(last)) => last.less = span,
+                (Rule::comma, Some(last)) => last.comma = Some(span),
+                (_, Some(last)) => last.count = self.value(part),
+                (_, None) => {}
+            }
+        }
+        repetition
     }
 
     fn field(&mut self, pair: Pair<'_, Rule>) -> Field<'s> {

@@ -72,13 +72,15 @@ impl Definition<'_> {
     }
 }
 
-/// `KIND NAME? { FIELD VALUE … }`
+/// `KIND NAME? { FIELD VALUE … }`, or `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {
     /// What it is a block of; none if it was left out.
     pub kind: Option<Name<'s>>,
     /// The name of the object.
     pub name: Option<Name<'s>>,
+    /// The indices of several objects; it lies apart, as few blocks have one.
+    pub repetition: Option<Box<Repetition<'s>>>,
     /// `{`; none if it was left out.
     pub open: Option<Span>,
     /// The fields in their order.
@@ -97,6 +99,7 @@ impl<'s> Block<'s> {
         Self {
             kind,
             name,
+            repetition: None,
             open: None,
             fields: Vec::new(),
             bad: Vec::new(),
@@ -111,6 +114,49 @@ impl<'s> Block<'s> {
             (Some(kind), _) => kind.span,
             (None, Some(open)) => open,
             (None, None) => self.span,
+        }
+    }
+}
+
+/// `for INDEX < COUNT, …`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repetition<'s> {
+    /// `for`
+    pub keyword: Span,
+    /// The indices in their order, at least one.
+    pub indices: Vec<Index<'s>>,
+}
+
+impl Repetition<'_> {
+    /// From `for` to the last count.
+    pub fn span(&self) -> Span {
+        let last = self.indices.last();
+        self.keyword
+            .to(last.map_or(self.keyword, |last| last.count.span))
+    }
+}
+
+/// `INDEX < COUNT`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Index<'s> {
+    /// Its name.
+    pub name: Name<'s>,
+    /// `<`
+    pub less: Span,
+    /// How many values it has.
+    pub count: Value<'s>,
+    /// The comma after it.
+    pub comma: Option<Span>,
+}
+
+impl<'s> Index<'s> {
+    /// An index of which no more is known yet than its name.
+    pub(super) fn begun(name: Name<'s>) -> Self {
+        Self {
+            name,
+            less: name.span,
+            count: bad(name.span),
+            comma: None,
         }
     }
 }

@@ -60,7 +60,8 @@ impl<'s> Vocabulary<'s> {
         self.lets().contains_key(name)
     }
 
-    /// The names behind every `let`, each with whether its value starts with a plain number.
+    /// The names behind every `let`, each with whether its value starts with a plain number, and
+    /// those of the indices.
     fn lets(&self) -> &HashMap<&'s str, bool> {
         self.lets.get_or_init(|| {
             let mut lets = HashMap::new();
@@ -75,6 +76,9 @@ impl<'s> Vocabulary<'s> {
                     (TokenKind::Comment, _) => continue,
                     (TokenKind::Name, [.., "let"]) if word != "let" => {
                         lets.entry(word).or_insert(false);
+                    }
+                    (TokenKind::Sign, [_, "for" | ",", index]) if word == "<" => {
+                        lets.entry(index).or_insert(true);
                     }
                     (TokenKind::Number, ["let", name, "="]) => {
                         lets.insert(name, numeric_part(word) == word);

@@ -31,11 +31,12 @@ const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 const LEAST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, with its bounds if it may be seen at all through the window.
+    /// Prepares an object, or a face of a box, with its bounds if it may be seen at all through the window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
         shape: &Shape,
+        face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let mut corners = None;
         let object = match shape {
@@ -44,6 +45,7 @@ impl Object<f64> {
                 corners = of_triangle;
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing))
             }
+            Shape::Box(cuboid) => Object::Convex(cuboid::prepare(double, cuboid, face)),
             _ => Object::new(double, shape),
         };
         let object = object.narrowed(&fast.window);

@@ -16,8 +16,8 @@ use crate::{
     scene,
 };
 
-/// Prepares a box. The number of a face's plane is twice its axis, and one more for the greater coordinate.
-pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> Convex<T> {
+/// Prepares a box, or one of its faces as a flat object. The number of a face's plane is twice its axis, and one more for the greater coordinate.
+pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<u8>) -> Convex<T> {
     let (mut fronts, mut backs, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for plane in 0..6_u8 {
         let (axis, is_upper) = (usize::from(plane / 2), plane % 2 == 1);
@@ -49,7 +49,23 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> Convex<T> 
         let others = backs.iter().filter(|(j, _)| i / 2 != j / 2);
         edges.extend(others.map(|(_, back)| front.minus(back)));
     }
-    Convex::new(edges, fronts, backs)
+    let Some(only) = only else {
+        return Convex::new(edges, fronts, backs);
+    };
+    // A ray enters through the farthest of the planes before it, and leaves through the nearest of the others.
+    let of_sides = [(fronts, false), (backs, true)].into_iter();
+    for (mut faces, is_nearest) in of_sides {
+        let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
+            continue;
+        };
+        let (_, own) = faces.swap_remove(at);
+        edges.extend(faces.iter().map(|(_, other)| match is_nearest {
+            true => own.minus(other),
+            false => other.minus(&own),
+        }));
+        return Convex::new(edges, vec![(only, own)], Vec::new());
+    }
+    Convex::nothing()
 }
 
 /// Its eight corners.

@@ -21,6 +21,7 @@ mod cuboid;
 mod curve;
 mod interval;
 mod object;
+mod pieces;
 mod sphere;
 mod triangle;
 

@@ -43,7 +43,7 @@ impl<T: Real> Object<T> {
                 triangle::prepare(camera, triangle)
                     .map_or_else(Convex::nothing, |(triangle, _)| triangle),
             ),
-            Shape::Box(cuboid) => Self::Convex(cuboid::prepare(camera, cuboid)),
+            Shape::Box(cuboid) => Self::Convex(cuboid::prepare(camera, cuboid, None)),
             Shape::Checkerboard(board) => match Checkerboard::new(camera, board) {
                 Some(board) => Self::Checkerboard(Box::new(board)),
                 None => Self::Convex(Convex::nothing()),

@@ -68,7 +68,7 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
             .is_odd(&r)
             .unwrap_or_default();
         Hit {
-            object: index,
+            object: world.owner(index),
             t: settled(&(&lambda * &length)),
             depth: settled(&(&lambda * &along[2])),
             point: [0, 1, 2].map(coordinate).into(),

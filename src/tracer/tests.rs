@@ -132,7 +132,7 @@ fn sample_of(world: &World, at: DVec2) -> Option<Sample> {
 
 fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
     let (double, fast) = (&world.geometry.double.camera, &world.geometry.fast.camera);
-    let extent = |object: &scene::Object| Object::with_extent(double, fast, &object.shape).1;
+    let extent = |object: &scene::Object| Object::with_extent(double, fast, &object.shape, None).1;
     scene.objects.iter().map(extent).collect()
 }
 

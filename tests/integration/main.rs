@@ -17,6 +17,7 @@ mod effort;
 mod exact;
 mod explain;
 mod extremes;
+mod faces;
 mod files;
 mod film;
 mod fixes;

@@ -5,7 +5,7 @@
 //! pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a
 //! condition of the language.
 
-use std::iter;
+use std::{iter, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
@@ -21,8 +21,7 @@ use crate::{
     numbers::short,
     projection::Projection,
     scene::{self, Image, Part, Scene, Shape},
-    schema,
-    source::{Source, SourceId, Sources},
+    source::{Source, SourceId, Sources, Span},
     syntax::tree::Block,
 };
 
@@ -55,19 +54,19 @@ pub struct Dragged {
     pub edits: Vec<Edit>,
     /// The fields with their new values, as `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Fields of other blocks that change with them, as `camera.lookat`.
+    /// Fields of other blocks that change with them, as `camera.lookat`, and of other objects of
+    /// the same block.
     pub also: Vec<String>,
 }
 
-/// The text of a scene with spaces in the place of all objects but one, so that what is left stands
-/// where it stood and is read quickly.
+/// The text of a scene with spaces in the place of all blocks of objects but that of one, so that
+/// what is left stands where it stood and is read quickly.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
-    let objects = scene.objects.iter().enumerate();
-    for (_, other) in objects.filter(|(index, _)| Some(*index) != object) {
-        text.push_str(source.slice(text.len()..other.span.start));
-        for letter in source.slice(other.span.range()).chars() {
+    for other in other_blocks(scene, object) {
+        text.push_str(source.slice(text.len()..other.start));
+        for letter in source.slice(other.range()).chars() {
             match letter {
                 '\n' => text.push('\n'),
                 _ => text.extend(iter::repeat_n(' ', letter.len_utf8())),
@@ -76,6 +75,16 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     }
     text.push_str(source.slice(text.len()..source.text().len()));
     Sources::new(Source::from_text(source.name(), text))
+}
+
+/// The blocks of all objects but one.
+fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
+    let own = object
+        .and_then(|index| scene.objects.get(index))
+        .map(|it| it.span);
+    let blocks = scene.objects.chunk_by(|one, next| one.span == next.span);
+    let blocks = blocks.filter_map(|block| block.first()).map(|it| it.span);
+    blocks.filter(move |span| Some(*span) != own)
 }
 
 /// What has to change in a text that means a scene where a handle is moved; `alone` is that text
@@ -132,9 +141,18 @@ pub fn drag(
     if view.agree(ideal, current, TOLERANCE) {
         return Ok(Dragged::default());
     }
-    let objects = scene.objects.iter().enumerate();
-    let others = objects.filter(|(index, _)| Some(*index) != drag.object);
-    let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
+    let others = other_blocks(scene, drag.object);
+    let without_others: Vec<Edit> = others.map(|span| Edit::new(span, "")).collect();
+    let of_block = scene.objects.iter().filter(|it| it.span == block.span);
+    let scene_alone = Scene {
+        objects: Arc::new(of_block.cloned().collect()),
+        ..scene.clone()
+    };
+    // Where it stands among the objects of its block.
+    let place = drag.object.map(|index| {
+        let before = scene.objects.iter().take(index);
+        before.filter(|it| it.span == block.span).count()
+    });
     let tied = || tied(analysis, block, &name, &changes);
     let mut refusal = tied();
     let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
@@ -162,18 +180,25 @@ pub fn drag(
             continue;
         };
         let read_alone = read(analysis.source(), [&edits, &without_others]);
-        match read_alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
-            Ok(Some(found)) if view.agree(ideal, found, tolerance) && keeps_others(found) => {
+        match read_alone.map(|scene| (part(&scene, place), scene)) {
+            Ok((Some(found), after))
+                if view.agree(ideal, found, tolerance) && keeps_others(found) =>
+            {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
                 let also = match edits.iter().all(is_own) {
-                    true => Vec::new(),
+                    true => others_changed(analysis, place, &changes, [&scene_alone, &after]),
                     false => {
-                        let whole = read(&sources.file, [&edits, &[]])?;
-                        others_changed(&Analysis::new(sources), drag.object, [scene, &whole])
+                        let after = read(&sources.file, [&edits, &[]])?;
+                        others_changed(
+                            &Analysis::new(sources),
+                            drag.object,
+                            &changes,
+                            [scene, &after],
+                        )
                     }
                 };
                 let value = |change: &Change| {
@@ -253,34 +278,43 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// The fields of the camera and of other objects in which two scenes differ that have the same
-/// blocks.
+/// The fields of the camera and of other objects, by the names of their blocks, in which two scenes
+/// differ that have the same blocks.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
+    changes: &[Change],
     scenes: [&Scene; 2],
 ) -> Vec<String> {
-    let mut objects = 0;
+    let mut next = 0;
     let mut changed = Vec::new();
     for block in analysis.blocks() {
         let Some(kind) = block.kind else { continue };
-        let index = match schema::block(kind.text) {
-            Some(row) if row.is_object => {
-                objects += 1;
-                Some(objects - 1)
-            }
-            _ if kind.text == "camera" => None,
-            _ => continue,
+        let first = next;
+        let objects = scenes[0].objects.get(first..).unwrap_or_default();
+        next += objects
+            .iter()
+            .take_while(|it| it.span == block.span)
+            .count();
+        let of_block: Vec<_> = match kind.text {
+            "camera" => vec![None],
+            _ => (first..next).map(Some).collect(),
         };
-        let [Some(before), Some(after)] = scenes.map(|scene| part(scene, index)) else {
-            continue;
-        };
-        if index == dragged {
-            continue;
-        }
+        let others = of_block.into_iter().filter(|index| *index != dragged);
+        let parts = others.map(|index| scenes.map(|scene| part(scene, index)));
+        let parts: Vec<_> = parts.collect();
         let name = block.name.map_or(kind.text, |name| name.text);
-        let fields = block.fields.iter().map(|field| field.name.text);
-        let differ = fields.filter(|field| before.value(field) != after.value(field));
+        let fields: Vec<&str> = match dragged.is_some_and(|index| (first..next).contains(&index)) {
+            true => changes.iter().map(|change| change.name).collect(),
+            false => block.fields.iter().map(|it| it.name.text).collect(),
+        };
+        let differ = fields.into_iter().filter(|field| {
+            let differs = |[before, after]: &[Option<Part>; 2]| match (before, after) {
+                (Some(before), Some(after)) => before.value(field) != after.value(field),
+                _ => false,
+            };
+            parts.iter().any(differs)
+        });
         changed.extend(differ.map(|field| format!("{name}.{field}")));
     }
     changed

@@ -33,9 +33,14 @@ pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
 /// For each object the place that stands for it: its name, or the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
-    let mut blocks = analysis.blocks();
+    let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
-        let block = blocks.find(|block| block.span == object.span);
+        // Several objects may stand in one block.
+        while blocks
+            .next_if(|block| block.span.start < object.span.start)
+            .is_some()
+        {}
+        let block = blocks.peek().filter(|block| block.span == object.span);
         block.map_or(object.span, |block| {
             block.name.map_or(block.keyword(), |name| name.span)
         })

@@ -54,6 +54,7 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
         min,
         max,
         color: Color::BLACK,
+        faces: None,
     })
 }
 
@@ -103,6 +104,7 @@ pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
         }
         Object {
             name: None,
+            indices: Box::default(),
             shape,
             span: Span::new(SourceId::File, 0, 0),
         }

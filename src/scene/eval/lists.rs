@@ -39,13 +39,18 @@ impl<'s> Evaluator<'_, 's> {
             [Some(Value::Color(first)), Some(Value::Color(second))] => {
                 return Some(Value::Colors([first, second]));
             }
+            [
+                Some(Value::Color(x)),
+                Some(Value::Color(y)),
+                Some(Value::Color(z)),
+            ] if wanted != Some(Type::Colors) => return Some(Value::FaceColors([x, y, z])),
             _ => {}
         }
         let is_color = |value: &Value| value.kind() == Type::Color;
         let is_pair = elements.len() == 2 && values.iter().flatten().any(is_color);
         let list = match wanted {
             _ if is_pair => Type::Colors,
-            Some(Type::Colors) => Type::Colors,
+            Some(list @ (Type::Colors | Type::FaceColors)) => list,
             _ => Type::Vector,
         };
         let (part, _) = list.parts()?;

@@ -128,7 +128,7 @@ impl<'s> Evaluator<'_, 's> {
         span: Span,
         wanted: Option<Type>,
     ) -> (Diagnostic, Option<Meaning>) {
-        let is_color = matches!(wanted, Some(Type::Color | Type::Colors));
+        let is_color = matches!(wanted, Some(Type::Color | Type::Colors | Type::FaceColors));
         let (near, applicability) = self.nearest(name, wanted, is_color).unzip();
         let problem = match is_color {
             true => error(

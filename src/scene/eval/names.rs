@@ -89,6 +89,21 @@ impl<'s> Names<'s> {
         }
     }
 
+    /// Gives an index a value, within its block; none while it is not known yet.
+    pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
+        let place = name.span;
+        let from = SourceId::File;
+        self.defined
+            .insert(name.text, Defined { value, place, from });
+    }
+
+    /// Forgets an index behind its block.
+    pub fn forget_index(&mut self, name: Name<'s>) {
+        if self.place(name.text) == Some(name.span) {
+            self.defined.remove(name.text);
+        }
+    }
+
     /// Knows the words of what cannot be told, such as what was to be a name and cannot be one.
     pub fn know_words(&mut self, text: &'s str) {
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '_';

@@ -112,7 +112,7 @@ impl<'s> Evaluator<'_, 's> {
         right: Value,
         wanted: Option<Type>,
     ) {
-        use Type::{Angle, Color, Colors, Number, Vector};
+        use Type::{Angle, Color, Colors, FaceColors, Number, Vector};
         let right_span = step.operand.span;
         let [left_text, right_text] = [left_span, right_span].map(|span| self.sources.text(span));
         let [a, b] = [left_text, right_text].map(shorten);
@@ -121,7 +121,7 @@ impl<'s> Evaluator<'_, 's> {
         let values = (left, right);
         let (left, right) = (left.kind(), right.kind());
         let help = match (left, right, step.operator) {
-            (Color | Colors, _, _) | (_, Color | Colors, _) => {
+            (Color | Colors | FaceColors, _, _) | (_, Color | Colors | FaceColors, _) => {
                 "colours are not computed with; `rgb(r, g, b)` takes computed numbers".to_owned()
             }
             (Vector, Number, _) if is_sum => format!(

@@ -119,6 +119,7 @@ accessors! {
     vector Vector DVec3;
     color Color Color;
     colors Colors [Color; 2];
+    face_colors FaceColors [Color; 3];
     method Method Method;
 }
 

@@ -29,12 +29,25 @@ impl<'s> Lowering<'s> {
         let before = self.problems.len();
         let value = match (row.takes, &tree.kind) {
             (Type::Method, ValueKind::Name(written)) => return self.method(written, tree),
-            (Type::Vector | Type::Colors, _) => self.evaluate(tree, Some(row.takes))?,
+            (Type::Vector | Type::Colors | Type::FaceColors, _) => {
+                self.evaluate(tree, Some(row.takes))?
+            }
+            (Type::Color, ValueKind::Tuple(elements))
+                if elements.len() == 2 && self.is_odd.is_some() =>
+            {
+                self.evaluate(tree, Some(Type::Colors))?
+            }
             (_, ValueKind::Tuple(elements)) if elements.len() != 3 => {
                 self.list(row, tree, elements);
                 return None;
             }
             _ => self.evaluate(tree, Some(row.takes))?,
+        };
+        let value = match (row.takes, value, self.is_odd) {
+            (Type::Color, Value::Colors([even, odd]), Some(is_odd)) => {
+                Value::Color(if is_odd { odd } else { even })
+            }
+            _ => value,
         };
         if value.kind() != row.takes {
             let problem = self.wrong_type(row, tree, value);

@@ -7,10 +7,7 @@ use super::{
 };
 use crate::{
     diagnostic::{Applicability, Diagnostic, Edit, Fix},
-    scene::{
-        error::{error, twice},
-        model::Shape,
-    },
+    scene::error::{error, twice},
     schema::{self, predefined},
     source::{SourceId, Span},
     suggest,
@@ -103,6 +100,27 @@ impl<'s> Lowering<'s> {
         });
         let is_duplicate = duplicate.is_some();
         self.problems.extend(duplicate);
+        self.has_objects |= row.is_object;
+        if let Some(repetition) = &block.repetition {
+            if row.is_object {
+                return self.repeated(row, block, repetition);
+            }
+            self.not_repeated(row, repetition);
+        }
+        let lowered = self.lowered(row, block);
+        if row.is_object {
+            self.object(&lowered, &[]);
+        } else if !is_duplicate {
+            self.blocks.push(lowered);
+        }
+    }
+
+    /// The values of a block's fields, and what is wrong with them.
+    pub(super) fn lowered(
+        &mut self,
+        row: &'static schema::Block,
+        block: &tree::Block<'s>,
+    ) -> Block<'s> {
         let open = block.open.map(|open| open.start);
         let mut lowered = Block {
             keyword: block.keyword(),
@@ -115,6 +133,10 @@ impl<'s> Lowering<'s> {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
+            // What was to be an index is not reported again.
+            if Some(span.start) < open {
+                self.names.know_words(text);
+            }
         }
         let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
         for field in block.fields.iter().filter(is_known) {
@@ -125,17 +147,10 @@ impl<'s> Lowering<'s> {
             self.unknown_field(field, &mut lowered);
         }
         self.conflicts(&lowered);
-        self.has_objects |= row.is_object;
         if row.is_object {
             self.missing_fields(&lowered);
-            let object = self.object(&lowered);
-            if let Some(Shape::Checkerboard(board)) = object.as_ref().map(|object| object.shape) {
-                self.boards.push((board, lowered.place("square")));
-            }
-            self.objects.extend(object);
-        } else if !is_duplicate {
-            self.blocks.push(lowered);
         }
+        lowered
     }
 
     /// The table's row for a block; for a mistyped kind that of the nearest one.
@@ -275,6 +290,10 @@ impl<'s> Lowering<'s> {
             error("unexpected_name", format!("{} takes no name", row.noun))
                 .at(name.span, "not here")
                 .help(help)
+        } else if text == "for" {
+            error("reserved_name", "no object can be named `for`")
+                .at(name.span, "this repeats an object")
+                .help("choose another name, or write how often it is repeated, as in `for i < 8`")
         } else if schema::block(text).is_some_and(|row| !row.is_object) {
             let help =
                 format!("choose another name: `--set {text}.…` is to reach the block `{text}`");

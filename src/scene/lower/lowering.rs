@@ -22,6 +22,8 @@ pub(super) struct Lowering<'s> {
     pub(super) names: Names<'s>,
     /// The blocks that are no objects, each the first of its kind.
     pub(super) blocks: Vec<Block<'s>>,
+    /// Whether the sum of the indices is odd in the block that is read, if that has indices.
+    pub(super) is_odd: Option<bool>,
     /// The objects.
     pub(super) objects: Vec<Object>,
     /// The checkerboards, each with the number of its squares' side, or its keyword.
@@ -49,6 +51,7 @@ impl<'s> Lowering<'s> {
             cut: false,
             names,
             blocks: Vec::new(),
+            is_odd: None,
             objects: Vec::new(),
             boards: Vec::new(),
             has_items: false,

@@ -14,6 +14,7 @@ mod lowering;
 mod missing;
 mod objects;
 mod read;
+mod repetition;
 mod suggestions;
 mod unknown;
 

@@ -15,9 +15,31 @@ use crate::{
 const VERTICES: [&str; 3] = ["v0", "v1", "v2"];
 
 impl<'s> Lowering<'s> {
-    /// Builds an object; none if a value is missing or failed.
-    pub(super) fn object(&mut self, block: &Block<'s>) -> Option<Object> {
-        let shape = match block.row.kind {
+    /// Builds an object, with its place among those of its block. Answers whether that could be
+    /// done: not if a value is missing or failed.
+    pub(super) fn object(&mut self, block: &Block<'s>, indices: &[u32]) -> bool {
+        let Some(shape) = self.shape(block) else {
+            return false;
+        };
+        if let Shape::Checkerboard(board) = shape {
+            self.boards.push((board, block.place("square")));
+        }
+        let name = block.name.map(|name| match indices {
+            [] => name.text.to_owned(),
+            _ => format!("{}[{}]", name.text, listed(indices)),
+        });
+        self.objects.push(Object {
+            name,
+            indices: indices.into(),
+            shape,
+            span: block.span,
+        });
+        true
+    }
+
+    /// What it is; none if a value is missing or failed.
+    pub(super) fn shape(&mut self, block: &Block<'s>) -> Option<Shape> {
+        Some(match block.row.kind {
             Kind::Sphere => Shape::Sphere(Sphere {
                 center: block.vector("center")?,
                 radius: block.number("radius")?,
@@ -37,11 +59,6 @@ impl<'s> Lowering<'s> {
                 colors: block.colors("colors")?,
             }),
             Kind::Image | Kind::Camera | Kind::Sampler => return None,
-        };
-        Some(Object {
-            name: block.name.map(|name| name.text.to_owned()),
-            shape,
-            span: block.span,
         })
     }
 
@@ -121,6 +138,10 @@ impl<'s> Lowering<'s> {
                 min,
                 max,
                 color: block.color("color")?,
+                faces: match block.given("colors") {
+                    Some(_) => Some(block.face_colors("colors")?),
+                    None => None,
+                },
             }));
         };
         let (low, high) = (numbers::beside(low, &[high]), numbers::beside(high, &[low]));
@@ -148,6 +169,14 @@ impl<'s> Lowering<'s> {
         });
         None
     }
+}
+
+fn listed(indices: &[u32]) -> String {
+    indices
+        .iter()
+        .map(u32::to_string)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// A vector with all its digits.

@@ -71,7 +71,7 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     lowering.problems = overrides::add(overrides, &mut last, sources, lowering.names.budget());
     lowering.items(&last);
     let objects = &mut lowering.objects;
-    objects.sort_unstable_by_key(|object| object.span.start);
+    objects.sort_by_key(|object| object.span.start);
     lowering.is_right().then(|| lowering.reading())
 }
 

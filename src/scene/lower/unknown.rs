@@ -265,7 +265,7 @@ impl<'s> Lowering<'s> {
             }
             Kind::Image => {}
             Kind::Sphere | Kind::Triangle | Kind::Box | Kind::Checkerboard => {
-                self.object(block);
+                self.shape(block);
             }
         }
         let tried = std::mem::replace(&mut self.problems, problems);

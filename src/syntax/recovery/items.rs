@@ -158,8 +158,19 @@ impl<'s> Recovery<'_, 's> {
     pub(super) fn block(&mut self) {
         let span = self.here();
         let kind = self.is_name(0).then(|| self.name());
-        let name = self.is_name(0).then(|| self.name());
-        self.open_block(Block::new(span, kind, name));
+        let has_name = self.is_name(0) && !self.is_repetition(0);
+        let name = has_name.then(|| self.name());
+        let mut block = Block::new(span, kind, name);
+        if self.is_repetition(0) {
+            match self.repetition() {
+                Ok(repetition) => block.repetition = Some(Box::new(repetition)),
+                Err(bad) => block.bad.push(bad),
+            }
+            if !self.is(0, "{") {
+                return self.items.push(Item::Bad(block.span.to(self.behind())));
+            }
+        }
+        self.open_block(block);
     }
 
     /// Reads a block from its `{` on.

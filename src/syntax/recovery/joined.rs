@@ -36,7 +36,7 @@ impl<'s> Recovery<'_, 's> {
             return bad(span);
         }
         let are_parts = values.iter().all(|value| match takes {
-            Some(Type::Colors) => !matches!(value.kind, ValueKind::Tuple(_)),
+            Some(Type::Colors | Type::FaceColors) => !matches!(value.kind, ValueKind::Tuple(_)),
             _ => is_plain_number(value) || self.is_factor(value),
         });
         match (takes, values.len()) {
@@ -54,7 +54,9 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, format!("rgb{right}"));
                 self.report(&said, span, &[example(takes)], fix);
             }
-            (Some(Type::Vector) | None, 3) | (Some(Type::Colors), 2) if are_parts => {
+            (Some(Type::Vector | Type::FaceColors) | None, 3) | (Some(Type::Colors), 2)
+                if are_parts =>
+            {
                 self.missing_parentheses(span, Some(replace(span, right)));
             }
             (Some(Type::Vector), _) if !matches!(first.kind, ValueKind::Tuple(_)) => {

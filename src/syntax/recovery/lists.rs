@@ -46,6 +46,7 @@ impl<'s> Recovery<'_, 's> {
         let (parts, count) = match takes {
             Some(Type::Vector) => (Some(Type::Number), 3..=3),
             Some(Type::Colors) => (Some(Type::Color), 2..=2),
+            Some(Type::FaceColors) => (Some(Type::Color), 3..=3),
             Some(Type::Number | Type::Angle) => (takes, 1..=1),
             Some(Type::Color) => (takes, 3..=3),
             Some(Type::Method) | None => (None, 3..=3),
@@ -291,6 +292,7 @@ impl<'s> Recovery<'_, 's> {
         let (what, function, count) = match takes {
             Some(Type::Color) => ("a colour", "rgb", 3),
             Some(Type::Colors) => ("a pair of colours", "", 2),
+            Some(Type::FaceColors) => ("a list of colours", "", 3),
             _ => ("a vector", "", 3),
         };
         let fits = list.elements.len() == count && list.needless.is_none();

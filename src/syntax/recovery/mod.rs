@@ -2,7 +2,7 @@
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
 //! each slip. A reader by recursive descent over the lexer's tokens: items stand in `items`, fields
-//! in `fields`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
+//! in `fields`, indices in `repetition`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
 //! languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
@@ -17,6 +17,7 @@ mod items;
 mod joined;
 mod lists;
 mod numbers;
+mod repetition;
 mod values;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -291,15 +292,16 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Whether a block starts at a token ahead: `sphere {` or `sphere Ball {`. Behind any other word
-    /// than a kind, a kind on a new line starts a block of its own.
+    /// Whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for i`. Behind
+    /// any other word than a kind, a kind on a new line starts a block of its own.
     fn is_head(&mut self, ahead: usize) -> bool {
         let name = ahead + 1;
-        if !self.is_name(ahead) || !self.is_name(name) {
-            return self.is_name(ahead) && self.is(name, "{");
+        let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);
+        if !self.is_name(ahead) || ends(self, name) {
+            return self.is_name(ahead);
         }
         let is_kind = self.words.is_kind(self.word(name)) && !self.words.is_kind(self.word(ahead));
-        self.is(name + 1, "{") && !(is_kind && self.is_on_new_line(name))
+        self.is_name(name) && ends(self, name + 1) && !(is_kind && self.is_on_new_line(name))
     }
 
     /// Whether a block of a known kind starts here.

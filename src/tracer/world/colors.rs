@@ -29,7 +29,10 @@ impl Colors {
                 })
         };
         let of_objects = objects.iter();
-        let of_objects = of_objects.map(|object| object.shape.colors().map(&mut slot));
+        let of_objects = of_objects.map(|object| {
+            let [first, second, _] = object.shape.colors();
+            [first, second].map(&mut slot)
+        });
         let of_objects = of_objects.collect();
         palette.push(background);
         Self {

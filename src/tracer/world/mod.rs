@@ -24,6 +24,7 @@ use super::{
     camera::{Basis, Direction, Point},
     crossing::Crossing,
     object::Object,
+    pieces::Pieces,
     quadtree::{Item, Nearness, Quadtree},
 };
 use crate::{
@@ -41,6 +42,7 @@ pub struct World {
     pub(crate) geometry: Geometry,
     pub(super) quadtree: Quadtree,
     colors: Colors,
+    pieces: Pieces,
 }
 
 /// What is seen at a point.
@@ -85,13 +87,15 @@ impl World {
 
     fn as_far(scene: &Scene, reach: DVec2, cancel: &AtomicBool) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
-        let (geometry, quadtree) = prepare(scene, &basis, reach, cancel);
+        let (scene, pieces) = Pieces::of(scene);
+        let (geometry, quadtree) = prepare(&scene, &pieces, &basis, reach, cancel);
         let objects = &scene.objects[..geometry.numbers.len()];
         Self {
             colors: Colors::new(objects, scene.image.background),
             basis,
             geometry,
             quadtree,
+            pieces,
         }
     }
 
@@ -138,13 +142,19 @@ impl World {
     /// The object that is seen in the middle of a pixel.
     pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
-        match self.seen_fast(&point, None) {
+        let seen = match self.seen_fast(&point, None) {
             Ok(seen) => seen.map(|seen| seen.object),
             Err(Doubt) => {
                 let among = self.candidates(&point);
                 self.object_among(&point, among.iter().copied()).0
             }
-        }
+        };
+        seen.map(|piece| self.owner(piece))
+    }
+
+    /// The index in the file of an object that may be a face of one.
+    pub(super) fn owner(&self, piece: usize) -> usize {
+        self.pieces.owner(piece)
     }
 
     /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.

@@ -12,6 +12,7 @@ use crate::{
     tracer::{
         camera::{Basis, Camera},
         crossing::SurfacePart,
+        cuboid,
         form::Form,
         object::Object,
         sphere::Sphere,
@@ -46,8 +47,8 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All of any other shape.
-    Other(Box<Shape>),
+    /// All of any other shape, and of a box that was taken apart which face it is.
+    Other(Box<(Shape, Option<u8>)>),
 }
 
 /// The camera and the objects, in each precision.
@@ -105,19 +106,19 @@ pub trait Precision: Real {
 }
 
 impl Numbers {
-    pub(super) fn new(object: &scene::Object) -> Self {
+    pub(super) fn new(object: &scene::Object, face: Option<u8>) -> Self {
         match &object.shape {
             Shape::Sphere(sphere) => Self::Sphere(sphere.center, sphere.radius),
-            other => Self::Other(Box::new(*other)),
+            other => Self::Other(Box::new((*other, face))),
         }
     }
 
     /// The plane of a flat part.
     pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
-        let (Self::Other(shape), SurfacePart::Plane(index)) = (self, part) else {
+        let (Self::Other(other), SurfacePart::Plane(index)) = (self, part) else {
             return None;
         };
-        Some(match **shape {
+        Some(match other.0 {
             Shape::Sphere(_) => return None,
             Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
                 Outline::Vertices(vertices) => Plane::through(vertices),
@@ -136,7 +137,12 @@ impl Numbers {
     fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
         match self {
             Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
-            Self::Other(shape) => Object::new(camera, shape),
+            Self::Other(other) => match &**other {
+                (Shape::Box(cuboid), face) => {
+                    Object::Convex(cuboid::prepare(camera, cuboid, *face))
+                }
+                (shape, _) => Object::new(camera, shape),
+            },
         }
     }
 }

@@ -15,6 +15,7 @@ use crate::{
     tracer::{
         camera::Basis,
         object::Object,
+        pieces::Pieces,
         quadtree::{Grid, Item, Quadtree},
     },
 };
@@ -29,6 +30,7 @@ const BLOCK: usize = 1 << 13;
 /// something of no use.
 pub fn prepare(
     scene: &Scene,
+    pieces: &Pieces,
     basis: &Basis,
     reach: DVec2,
     cancel: &AtomicBool,
@@ -38,7 +40,12 @@ pub fn prepare(
     let fast = Frame::new(basis, scene, reach, 0);
     let grid = Grid::new(&fast.camera.window);
     let prepare = |index: usize, object: &scene::Object| {
-        let (object, extent) = Object::with_extent(&double.camera, &fast.camera, &object.shape);
+        let (object, extent) = Object::with_extent(
+            &double.camera,
+            &fast.camera,
+            &object.shape,
+            pieces.face(index),
+        );
         (object, extent.and_then(|extent| grid.item(index, &extent)))
     };
     let threads = threads_for(count);
@@ -67,7 +74,9 @@ pub fn prepare(
         true => &[],
     };
     let geometry = Geometry {
-        numbers: rest.iter().map(Numbers::new).collect(),
+        numbers: (rest.iter().enumerate())
+            .map(|(index, object)| Numbers::new(object, pieces.face(index)))
+            .collect(),
         objects,
         fast,
         double,

@@ -51,7 +51,7 @@ export const sceneLanguage = StreamLanguage.define<State>({
     if (word && word !== true) {
       const { defines } = state;
       state.defines = word[0] === "let" || (!state.block && KINDS.has(word[0]));
-      if (word[0] === "let") return "keyword";
+      if (word[0] === "let" || (!state.block && word[0] === "for")) return "keyword";
       if (!state.block && KINDS.has(word[0])) return "keyword";
       if (defines) return "typeName";
       if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos))
@@ -66,7 +66,7 @@ export const sceneLanguage = StreamLanguage.define<State>({
     if (character === ")" && state.parentheses > 0) state.parentheses--;
     if (character === "{" || character === "}") state.parentheses = 0;
     state.defines = false;
-    return "+-*/=".includes(character ?? "") ? "operator" : "punctuation";
+    return "+-*/=<".includes(character ?? "") ? "operator" : "punctuation";
   },
   indent: (state, after, context) => state.block && !/^\s*\}/.test(after) ? context.unit : 0,
   languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } },

@@ -28,7 +28,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// bars.
 const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
     (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
-    let|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
+    let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
 /// Tries inputs: as many as the environment says, or as are usual. A test that fails says which one

@@ -3,6 +3,7 @@
 mod answers;
 mod overrides;
 mod reference;
+mod repetition;
 mod seen;
 mod text;
 

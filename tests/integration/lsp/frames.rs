@@ -388,6 +388,94 @@ fn a_drag_snaps() {
 }
 
 /// Who drags a ball that the camera looks at hears that the camera moves.
+/// Of several objects that one block stands for one is dragged, and all others move with it.
+#[test]
+fn an_object_of_many_is_dragged_with_all_of_its_block() {
+    for (blocks, object, handle, to, written, value, also) in [
+        (
+            "sphere Ball for i < 3 { center (i - 1, 0, 0) radius 0.3 }",
+            1,
+            "center",
+            [430, 225],
+            "0.67",
+            "Ball[1].center = (0.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "sphere A { center (0, 0, -3) }\nsphere Ball for i < 3 { center (i, 0, 0) }\nsphere { center (0, 0, -4) }",
+            2,
+            "center",
+            [520, 225],
+            " + 0.33",
+            "Ball[1].center = (1.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "sphere for i < 3, j < i { center (i, j, 0) }",
+            2,
+            "center",
+            [610, 135],
+            " + 0.33",
+            "sphere.center = (2.33, 1, 0)",
+            "sphere.center",
+        ),
+        (
+            "let c = (0, 0, 0) sphere Ball for i < 2 { center c + (i, 0, 0) }",
+            0,
+            "center",
+            [430, 225],
+            " + 0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "let x = 0 sphere Ball for i < 2 { center (x, i, 0) } sphere B { center (x, -1, 0) }",
+            0,
+            "center",
+            [430, 225],
+            "0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "Ball.center, B.center",
+        ),
+        (
+            "sphere for i < 2 { center (3 * i, 0, 0) }",
+            0,
+            "radius",
+            [535, 225],
+            "",
+            "",
+            "sphere.radius",
+        ),
+        (
+            "sphere Ball for i < 1 { center (i, 0, 0) }",
+            0,
+            "center",
+            [430, 225],
+            " + 0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "",
+        ),
+    ] {
+        let mut talk = Talk::with(&format!(
+            "camera {{ eye (0, 0, 5) lookat (0, 0, 0) }}\n{blocks}"
+        ));
+        let about = json!({ "object": object, "handle": handle, "to": to });
+        let found = talk.ask("pinhole/drag", about);
+        let list = |key: &str| {
+            let texts = found[key].as_array().unwrap().iter();
+            texts
+                .map(|it| it.as_str().unwrap().to_owned())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        assert_eq!(list("also"), also, "{blocks}: {found}");
+        if !written.is_empty() {
+            assert_eq!(list("values"), value, "{blocks}: {found}");
+            assert_eq!(found["edits"][0]["newText"], written, "{blocks}: {found}");
+        }
+    }
+}
+
 #[test]
 fn a_drag_tells_what_else_moves() {
     let text = "let ball = (0, 0, 0)\ncamera { eye (0, 0, 5) lookat ball }\nsphere Ball { center ball }\nsphere { center (0, 2, 0) }";

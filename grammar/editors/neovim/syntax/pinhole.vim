@@ -10,8 +10,9 @@ syn keyword pinholeKeyword let skipwhite skipempty nextgroup=pinholeDefined
 syn match pinholeDefined /\<\h\w*\>/ contained skipwhite skipempty nextgroup=pinholeEquals
 syn match pinholeEquals /=/ contained skipwhite skipempty nextgroup=@pinholeValue
 
-syn match pinholeKind /\<\%(let\>\)\@!\h\w*\>/ skipwhite skipempty nextgroup=pinholeObject,pinholeBody
-syn match pinholeObject /\<\h\w*\>/ contained skipwhite skipempty nextgroup=pinholeBody
+syn match pinholeKind /\<\%(let\>\)\@!\h\w*\>/ skipwhite skipempty nextgroup=pinholeObject,pinholeHead,pinholeBody
+syn match pinholeObject /\<\h\w*\>/ contained skipwhite skipempty nextgroup=pinholeHead,pinholeBody
+syn region pinholeHead matchgroup=pinholeKeyword start=/\<for\>/ end=/\ze[{}]/ contained contains=pinholeIndex,@pinholeValue,pinholeComment skipwhite skipempty nextgroup=pinholeBody
 syn region pinholeBody start=/{/ end=/}/ contained contains=pinholeField,pinholeMethodField,pinholeComment
 
 syn match pinholeField /\<\h\w*\>/ contained skipwhite skipempty nextgroup=@pinholeValue
@@ -24,6 +25,8 @@ syn match pinholeNumber /\<\d[0-9_]*\%(\.[0-9_]*\)\?\%([eE][-+]\?\d[0-9_]*\)\?\%
 syn match pinholeNumber /\.\d[0-9_]*\%([eE][-+]\?\d[0-9_]*\)\?\%(deg\|rad\)\?/ contained skipwhite skipempty nextgroup=pinholeOperator
 syn match pinholeCode /#\x\+/ contained skipwhite skipempty nextgroup=pinholeOperator
 syn match pinholeName /\<\h\w*\>/ contained skipwhite skipempty nextgroup=pinholeOperator
+syn match pinholeIndex /\<\h\w*\>\ze\_s*</ contained skipwhite skipempty nextgroup=pinholeLess
+syn match pinholeLess /</ contained skipwhite skipempty nextgroup=@pinholeValue
 syn match pinholeCall /\<\h\w*\>\ze\_s*(/ contained skipwhite skipempty nextgroup=pinholeGroup
 syn region pinholeGroup start=/(/ end=/)/ contained contains=@pinholeValue,pinholeComment skipwhite skipempty nextgroup=pinholeOperator
 
@@ -36,6 +39,8 @@ hi def link pinholeKeyword Keyword
 hi def link pinholeKind Keyword
 hi def link pinholeDefined Identifier
 hi def link pinholeObject Type
+hi def link pinholeIndex Identifier
+hi def link pinholeLess Operator
 hi def link pinholeField Identifier
 hi def link pinholeMethodField Identifier
 hi def link pinholeMethod Constant

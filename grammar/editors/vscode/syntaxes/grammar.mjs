@@ -55,7 +55,8 @@ const QUOTED = "\"[^\"]*\"?|'[^']*'?";
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
 
 // A line that starts with a block's head ends the block above, whose brace is missing.
-const NEXT_ITEM = `(?=\\blet\\b)|^(?=\\s*${NAME}\\s*(?:${NAME}\\s*)?\\{)`;
+const NEXT_ITEM =
+  `(?=\\blet\\b)|^(?=\\s*${NAME}\\s*(?:${NAME}\\s*)?\\{|\\s*${NAME}\\s+(?:${NAME}\\s+)?for\\s+${NAME}\\s*<)`;
 const VALUES_END = `(?=\\})|${NEXT_ITEM}`;
 
 const includes = (...names) => names.map(name => ({ include: `#${name}` }));
@@ -68,6 +69,17 @@ const rule = (begin, types, end, ...names) => ({
   end,
   patterns: includes(...names),
 });
+
+/** What stands in values, where no field can follow. */
+const WORDS = [
+  scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
+  scoped(COLOR_CODE, "number"),
+  { match: QUOTED },
+  scoped(`\\b${FUNCTION}`, "function"),
+  scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
+  scoped(`\\b${NAME}`, "variable"),
+  scoped(OPERATOR, "operator"),
+];
 
 /** The rules of values behind which the rules `next` follow: fields, or items. */
 function values(prefix, ...next) {
@@ -116,11 +128,22 @@ export const grammar = {
         // Its name or its brace stands on another line, or behind a comment.
         rule(
           `\\b(?!let\\b)(${NAME})\\b`, ["keyword"], `(?<=\\})|(?=\\blet\\b)|^(?=\\s*${NAME}\\s+${NAME}\\s*\\{)`,
-          "comment", "body", "object-name",
+          "comment", "body", "repetition", "object-name",
         ),
       ],
     },
     body: rule("\\{", [], `\\}|${NEXT_ITEM}`, "comment", "field"),
+    repetition: {
+      begin: "\\b(for)\\b",
+      beginCaptures: captures("keyword"),
+      end: `(?=[{}])|${NEXT_ITEM}`,
+      patterns: [
+        ...includes("comment", "parentheses"),
+        scoped(`\\b${NAME}(?=\\s*<)`, "variable.declaration"),
+        scoped("<", "operator"),
+        ...WORDS,
+      ],
+    },
     "object-name": scoped(`\\b${NAME}\\b`, "class"),
 
     field: {
@@ -136,16 +159,7 @@ export const grammar = {
     inner: {
       begin: "(?<=\\()",
       end: `\\)|(?=[{}])|${NEXT_ITEM}`,
-      patterns: [
-        ...includes("comment", "parentheses"),
-        scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
-        scoped(COLOR_CODE, "number"),
-        { match: QUOTED },
-        scoped(`\\b${FUNCTION}`, "function"),
-        scoped(`\\b${WORD_OF_THE_LANGUAGE}`, "enumMember"),
-        scoped(`\\b${NAME}`, "variable"),
-        scoped(OPERATOR, "operator"),
-      ],
+      patterns: [...includes("comment", "parentheses"), ...WORDS],
     },
     parentheses: rule("\\(", [], `(?<=\\))|(?=[{}])|${NEXT_ITEM}`, "inner"),
     sign: scoped("[-+−=:]", "operator"),

@@ -29,6 +29,20 @@ test("a name is a field or a value by what stands before it", () => {
   ]);
 });
 
+test("an object is repeated by indices in its head", () => {
+  const block = ["radius property", "i variable", "color property", "r variable"];
+  const head = ["for keyword", "i variable.declaration", "< operator", "8 number", "j variable.declaration",
+    "< operator", "2 number", "* operator", "i variable", "- operator", "1 number"];
+  for (const [text, ...start] of [
+    ["sphere Ball for i < 8, j < 2 * (i - 1) { radius i color r }", "sphere keyword", "Ball class"],
+    ["box\nfor i<8,j<2*(i-1)\n{ radius i color r }", "box keyword"],
+    ["let a = b\nsphere for i < 8, j < 2 * (i - 1) { radius i color r }",
+      "let keyword", "a variable.declaration", "= operator", "b variable", "sphere keyword"],
+    ["box { color r\nsphere B for i < 8, j < 2 * (i - 1) { radius i color r }",
+      "box keyword", "color property", "r variable", "sphere keyword", "B class"],
+  ]) assert.deepEqual(typed(text), [...start, ...head, ...block]);
+});
+
 test("values go on over lines and comments", () => {
   assert.deepEqual(typed("let a = // of b\n  b *\n  2 /* and\n*/ let\nc = a\nsphere\n{ radius\na } camera Eye\n{}"), [
     "let keyword", "a variable.declaration", "= operator", "// of b comment", "b variable", "* operator",

@@ -1,0 +1,233 @@
+//! Blocks with indices, each of which stands for many objects.
+
+use super::lowering::{Lowering, mentions};
+use crate::{
+    diagnostic::{Fix, Label},
+    numbers,
+    scene::error::{error, twice, warning},
+    schema::{self, Type, Value, predefined},
+    source::Span,
+    syntax::{
+        NESTING_LIMIT,
+        tree::{Block, Index, Name, Repetition},
+    },
+};
+
+/// Maximum number of objects of a scene with repetitions.
+const MOST_OBJECTS: usize = 1 << 24;
+
+impl<'s> Lowering<'s> {
+    /// Makes an object for each combination of the indices' values, the last index fastest. A
+    /// mistake ends that, so that it is reported once.
+    pub(super) fn repeated(
+        &mut self,
+        row: &'static schema::Block,
+        block: &Block<'s>,
+        repetition: &Repetition<'s>,
+    ) {
+        let indices = repetition.indices.iter().take(NESTING_LIMIT);
+        let are_right = indices.fold(true, |so_far, index| {
+            self.unused_index(index.name, block);
+            self.is_index(index.name) && so_far
+        });
+        if repetition.indices.len() > NESTING_LIMIT {
+            self.too_many(repetition, &format!("more than {NESTING_LIMIT} indices"));
+        } else if are_right && let Some(combinations) = self.combinations(block, repetition) {
+            self.objects_of(row, block, repetition, combinations);
+        }
+        for index in &repetition.indices {
+            self.names.forget_index(index.name);
+        }
+    }
+
+    /// The combinations of the indices' values, in order: each of those of the indices before one
+    /// goes on with all of its values. None if a count is wrong.
+    fn combinations(
+        &mut self,
+        block: &Block<'s>,
+        repetition: &Repetition<'s>,
+    ) -> Option<Vec<Box<[u32]>>> {
+        let most = MOST_OBJECTS.saturating_sub(self.objects.len());
+        let mut combinations = vec![Box::default()];
+        for index in &repetition.indices {
+            let mut longer: Vec<Box<[u32]>> = Vec::new();
+            for values in combinations {
+                self.set_indices(repetition, &values);
+                let told = self.problems.len();
+                let count = self.count(index).filter(|_| self.is_wanted());
+                self.say_where(told, block, repetition, &values);
+                let count = count?;
+                if longer.len().saturating_add(count) > most {
+                    let found = format!("more than {MOST_OBJECTS} combinations");
+                    self.too_many(repetition, &found);
+                    return None;
+                }
+                longer.extend((0..count as u32).map(|last| [&*values, &[last]].concat().into()));
+            }
+            combinations = longer;
+        }
+        Some(combinations)
+    }
+
+    fn objects_of(
+        &mut self,
+        row: &'static schema::Block,
+        block: &Block<'s>,
+        repetition: &Repetition<'s>,
+        combinations: Vec<Box<[u32]>>,
+    ) {
+        let changes = |value: Span, takes| takes == Type::Color || self.depends(value, repetition);
+        let fields = block.fields.iter().filter_map(|field| {
+            let place = row
+                .fields
+                .iter()
+                .position(|it| it.name == field.name.text)?;
+            let field_row = row.fields.get(place)?;
+            changes(field.value.span, field_row.takes).then_some((place, field_row, &field.value))
+        });
+        let changing: Vec<_> = fields.collect();
+        let mut lowered = None;
+        let mut has_warned = false;
+        for values in combinations {
+            let told = self.problems.len();
+            self.set_indices(repetition, &values);
+            self.is_odd = Some(values.iter().fold(0, |sum, value| sum ^ value) % 2 == 1);
+            let lowered = match &mut lowered {
+                None => lowered.insert(self.lowered(row, block)),
+                Some(again) => {
+                    for &(place, row, value) in &changing {
+                        if let Some(Some(given)) = again.given.get_mut(place) {
+                            given.value = self.typed(row, value);
+                        }
+                    }
+                    again
+                }
+            };
+            let is_built = self.is_wanted() && self.object(lowered, &values);
+            if is_built && has_warned {
+                self.problems.truncate(told);
+            }
+            has_warned |= self.problems.len() > told;
+            self.say_where(told, block, repetition, &values);
+            if !is_built {
+                break;
+            }
+        }
+        self.is_odd = None;
+    }
+
+    fn set_indices(&mut self, repetition: &Repetition<'s>, values: &[u32]) {
+        for (index, &value) in repetition.indices.iter().zip(values) {
+            let value = Value::Number(f64::from(value));
+            self.names.set_index(index.name, Some(value));
+        }
+    }
+
+    /// Whether an index is mentioned in a value.
+    fn depends(&self, value: Span, repetition: &Repetition<'_>) -> bool {
+        let text = self.sources.text(value);
+        let mut indices = repetition.indices.iter();
+        indices.any(|index| mentions(text, index.name.text))
+    }
+
+    /// Whether an index can have its name; reports it otherwise.
+    fn is_index(&mut self, name: Name<'s>) -> bool {
+        let text = name.text;
+        let problem = if let Some(what) = predefined(text) {
+            let message = format!("`{text}` is {} already", what.noun());
+            error("predefined_name", message).at(name.span, "this name is taken")
+        } else if let Some(first) = self.names.place(text) {
+            let message = format!("`{text}` is defined twice");
+            twice("duplicate_let", message, [first, name.span])
+        } else {
+            self.names.set_index(name, None);
+            return true;
+        };
+        let help = format!("choose another name for the index, such as `{text}_index`");
+        self.problems.push(problem.help(help));
+        false
+    }
+
+    fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
+        let behind = Span::new(name.span.source, name.span.end, block.span.end);
+        if mentions(self.sources.text(behind), name.text) {
+            return;
+        }
+        let message = format!("the index `{}` is not used", name.text);
+        let help = format!(
+            "use it in a value, such as `center ({}, 1, 0)`: without it the objects lie in one place",
+            name.text
+        );
+        let problem = warning("unused_index", message);
+        self.problems
+            .push(problem.at(name.span, "no value depends on it").help(help));
+    }
+
+    /// How many values an index has at those of the indices before it.
+    fn count(&mut self, index: &Index<'s>) -> Option<usize> {
+        let (tree, name) = (&index.count, index.name.text);
+        let value = self.trying(tree.span, |it| it.evaluate(tree, Some(Type::Number)))?;
+        let found = match value {
+            Value::Number(number) if number >= 0.0 && number.fract() == 0.0 => {
+                return Some(number as usize);
+            }
+            Value::Number(number) => numbers::beside(number, &[number.round()]),
+            value => value.kind().noun().to_owned(),
+        };
+        let message = format!("`{name}` counts up to a whole number, and this is {found}");
+        let problem = error("bad_count", message).at(tree.span, "how many there are");
+        let help = format!("write a whole number that is not negative, such as `{name} < 8`");
+        self.problems.push(problem.help(help));
+        None
+    }
+
+    fn too_many(&mut self, repetition: &Repetition<'s>, found: &str) {
+        let problem = error("bad_count", format!("there are {found}"));
+        let problem = problem.at(repetition.span(), "too many");
+        self.problems
+            .push(problem.help("let the indices count less far, or take some of them away"));
+    }
+
+    /// Says at which values of the indices the problems are that were found since so many.
+    fn say_where(
+        &mut self,
+        told: usize,
+        block: &Block<'s>,
+        repetition: &Repetition<'s>,
+        values: &[u32],
+    ) {
+        if values.is_empty() || self.problems.len() == told {
+            return;
+        }
+        let at = repetition.indices.iter().zip(values);
+        let at = at.map(|(index, at)| format!("{} = {at}", index.name.text));
+        let message = format!("here {}", Vec::from_iter(at).join(", "));
+        let fields = block.fields.iter().map(|it| it.value.span);
+        let counts = repetition.indices.iter().map(|it| it.count.span);
+        let with_index = fields.chain(counts);
+        let with_index: Vec<Span> = with_index
+            .filter(|it| self.depends(*it, repetition))
+            .collect();
+        // What is wrong with the first one is often wrong with all.
+        let is_first = values.iter().all(|&value| value == 0);
+        for problem in self.problems.get_mut(told..).unwrap_or_default() {
+            let place = problem.labels.first().map(|label| label.span);
+            let depends =
+                |it: &Span| place.is_some_and(|at| it.source == at.source && it.to(at) == *it);
+            if !is_first || with_index.iter().any(depends) {
+                let (span, message) = (repetition.span(), message.clone());
+                problem.labels.push(Label { span, message });
+            }
+        }
+    }
+
+    /// Reports a repetition of what is no object.
+    pub(super) fn not_repeated(&mut self, row: &schema::Block, repetition: &Repetition<'s>) {
+        let (name, span) = (row.name, repetition.span());
+        let help = format!("take this away; only objects are repeated: a scene has one `{name}`");
+        let fix = Fix::remove("take this away", span, self.sources);
+        let problem = error("bad_repetition", format!("{} is not repeated", row.noun));
+        self.problems
+            .push(problem.at(span, "not here").help(help).fixes([fix]));
+    }
+}
