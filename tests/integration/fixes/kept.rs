@@ -31,8 +31,9 @@ struct Words {
 }
 
 impl Words {
-    /// A field's name with its value right behind it, as in `radius2`, is two words or one.
-    fn of(text: &str, is_two: bool) -> Self {
+    /// A field's name with its value right behind it, as in `radius2`, or in `centerball` where `all`
+    /// has such a word, is two words or one.
+    fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         let mut rest = text;
         let mut is_number_before = false;
@@ -59,7 +60,7 @@ impl Words {
                     rest = &rest[1..];
                     continue;
                 }
-                let field = glued(&rest[..length], text).filter(|_| is_two);
+                let field = glued(&rest[..length], all).filter(|_| is_two);
                 let length = field.unwrap_or(length);
                 let word = &rest[..length];
                 rest = &rest[length..];
@@ -81,7 +82,7 @@ impl Words {
 
 /// How long the field's name is that a word starts with where the field's value follows, as in
 /// `radius2`.
-fn glued(word: &str, text: &str) -> Option<usize> {
+fn glued(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
     }
@@ -89,7 +90,7 @@ fn glued(word: &str, text: &str) -> Option<usize> {
         rest.starts_with(|c: char| c.is_ascii_digit())
             || schema::css::color(rest).is_some()
             || ["deg", "rad", "rgb"].contains(&rest)
-            || text
+            || all
                 .split(|c: char| !is_letter(c) && !c.is_ascii_digit())
                 .any(|other| other == rest)
     };
@@ -155,7 +156,8 @@ fn is_known_for(new: &str, old: &str) -> bool {
 pub fn fixed(text: &str) -> (String, Vec<String>) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let fixed = scene::fix_all(&sources, Applicability::Safe);
-    let (before, after) = (Words::of(text, true), Words::of(&fixed.text, true));
+    let words = |of: &str, is_two| Words::of(of, text, is_two);
+    let (before, after) = (words(text, true), words(&fixed.text, true));
     let removed = fixed.done.iter().filter(|done| {
         done.title.starts_with("remove this `let") || done.title.starts_with("keep the first")
     });
@@ -182,7 +184,7 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     // Whether two words were joined, one was taken apart, or one replaced, may be read in several
     // ways, and of the last four pairs each may have been joined or not.
     const WAYS: i32 = 1 << 4;
-    let read = |text| [true, false].map(|is_two| Words::of(text, is_two).names);
+    let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
     let all = |apart| {
         let read = before.iter().map(move |before| (apart, before));
