@@ -1,5 +1,7 @@
 //! Texts and their trees: beside each `.scn` of `tests/syntax` stands its tree in `.txt`.
 
+use std::{sync::mpsc, thread, time::Duration};
+
 use pinhole::{
     source::{Source, SourceId, Span},
     syntax::{
@@ -9,7 +11,7 @@ use pinhole::{
     },
 };
 
-use crate::{scenes::scenes, snapshot::assert_file};
+use crate::{diagnostics::fixtures, scenes::scenes, snapshot::assert_file};
 
 /// A tree, an item or a field a line; chains stand in brackets. Then comments and problems.
 fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
@@ -94,6 +96,40 @@ pub fn tokens(text: &str) -> Vec<&str> {
         (token.kind != TokenKind::End).then(|| &text[token.start..token.end])
     });
     tokens.collect()
+}
+
+/// A sign of two letters with something between them that is not seen, as `*` and `/` with a
+/// no-break space, is two signs: what comes behind them is read, and that ends.
+#[test]
+fn torn_signs_are_read_to_the_end() {
+    let mut torn = 0;
+    let mut is_read = |text: &str, at: usize| {
+        let text = format!("{}\u{a0}{}", &text[..at], &text[at..]);
+        let (sender, receiver) = mpsc::channel();
+        let told = text.clone();
+        thread::spawn(move || {
+            let source = Source::from_text("torn.scn", text);
+            syntax::parse(&source, SourceId::File);
+            sender.send(()).unwrap();
+        });
+        let found = receiver.recv_timeout(Duration::from_secs(60));
+        assert!(found.is_ok(), "{told}");
+        torn += 1;
+    };
+    for (_, sources) in fixtures() {
+        let text = sources.file.text();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let is_sign = |at: usize| line.as_bytes()[at].is_ascii_punctuation();
+            // Those that begin with `//` say what is expected.
+            let places = (1..line.len()).filter(|_| !line.starts_with("//"));
+            for at in places.filter(|at| is_sign(at - 1) && is_sign(*at)) {
+                is_read(text, start + at);
+            }
+            start += line.len();
+        }
+    }
+    assert!(torn > 300, "{torn}");
 }
 
 #[test]

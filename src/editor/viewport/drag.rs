@@ -162,6 +162,13 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
+    // Within a step nobody would see that a number is shared with another field.
+    let keeps_others = |found: Part| {
+        let mut fields = block.fields.iter().map(|field| field.name.text);
+        let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
+        snapped.is_none()
+            || fields.all(|field| is_meant(field) || found.value(field) == current.value(field))
+    };
     for decimals in first..=first + DIGITS {
         let edits = edits(analysis, block, &changes, decimals);
         // The place of the press is one of those that it snaps to.
@@ -174,7 +181,9 @@ pub fn drag(
         };
         let read_alone = read(analysis.source(), [&edits, &without_others]);
         match read_alone.map(|scene| (part(&scene, place), scene)) {
-            Ok((Some(found), after)) if view.agree(ideal, found, tolerance) => {
+            Ok((Some(found), after))
+                if view.agree(ideal, found, tolerance) && keeps_others(found) =>
+            {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
                 let is_own = |edit: &Edit| {

@@ -108,7 +108,10 @@ impl Recovery<'_, '_> {
         };
         let outer = comment.get(..second).unwrap_or_default();
         let is_end = |ahead: &usize| self.is(*ahead, "*") && self.is(ahead + 1, "/");
-        let Some(ahead) = (0..ENOUGH).find(is_end).filter(|_| outer.contains("/*")) else {
+        let ahead = (0..ENOUGH)
+            .find(is_end)
+            .filter(|ahead| self.is_adjacent(ahead + 1));
+        let Some(ahead) = ahead.filter(|_| outer.contains("/*")) else {
             return false;
         };
         let close = self.peek(ahead).start;

@@ -116,7 +116,7 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    /// Reads one item, or what stands in the place of one; answers where it ends.
+    /// Reads one item, or what stands in the place of one; answers where it ends, behind `start`.
     pub fn item(&mut self, start: usize) -> usize {
         if !self.is_ours && self.foreign_file() {
             self.read_to = self.text.len();
@@ -127,7 +127,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.any_item();
         self.read_to = match self.problems.is_full() {
             true => self.text.len(),
-            false => self.last_end,
+            false => self.last_end.max(start + 1),
         };
         self.read_to
     }

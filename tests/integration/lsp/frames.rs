@@ -17,6 +17,7 @@ checkerboard {}
 
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
+const FAILED: i32 = -32803;
 
 /// The scene with another size.
 fn sized(width: &str, height: &str) -> String {
@@ -329,6 +330,26 @@ fn a_copy_leaves_the_comment() {
         );
         let written = edit["newText"].as_str().expect("a text");
         assert!(written.starts_with("\nsphere Sphere1 {"), "{found}");
+    }
+}
+
+/// What shares its number with another field is refused at each place alike, with a step and
+/// without.
+#[test]
+fn a_shared_number_is_not_dragged() {
+    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
+                sphere { center (r, 0, 0) radius r }";
+    for by in [3.0, 7.0, 12.0, 30.0, 100.0] {
+        for step in [json!(8), Value::Null] {
+            let mut talk = Talk::with(text);
+            let objects = talk.ask("pinhole/overlays", json!({}));
+            let at = &objects["objects"][0]["handles"][0]["at"];
+            let to = [at[0].as_f64().expect("a number") + by, 225.0];
+            let about = json!({ "object": 0, "handle": "center", "to": to, "step": step });
+            let drag = talk.request("pinhole/drag", about);
+            talk.carrier.step();
+            assert_eq!(code(&mut talk, drag), FAILED, "{by} {step}");
+        }
     }
 }
 
