@@ -179,7 +179,10 @@ pub const BLOCKS: &[Block] = &[
             "v0, v1 and v2 do not lie on one line",
         ],
         also_tried: "tri sail polygon",
-        elsewhere: &[],
+        elsewhere: &[(
+            "v3 v4 v5 p3 d",
+            "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it",
+        )],
     },
     Block {
         kind: Kind::Box,
@@ -209,6 +212,10 @@ pub const BLOCKS: &[Block] = &[
         ],
         together: &["min < max on every axis"],
         also_tried: "cube cuboid block crate brick",
+        elsewhere: &[(
+            "turn rotate rotation rotated roll spin angle tilt yaw pitch",
+            "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2",
+        )],
         ..BLOCK
     },
     Block {
@@ -219,10 +226,14 @@ pub const BLOCKS: &[Block] = &[
         help: "the infinite checkered floor in a horizontal plane",
         fields: fields! {
             y Number Value("0") "the height of its plane" also_tried("height level");
-            square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares") perhaps("size");
+            square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares");
             colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
         },
         also_tried: "plane floor ground checker chessboard board",
+        elsewhere: &[(
+            "size width depth length extent extents rows columns",
+            "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
+        )],
         ..BLOCK
     },
 ];

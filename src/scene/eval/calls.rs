@@ -247,7 +247,13 @@ impl<'s> Evaluator<'_, 's> {
             ),
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
-                format!("write `{name}(max(-1, min(1, {written})))` to keep it in range"),
+                match known {
+                    // Farther off than by rounding.
+                    [Value::Number(x)] if x.abs() > 1.0 + 1e-9 => {
+                        format!("no angle has that; see whether `{written}` is the right way round")
+                    }
+                    _ => format!("write `{name}(max(-1, min(1, {written})))` to keep it in range"),
+                },
             ),
             "normalize" => (
                 "the zero vector has no direction".to_owned(),

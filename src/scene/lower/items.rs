@@ -240,8 +240,20 @@ impl<'s> Lowering<'s> {
             let message = format!("`{}` and `{}` exclude each other", second.name, first.name);
             self.problems.push(
                 error("conflicting_fields", message)
-                    .at(later.name, "this says it again, in another way")
-                    .at(earlier.name, "this says it already")
+                    .at(
+                        later.name,
+                        match second.name {
+                            "spin" => "the vertices fix the turn already",
+                            _ => "this says it again, in another way",
+                        },
+                    )
+                    .at(
+                        earlier.name,
+                        match first.name {
+                            "spin" => "the vertices fix the turn",
+                            _ => "this says it already",
+                        },
+                    )
                     .help(format!("remove one of them: {}", choice.why))
                     .fixes(self.one_of(block, choice, [first.name, second.name])),
             );

@@ -5,7 +5,7 @@ use super::{Recovery, example, is_plain_number};
 use crate::{
     color::are_shares,
     diagnostic::{Edit, Fix},
-    schema::Type,
+    schema::{self, Type},
     source::Span,
     syntax::{
         messages as say,
@@ -54,6 +54,16 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, format!("rgb{right}"));
                 self.report(&said, span, &[example(takes)], fix);
             }
+            // `6 371 000`
+            (None | Some(Type::Number), _) if numbers && commas == 0 && are_thousands(whole) => {
+                let label = "no spaces stand in a number";
+                let fix = replace(span, whole.replace(' ', ""));
+                self.report(&say::BAD_NUMBER, span, &[whole, label], fix);
+            }
+            // `2 ball`, where a vector should stand: times whatever it is.
+            (Some(Type::Vector), 2) if commas == 0 && is_named_factor(&first, &second) => {
+                self.missing_between(&first, &second);
+            }
             (Some(Type::Vector | Type::FaceColors) | None, 3) | (Some(Type::Colors), 2)
                 if are_parts =>
             {
@@ -94,7 +104,25 @@ impl<'s> Recovery<'_, 's> {
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        let is_product = are_numbers && matches!(self.within.takes, None | Some(Type::Number));
+        // `2 ball` and `(n * 0.28) ball`, in the place of a vector.
+        let is_scaled = self.within.takes == Some(Type::Vector) && is_named_factor(left, right);
+        let is_product =
+            is_scaled || are_numbers && matches!(self.within.takes, None | Some(Type::Number));
+        if let ValueKind::Name(name) = left.kind
+            && schema::function(name).is_some()
+        {
+            // `cos a`
+            let title = format!("write `{l}({r})`");
+            let open = Edit::new(sign, "(");
+            let close = Edit::insert(self.id, right.span.end, ")");
+            let fix = Fix::new(title, [open, close]);
+            return self.report(
+                &say::MISSING_PARENTHESES.safe_if(false),
+                left.span.to(right.span),
+                &[""],
+                fix,
+            );
+        }
         let title = format!("write `{l} * {r}`");
         let fix = is_product.then(|| Fix::new(title, [Edit::new(sign, " * ")]));
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
@@ -134,6 +162,23 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::DECIMAL_COMMA, comma, &[message], replace(span, right));
         true
     }
+}
+
+/// Whether a number, or an expression in parentheses, stands before a name.
+fn is_named_factor(left: &Value<'_>, right: &Value<'_>) -> bool {
+    let is_factor = is_plain_number(left) || matches!(left.kind, ValueKind::Parentheses(_));
+    is_factor && matches!(right.kind, ValueKind::Name(_))
+}
+
+/// Whether digits stand in groups of three.
+fn are_thousands(text: &str) -> bool {
+    let mut groups = text.split(' ');
+    let is_head = |head: &str| (1..=3).contains(&head.len());
+    groups.next().is_some_and(is_head)
+        && groups.all(|group| group.len() == 3)
+        && text
+            .bytes()
+            .all(|byte| byte.is_ascii_digit() || byte == b' ')
 }
 
 pub(super) fn are_names(values: &[Value<'_>]) -> bool {

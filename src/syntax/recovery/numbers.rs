@@ -114,8 +114,9 @@ impl<'s> Recovery<'_, 's> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
         let takes = self.within.takes;
-        let (label, right, place) = if self.words.is_factor(unit) {
-            let takes_number = matches!(takes, None | Some(Type::Number));
+        let is_scaled = takes == Some(Type::Vector) && self.words.is_let(unit);
+        let (label, right, place) = if is_scaled || self.words.is_factor(unit) {
+            let takes_number = is_scaled || matches!(takes, None | Some(Type::Number));
             let product = takes_number.then(|| format!("{digits} * {unit}"));
             ("an operator is missing before this", product, behind)
         } else if is_color_code(hex) && takes == Some(Type::Color) {

@@ -14,9 +14,9 @@ use crate::{
 };
 
 /// The operators of a product, and what people write for them.
-const PRODUCT: &[&str] = &["*", "/", "×", "·", "÷", "^", "**", "%"];
+const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "÷", "^", "**", "%"];
 /// Those of a sum.
-const SUM: &[&str] = &["+", "-", "−"];
+const SUM: &[&str] = &["+", "-", "−", "–"];
 
 impl<'s> Recovery<'_, 's> {
     /// The value of a field, of a definition, or of a `--set`, with whatever stands in place of it.
@@ -167,7 +167,7 @@ impl<'s> Recovery<'_, 's> {
         right: Value<'s>,
     ) -> Value<'s> {
         let Some(operator) = Operator::of(written) else {
-            let meant = ["−-", "×*", "·*", "÷/"].into_iter();
+            let meant = ["−-", "–-", "×*", "·*", "∗*", "÷/"].into_iter();
             let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
             let fix = meant.map(|meant| replace(sign, meant));
             let fix = fix.or_else(|| self.power(written, &left, &right));
@@ -288,7 +288,14 @@ impl<'s> Recovery<'_, 's> {
             }
             _ => {
                 let start = self.behind();
-                self.unexpected("a value", example(self.within.takes));
+                let help = match word {
+                    "π" => "write `pi`",
+                    "√" => "write `sqrt(2)` for the square root of 2",
+                    "½" => "write `0.5`",
+                    "²" | "³" => "write a product, such as `r * r`",
+                    _ => example(self.within.takes),
+                };
+                self.unexpected("a value", help);
                 if self.lists == 0 {
                     self.resync();
                 } else if !self.ends_value() {
@@ -304,7 +311,7 @@ impl<'s> Recovery<'_, 's> {
         match self.kind(ahead) {
             TokenKind::Number | TokenKind::Color | TokenKind::Quoted | TokenKind::Word => true,
             TokenKind::Name => !self.is(ahead, "let"),
-            TokenKind::Sign => matches!(self.word(ahead), "(" | "[" | "<" | "-" | "+" | "−"),
+            TokenKind::Sign => matches!(self.word(ahead), "(" | "[" | "<" | "-" | "+" | "−" | "–"),
             _ => false,
         }
     }
@@ -315,10 +322,18 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
             self.bump();
             let span = name.span.to(self.bump());
+            let axis = match self.written(span).rsplit('.').next() {
+                Some("x" | "X") => Some("(1, 0, 0)"),
+                Some("y" | "Y") => Some("(0, 1, 0)"),
+                Some("z" | "Z") => Some("(0, 0, 1)"),
+                _ => None,
+            };
+            let fix = axis.filter(|_| self.words.is_let(name.text));
+            let fix = fix.map(|axis| replace(span, format!("dot({}, {axis})", name.text)));
             let help =
                 "give the value a name with `let NAME = VALUE`, and use the name in both places";
             let words = ["reading of fields", help];
-            self.report(&say::NOT_IN_LANGUAGE, span, &words, None);
+            self.report(&say::NOT_IN_LANGUAGE, span, &words, fix);
             return bad(span);
         }
         if self.is(0, "(") {

@@ -6,6 +6,7 @@ mod reference;
 mod repetition;
 mod seen;
 mod text;
+mod ways_out;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
