@@ -303,6 +303,8 @@ pub struct DiffArgs {
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
+    pub effort: EffortArgs,
+    #[command(flatten)]
     pub large: LargeArgs,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -325,6 +327,8 @@ pub struct GradeArgs {
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
+    pub effort: EffortArgs,
+    #[command(flatten)]
     pub large: LargeArgs,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -341,6 +345,21 @@ pub struct ExplainArgs {
     /// [default: list all codes]
     #[arg(value_name = "WORD")]
     pub word: Option<String>,
+}
+
+/// How much work a verdict may be.
+#[derive(Debug, clap::Args)]
+pub struct EffortArgs {
+    /// Spend up to so many times as much work on a picture before the search for what is wrong ends
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = effort)]
+    pub effort: f64,
+}
+
+fn effort(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(effort) if (0.1..=1000.0).contains(&effort) => Ok(effort),
+        _ => Err("it is a number from 0.1 to 1000".to_owned()),
+    }
 }
 
 /// How large pictures may be.

@@ -98,7 +98,8 @@ fn graded(
             },
             cancel,
         };
-        Reference::new(scene, whole, Rounding::Byte, &control)
+        let reference = Reference::new(scene, whole, Rounding::Byte, &control);
+        reference.map(|reference| reference.with_effort(args.effort.effort))
     });
     let reference = match reference {
         Ok(reference) => reference,
@@ -141,7 +142,8 @@ fn grade(
             progress: &|_| {},
             cancel,
         };
-        own = Reference::new(scene, part, picture.rounding, &control)?;
+        let made = Reference::new(scene, part, picture.rounding, &control)?;
+        own = made.with_effort(args.effort.effort);
         &own
     };
     let steps = picture.rounding.steps();
@@ -149,7 +151,7 @@ fn grade(
         Ok(comparison) => comparison,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let verdict = reference.judge(&picture.film, jpeg, &comparison, cancel)?;
+    let verdict = reference.judge(&picture, jpeg, &comparison, cancel)?;
     let thumbnails = match args.output {
         Some(_) => {
             let (film, exact) = (&picture.film, &reference.exact.film);

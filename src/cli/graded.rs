@@ -118,9 +118,11 @@ pub fn table(graded: &[Graded]) -> String {
 pub fn csv(graded: &[Graded]) -> String {
     let row = |one: &Graded| {
         let [name, _, error, samples] = one.cells();
+        let mut known = [const { String::new() }; 4];
         let (verdict, line, set) = match &one.result {
             Err(error) => ("error", error.clone(), String::new()),
             Ok(judged) => {
+                known = of_mistakes(&judged.verdict);
                 let sets = judged
                     .verdict
                     .mistakes
@@ -134,17 +136,37 @@ pub fn csv(graded: &[Graded]) -> String {
                 )
             }
         };
+        let [rest, limited, explains, help] = known;
         format!(
-            "{},{verdict},{error},{samples},{},{}\n",
+            "{},{verdict},{error},{samples},{},{},{rest},{limited},{},{}\n",
             text_cell(&name),
             text_cell(&line),
-            text_cell(&set)
+            text_cell(&set),
+            text_cell(&explains),
+            text_cell(&help)
         )
     };
     let rows = graded.iter().map(row);
-    iter::once("file,verdict,rmse,samples_per_pixel,line,set\n".to_owned())
-        .chain(rows)
-        .collect()
+    iter::once(
+        "file,verdict,rmse,samples_per_pixel,line,set,rest,limited,explains,help\n".to_owned(),
+    )
+    .chain(rows)
+    .collect()
+}
+
+/// What mistakes or guesses leave, whether the search came to its bound, what each explains, and the way out of each.
+fn of_mistakes(verdict: &Verdict) -> [String; 4] {
+    let all = || verdict.mistakes.iter().chain(&verdict.guesses);
+    let explains: Vec<_> = all().map(|one| format!("{:.3}", one.explains)).collect();
+    let help: Vec<_> = all().map(|one| &one.help[..]).collect();
+    [
+        verdict
+            .rest
+            .map_or_else(String::new, |rest| format!("{rest:.3}")),
+        verdict.is_cut.to_string(),
+        explains.join("; "),
+        help.join("; "),
+    ]
 }
 
 /// A text as a cell of a CSV file: what a program that opens it would take for a formula begins

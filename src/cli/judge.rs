@@ -39,9 +39,27 @@ pub fn part(picture: &Picture, scene: &Scene) -> Result<Area, String> {
         },
         _ if [whole.width, whole.height] == [width, height] => Ok(whole),
         _ => Err(format!(
-            "has {width} × {height} pixels, and the scene's picture {} × {}",
-            whole.width, whole.height
+            "has {width} × {height} pixels, and the scene's picture {} × {}{}",
+            whole.width,
+            whole.height,
+            way_out([width, height], [whole.width, whole.height])
         )),
+    }
+}
+
+/// What makes a picture of another size comparable, in words that follow both sizes.
+fn way_out([width, height]: [u32; 2], [own_width, own_height]: [u32; 2]) -> String {
+    let product = |a: u32, b: u32| u64::from(a) * u64::from(b);
+    if [width, height] == [own_height, own_width] {
+        return ": its width and its height are exchanged".to_owned();
+    }
+    // Of the same proportions, to within a pixel.
+    let off = product(width, own_height).abs_diff(product(height, own_width));
+    match off <= u64::from(own_width.max(own_height)) {
+        true => format!(
+            ": --set image.width={width} --set image.height={height} makes the scene's as large"
+        ),
+        false => String::new(),
     }
 }
 

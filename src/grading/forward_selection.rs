@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 
 use super::{
     candidate::{Candidate, Mistake, Shows},
-    judge::{Judge, Judged, price},
+    joint,
+    judge::{Judge, Judged},
     levenberg_marquardt::absolute,
     light::Curve,
     mistakes::{OBJECT_ROWS, ROWS},
@@ -17,11 +18,9 @@ use super::{
     objects::labels,
     parameters::Owner,
     patch::patch,
+    plain_numbers::plain,
 };
-use crate::{
-    cancel::{self, Cancelled},
-    numbers::rounded,
-};
+use crate::cancel::{self, Cancelled};
 
 /// So many mistakes are named at most.
 const MOST_MISTAKES: usize = 4;
@@ -33,7 +32,7 @@ const FINALISTS: usize = 3;
 const ROUNDS: usize = 4;
 
 /// By how much of a cell numbers are varied on the middle grid.
-const CELL_STEP: f64 = 0.25;
+pub const CELL_STEP: f64 = 0.25;
 
 /// So many objects are looked at, those in and beside which most is wrong.
 const SUSPECTS: usize = 12;
@@ -58,7 +57,7 @@ pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
         best = next;
         is_open = false;
     }
-    let short = shortened(judge, &best);
+    let short = plain(judge, &best);
     let mut best = with_edges(judge, &short, None);
     // A shift by half a pixel may be taken for a camera that looks a little elsewhere.
     if let Some(found) = &best
@@ -109,6 +108,9 @@ fn step(judge: &Judge, from: &Judged, is_open: bool) -> Option<Judged> {
     judge.compare_with(from.candidate());
     let suspects = suspects(judge, from);
     let mut tried = rows(judge, from, &suspects);
+    if from.candidate().mistakes.is_empty() && !is_open {
+        tried.extend(joint::rows_together(judge, from.candidate()));
+    }
     // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
     let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
     if let Some((_, row)) = row
@@ -221,30 +223,4 @@ fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     suspects.sort_by(|&one, &other| wrong[other].total_cmp(&wrong[one]));
     suspects.truncate(SUSPECTS);
     suspects
-}
-
-/// A candidate whose numbers have as few digits as do.
-fn shortened(judge: &Judge, found: &Judged) -> Candidate {
-    let (candidate, middle) = (found.candidate(), &judge.middle);
-    let free = candidate.numbers().len();
-    let leveled = candidate.with_numbers(judge.scene, &candidate.leveled_numbers());
-    let Some(leveled) = leveled.filter(|_| free > 0) else {
-        return candidate.clone();
-    };
-    let Some((_, fitted)) = judge.fit(&leveled, free, middle, CELL_STEP, [0, 1]) else {
-        return leveled;
-    };
-    // A number that is short was not fitted: it may cost what that costs.
-    let most = found.cost + price(middle, free);
-    // What a vector's length may be off is no matter, so that no error is more than a part of a step.
-    let errors = fitted.errors.iter().zip(leveled.steps(1.0));
-    let errors = errors.map(|(error, step)| (8.0 * error).min(step.abs()));
-    let numbers = leveled.numbers().into_iter().zip(errors);
-    let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
-    let short = leveled.with_numbers(judge.scene, &numbers);
-    let is_as_good = |short: &Candidate| {
-        let judged = judge.judged(short, middle);
-        judged.is_some_and(|judged| judged.cost <= most)
-    };
-    short.filter(is_as_good).unwrap_or(leveled)
 }

@@ -84,7 +84,7 @@ impl<'a> Judge<'a> {
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             edges: level(central(part), u32::MAX, None),
-            work: Work::new(part.pixels(), reference.work, cancel),
+            work: Work::new(part.pixels(), reference.work, reference.effort, cancel),
             cancel,
         };
         for level in [&judge.coarse, &judge.middle, &judge.fine, &judge.edges] {
@@ -193,15 +193,45 @@ impl<'a> Judge<'a> {
         cells: f64,
         rounds: [usize; 2],
     ) -> Option<(Candidate, Fitted)> {
-        let start = candidate.numbers();
-        let (fixed, start) = start.split_at(start.len() - free);
+        let count = candidate.numbers().len();
+        let free: Vec<usize> = (count - free..count).collect();
+        self.fit_numbers(candidate, &free, level, cells, rounds)
+    }
+
+    /// The numbers of a candidate at these places, fitted on the middle grid.
+    pub fn fit_some(
+        &self,
+        candidate: &Candidate,
+        free: &[usize],
+        cells: f64,
+        rounds: usize,
+    ) -> Option<Candidate> {
+        let fitted = self.fit_numbers(candidate, free, &self.middle, cells, [0, rounds]);
+        fitted.map(|(candidate, _)| candidate)
+    }
+
+    fn fit_numbers(
+        &self,
+        candidate: &Candidate,
+        free: &[usize],
+        level: &Level,
+        cells: f64,
+        rounds: [usize; 2],
+    ) -> Option<(Candidate, Fitted)> {
+        let all = candidate.numbers();
         let steps = candidate.steps(cells * f64::from(level.grid.factor));
-        let with = |free: &[f64]| candidate.with_numbers(self.scene, &[fixed, free].concat());
+        let of = |all: &[f64]| free.iter().map(|&at| all[at]).collect::<Vec<f64>>();
+        let with = |numbers: &[f64]| {
+            let mut changed = all.clone();
+            free.iter()
+                .zip(numbers)
+                .for_each(|(&at, x)| changed[at] = *x);
+            candidate.with_numbers(self.scene, &changed)
+        };
         let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level);
         let start_on_level = level.render(candidate, &self.work)?;
         let deviations = || level.predict(&start_on_level).deviations();
-        let steps = &steps[fixed.len()..];
-        let fitted = fit(start.to_vec(), steps, rounds, &deviations, &trial)?;
+        let fitted = fit(of(&all), &of(&steps), rounds, &deviations, &trial)?;
         Some((with(&fitted.numbers)?, fitted))
     }
 }

@@ -18,6 +18,7 @@ mod empty_pixels;
 mod faulty_tracer;
 mod forward_selection;
 mod grid;
+mod joint;
 mod jpeg;
 mod judge;
 mod layout;
@@ -29,8 +30,11 @@ mod mistakes;
 mod moments;
 mod numeric_mistakes;
 mod objects;
+mod offsets;
 mod parameters;
 mod patch;
+mod plain_facts;
+mod plain_numbers;
 mod prediction;
 mod rendering;
 mod strays;
@@ -48,7 +52,9 @@ use crate::{
     cancel,
     color::srgb_to_linear,
     exact::Integrator,
-    film::{self, Comparison, Film, Jpeg, Rounding, SizesDiffer, Tolerance, reserve_memory},
+    film::{
+        self, Comparison, Film, Jpeg, Picture, Rounding, SizesDiffer, Tolerance, reserve_memory,
+    },
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -58,8 +64,9 @@ use self::{
     candidate::{Candidate, Mistake},
     empty_pixels::without_empty,
     judge::{Judge, Judged},
-    light::Curve,
+    light::{Curve, is_near},
     moments::Moments,
+    plain_facts::EmptyRows,
     rendering::Rendering,
     strays::WRONG,
 };
@@ -80,6 +87,8 @@ pub struct Reference<'a> {
     rounding: Rounding,
     /// The work of making it.
     work: f64,
+    /// What the work is multiplied by that may be spent on a picture.
+    effort: f64,
 }
 
 /// What a reference takes for each pixel: the exact mean, and the mean, its doubt and the variance,
@@ -125,6 +134,7 @@ impl<'a> Reference<'a> {
                 Arc::new(moments),
             )),
             work,
+            effort: 1.0,
         })
     }
 
@@ -150,6 +160,12 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// The same, which multiplies by this what work may be spent on a picture.
+    #[must_use]
+    pub fn with_effort(self, effort: f64) -> Self {
+        Self { effort, ..self }
+    }
+
     /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
     ///
     /// # Errors
@@ -157,7 +173,7 @@ impl<'a> Reference<'a> {
     /// It is not wanted any more.
     pub fn judge(
         &self,
-        film: &Film,
+        picture: &Picture,
         jpeg: Option<Jpeg>,
         comparison: &Comparison,
         cancel: &AtomicBool,
@@ -165,6 +181,62 @@ impl<'a> Reference<'a> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
+        let Some(opacity) = &picture.opacity else {
+            return self.judge_opaque(&picture.film, jpeg, cancel);
+        };
+        // What is transparent is seen on black: that may be right, and else its colours are judged as they are without alpha.
+        let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
+        if matches!(verdict.kind, Kind::Right | Kind::Noise) {
+            return Ok(verdict);
+        }
+        let told = plain_facts::transparent(opacity.range);
+        if opacity.range[1] == 0.0 {
+            return Ok(Verdict::of(Kind::Right, self.scene).beside(told));
+        }
+        let steps = picture.rounding.steps();
+        let is_equal = self.compare(&opacity.film, steps);
+        let verdict = match is_equal.is_ok_and(|comparison| comparison.is_equal()) {
+            true => Verdict::of(Kind::Right, self.scene),
+            false => self.judge_opaque(&opacity.film, jpeg, cancel)?,
+        };
+        Ok(verdict.beside(told))
+    }
+
+    fn judge_opaque(
+        &self,
+        film: &Film,
+        jpeg: Option<Jpeg>,
+        cancel: &AtomicBool,
+    ) -> Result<Verdict, RenderError> {
+        let exact = &self.exact.film;
+        if let Some(fact) = plain_facts::nothing_in_it(film, exact, self.scene) {
+            let mut verdict = Verdict::of(Kind::Wrong, self.scene).beside(fact);
+            verdict
+                .objects
+                .iter_mut()
+                .for_each(|one| one.is_right = false);
+            return Ok(verdict);
+        }
+        if let Some(empty) = EmptyRows::of(film, exact) {
+            let rest = empty.left_out(film);
+            let verdict = self.judge_full(&rest, jpeg, cancel)?;
+            // Rows of the colour of the background may be those of a camera that looks elsewhere.
+            let is_background = is_near(empty.light, self.scene.image.background.to_linear());
+            let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
+            if is_right || !is_background && verdict.kind == Kind::Wrong {
+                return Ok(verdict.beside(empty.told()));
+            }
+        }
+        self.judge_full(film, jpeg, cancel)
+    }
+
+    /// Judges a picture that has something in it.
+    fn judge_full(
+        &self,
+        film: &Film,
+        jpeg: Option<Jpeg>,
+        cancel: &AtomicBool,
+    ) -> Result<Verdict, RenderError> {
         let empties = [self.scene.image.background.to_linear(), [0.0; 3]];
         let mut without = empties
             .iter()
@@ -172,18 +244,29 @@ impl<'a> Reference<'a> {
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let judge = Judge::new(self, &film, jpeg, cancel);
-        let found = forward_selection::run(&judge)?;
+        // What pixels show exactly is certain.
+        let certain = offsets::regular(&judge);
+        let is_certain = certain.is_some();
+        let found = match certain {
+            Some(found) => Some(found),
+            None => forward_selection::run(&judge)?,
+        };
         // What was found is told, however much work that is.
-        let verdict = judge.work.without_limit(|| told(&judge, &film, found));
+        let tell = || told(&judge, &film, found, is_certain);
+        let verdict = judge.work.without_limit(tell);
         Ok(cancel::unless_set(cancel, verdict)?)
     }
 }
 
-fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
+fn told(judge: &Judge, film: &Film, found: Option<Judged>, is_certain: bool) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
+    // What is told takes work, too.
+    let is_cut = judge.work.is_cut();
     let mut verdict = match found {
-        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found),
+        Some(found) if !found.candidate().mistakes.is_empty() => {
+            wrong(judge, &found, is_cut, is_certain)
+        }
         _ if judge.explains_all(&right) && !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
             Verdict {
@@ -196,12 +279,12 @@ fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
             Verdict {
                 objects,
                 is_background_right,
+                is_cut,
                 ..Verdict::of(Kind::Unknown, scene)
             }
         }
     };
     verdict.is_coded = jpeg.is_some();
-    verdict.is_cut = judge.work.is_cut();
     verdict
 }
 
@@ -223,11 +306,15 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// The verdict on a picture with mistakes.
-fn wrong(judge: &Judge, found: &Judged) -> Verdict {
+/// Mistakes are told that leave no more than this share of the squared difference beyond noise.
+const EXPLAINED: f64 = 0.01;
+
+/// The verdict on a picture with mistakes: they are named if together they explain it, and else they are guesses.
+fn wrong(judge: &Judge, found: &Judged, is_cut: bool, is_certain: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
-    let level = match last.layout.is_shifted() {
+    let is_shifted = last.layout.is_shifted() || last.behaviour.offset != [0.0; 2];
+    let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
         true => &judge.edges,
         false => &judge.middle,
     };
@@ -265,14 +352,27 @@ fn wrong(judge: &Judge, found: &Judged) -> Verdict {
         (left, before) = (now, after);
     }
     let rest = (!judge.explains_all(last)).then(|| (left / all).min(1.0));
-    let (objects, is_background_right) = objects::judged(judge, last);
+    let rest = rest.filter(|rest| *rest > 0.0 && !is_certain);
+    mistakes.retain(|mistake| mistake.explains > 0.0 || is_certain);
+    let is_told = !is_cut && !mistakes.is_empty() && rest.is_none_or(|rest| rest <= EXPLAINED);
+    let (kind, mistakes, guesses) = match is_told {
+        true => (Kind::Wrong, mistakes, Vec::new()),
+        false => (Kind::Unknown, Vec::new(), mistakes),
+    };
+    // Of a guess nothing is known of single objects.
+    let (objects, is_background_right) = match is_told {
+        true => objects::judged(judge, last),
+        false => objects::judged(judge, &Candidate::right(scene)),
+    };
     Verdict {
         samples: found.score.samples,
-        rest: rest.filter(|rest| *rest > 0.0),
+        rest,
         mistakes,
+        guesses,
         objects,
         is_background_right,
-        ..Verdict::of(Kind::Wrong, scene)
+        is_cut,
+        ..Verdict::of(kind, scene)
     }
 }
 

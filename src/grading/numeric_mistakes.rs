@@ -10,7 +10,10 @@ use super::{
     parameters::{self, Owner, Parameter},
     prediction::Prediction,
 };
-use crate::color::{Color, linear_to_srgb};
+use crate::{
+    color::{Color, linear_to_srgb},
+    scene::View,
+};
 
 /// From so many starts numbers are fitted on the tiny grid.
 const STARTS: usize = 3;
@@ -39,7 +42,10 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
             false => {
                 let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
                 let steps = parameter.steps(&candidate.scene, pixels);
-                starts(&parameter, &numbers, &steps)
+                match parameter.fields[..] {
+                    ["near" | "far"] => planes(judge, numbers),
+                    _ => starts(&parameter, &numbers, &steps),
+                }
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
@@ -107,6 +113,19 @@ fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
     numbers.chunks_exact(3).flat_map(color).collect()
+}
+
+/// Where to look for a plane that clips: at depths around that of the nearest object and what is looked at, each a fifth more than the one before.
+fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
+    const FROM: i32 = -12;
+    const TO: i32 = 24;
+    let camera = &judge.scene.camera;
+    let middle = match camera.view {
+        View::Lookat(point) => point.distance(camera.eye),
+        View::Direction(_) => camera.eye.length().max(1.0),
+    };
+    let depths = (FROM..TO).map(|i| vec![middle * 1.2f64.powi(i)]);
+    std::iter::once(numbers).chain(depths).collect()
 }
 
 /// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.

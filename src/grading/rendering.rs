@@ -98,6 +98,14 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
+            // Objects are told by their place among those that are drawn.
+            let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
+            let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
+            let behaviour = Behaviour {
+                hit: hit.map(|(at, hit)| (drawn(at), hit)),
+                offset: behaviour.offset.map(|by| by / f64::from(grid.factor)),
+                ..behaviour
+            };
             let tracer = FaultyTracer::new(scene(), behaviour, self.averaged);
             Some(tracer.moments(area, samples))
         };
@@ -142,7 +150,7 @@ impl Candidate {
         }
         let (one, two) = (&self.scene, &other.scene);
         // Objects are seen only where they are.
-        let is_in_place = !self.behaviour.sees_behind() && !self.behaviour.is_squeezed;
+        let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.averaged != other.averaged {
             return part;

@@ -39,11 +39,11 @@ pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
 }
 
 impl<'a> Work<'a> {
-    /// What may be spent on a picture of so many pixels, of which so much is spent.
-    pub fn new(pixels: u64, spent: f64, cancel: &'a AtomicBool) -> Self {
+    /// What may be spent on a picture of so many pixels, so many times as much as usual, of which so much is spent.
+    pub fn new(pixels: u64, spent: f64, effort: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             spent: Cell::new(spent),
-            most: Cell::new(PICTURE + PIXEL * pixels as f64),
+            most: Cell::new(effort * (PICTURE + PIXEL * pixels as f64)),
             is_cut: Cell::new(false),
             cancel,
         }

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use pinhole::{
     area::Area,
-    film::{self, Film, Jpeg, Rounding},
+    film::{self, Coding, Film, Jpeg, Picture, Rounding},
     grading::{self, Reference},
     render::Control,
     scene,
@@ -85,7 +85,7 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     let picture = film::read_picture(file).unwrap();
     let reference = Reference::new(&scene, part, picture.rounding, &control).unwrap();
     let comparison = reference.compare(&picture.film, 0.5).unwrap();
-    let verdict = reference.judge(&picture.film, Jpeg::of(file), &comparison, &cancel);
+    let verdict = reference.judge(&picture, Jpeg::of(file), &comparison, &cancel);
     Value::Object(verdict.unwrap().to_json())
 }
 
@@ -123,7 +123,16 @@ fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let right = scene(&[]);
     let reference = reference(&right, part);
     let comparison = reference.compare(&film, 0.5).unwrap();
-    let verdict = reference.judge(&film, None, &comparison, &cancel).unwrap();
+    let picture = Picture {
+        film,
+        rounding: Rounding::Byte,
+        coding: Coding::Exact,
+        crop: None,
+        opacity: None,
+    };
+    let verdict = reference
+        .judge(&picture, None, &comparison, &cancel)
+        .unwrap();
     let mut ids: Vec<_> = verdict.mistakes.iter().map(|one| one.id).collect();
     ids.sort_unstable();
     assert_eq!(ids, ["mirrored", "radius"], "{}", verdict.line());
