@@ -28,6 +28,9 @@ const MOST_MISTAKES: usize = 4;
 /// So many are fitted and judged at a time, of those that leave least on the coarse grid.
 const FINALISTS: usize = 3;
 
+/// So many programs that behave otherwise are looked at on the coarse grid.
+const BEHAVING: usize = 6;
+
 /// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier ones from this.
 const ROUNDS: usize = 4;
 
@@ -95,6 +98,8 @@ fn with_edges(judge: &Judge, candidate: &Candidate, samples: Option<f64>) -> Opt
     let best = rows
         .take_while(|_| judge.work.may_go_on())
         .filter_map(|row| candidate.with(Mistake::Row(row, None)))
+        // Samples of the faulty tracer are too few to tell edges.
+        .filter(|other| other.behaviour == candidate.behaviour)
         .filter_map(|candidate| judge.judged(&candidate, &judge.edges))
         .map(|found| (judge.gain(&judge.edges, &null, &found), found))
         .filter(|(gain, _)| *gain > 0.0)
@@ -198,7 +203,21 @@ fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate
     });
     let candidates = rows.chain(of_objects);
     let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
-    candidates
+    // What the faulty tracer makes takes most of the work: of that the tiny grid chooses.
+    let behaviour = from.candidate().behaviour;
+    let (mut all, behaving): (Vec<_>, Vec<_>) =
+        candidates.partition(|candidate| candidate.behaviour == behaviour);
+    if let Some(tiny) = judge.tiny(from.candidate()) {
+        let left = |candidate: Candidate| {
+            let differences = judge.differences(&candidate, &tiny)?;
+            Some((absolute(&differences), candidate))
+        };
+        let mut ranked: Vec<_> = behaving.into_iter().filter_map(left).collect();
+        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+        ranked.truncate(BEHAVING);
+        all.extend(ranked.into_iter().map(|(_, candidate)| candidate));
+    }
+    all.into_iter()
         .filter_map(|candidate| {
             let differences = judge.differences(&candidate, &judge.coarse)?;
             Some((absolute(&differences), candidate))

@@ -29,6 +29,8 @@ pub struct Rendering {
     pub right: Arc<Moments>,
     /// What it makes, if it behaves otherwise.
     behaved: Option<Arc<Moments>>,
+    /// What as many samples show of a right program, if that was needed.
+    sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
@@ -39,6 +41,7 @@ impl Rendering {
             part,
             right: moments,
             behaved: None,
+            sampled: None,
         }
     }
 
@@ -116,18 +119,25 @@ impl Candidate {
         let right = nearest.map(|(one, area)| (&one.right, area));
         let right = completed(right, part, traced)?;
         let mut behaved = None;
+        let is_same = |one: &&Arc<Rendering>| one.part == part && one.candidate.traces_as(self);
+        let mut same = known.iter().filter(is_same);
+        let mut of_right = same.find_map(|one| one.sampled.clone());
         if samples.is_none() && !self.behaviour.is_right() {
             let nearest = nearest.filter(|(one, _)| one.candidate.behaviour == self.behaviour);
             let nearest = nearest.and_then(|(one, area)| Some((one.behaved.as_ref()?, area)));
             behaved = Some(completed(nearest, part, |area| {
-                let own = sampled(Behaviour::default(), area, SAMPLES)?;
-                let other = sampled(self.behaviour, area, SAMPLES)?;
                 let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
-                Some(replaced_where_they_differ(
-                    right.select(&indices),
-                    &own,
-                    &other,
-                ))
+                let own = match &of_right {
+                    Some(known) => known.select(&indices),
+                    None => sampled(Behaviour::default(), area, SAMPLES)?,
+                };
+                let other = sampled(self.behaviour, area, SAMPLES)?;
+                let right = right.select(&indices);
+                let replaced = replaced_where_they_differ(right, &own, &other);
+                if area == part {
+                    of_right = Some(Arc::new(own));
+                }
+                Some(replaced)
             })?);
         }
         Some(Rendering {
@@ -135,6 +145,7 @@ impl Candidate {
             part,
             right,
             behaved,
+            sampled: of_right,
         })
     }
 
