@@ -57,7 +57,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// The light from which on k + 1 is the nearest byte: the least `f64` that is not below the light of k + 1/2, for k below 255.
+/// The light from which on k + 1 is the nearest byte: the least `f64` that is not below the light
+/// of k + 1/2, for k below 255.
 ///
 /// The powers of the curve are rational, so whole numbers can decide: L = x^2.4 has the same sign
 /// of its difference as L^5 = x^12.
@@ -112,8 +113,8 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     }
 }
 
-/// Encodes one channel of linear light, 0 to 1, as sRGB, 0 to 1: the inverse of [`srgb_to_linear`]. Negative light goes on with the straight
-/// piece and light above 1 with the curve.
+/// Encodes one channel of linear light, 0 to 1, as sRGB, 0 to 1: the inverse of [`srgb_to_linear`].
+/// Negative light goes on with the straight piece and light above 1 with the curve.
 pub fn linear_to_srgb(light: f64) -> f64 {
     if light <= 0.04045 / 12.92 {
         12.92 * light

@@ -1,14 +1,16 @@
 //! Texts and places in them.
 //!
-//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from one file and any
-//! number of `--set` arguments, and a diagnostic may point into each of them, so a [`Span`] names its source. Spans are
-//! byte ranges; lines and columns are computed here, when something is printed.
+//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from
+//! one file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
+//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed here, when
+//! something is printed.
 
 use std::{ops::Range, sync::OnceLock};
 
 use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 
-/// Which text a span points into. The file comes before the arguments, and they come in their order.
+/// Which text a span points into. The file comes before the arguments, and they come in their
+/// order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
     /// The scene file (or standard input).
@@ -122,8 +124,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and is remembered in
-    /// [`Source::invalid_utf8`].
+    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and
+    /// is remembered in [`Source::invalid_utf8`].
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let (text, invalid) = match String::from_utf8(bytes) {
             Ok(text) => (text, Vec::new()),
@@ -162,6 +164,23 @@ impl Source {
         &self.invalid
     }
 
+    /// Whether the file is UTF-16, with its mark or without: what people write is mostly ASCII, of
+    /// which every second byte is zero, and no other one.
+    pub fn is_utf16(&self) -> bool {
+        const LOOKED_AT: usize = 256;
+        let bytes = self.text.as_bytes();
+        let has_mark = self.invalid.starts_with(&[0, 1]);
+        let first = if has_mark { 2 } else { 0 };
+        let end = bytes.len().min(first + LOOKED_AT);
+        let start = bytes.get(first..end).unwrap_or_default();
+        let zeros = |first| {
+            let every_second = start.iter().skip(first).step_by(2);
+            every_second.filter(|&&byte| byte == 0).count()
+        };
+        let (even, odd) = (zeros(0), zeros(1));
+        start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
+    }
+
     /// The bytes that a byte order mark takes at the start of the text: 3 or 0.
     pub fn bom_len(&self) -> usize {
         if self.text.starts_with(BOM) {
@@ -198,8 +217,8 @@ impl Source {
         self.line_col(offset).line as usize + 1
     }
 
-    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts as the end, one inside
-    /// a character as the start of that character.
+    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts
+    /// as the end, one inside a character as the start of that character.
     pub fn place(&self, offset: usize) -> Place {
         let place = self.line_col(offset);
         let characters = self.lines().to_wide(WideEncoding::Utf32, place);
@@ -214,7 +233,8 @@ impl Source {
         }
     }
 
-    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are none as [`Self::place`] has it.
+    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are
+    /// none as [`Self::place`] has it.
     pub fn line_col(&self, offset: usize) -> LineCol {
         let offset = self.floor_char_boundary(offset);
         let offset = u32::try_from(offset).ok().map(TextSize::from);

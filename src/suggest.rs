@@ -1,12 +1,14 @@
 //! The nearest name.
 //!
-//! In: what was written and what could stand there. Out: the one that was probably meant, if any is near.
+//! In: what was written and what could stand there. Out: the one that was probably meant, if any is
+//! near.
 
 use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// How many names may still be compared: a text with as many mistakes as names would take the time of all pairs.
+/// How many names may still be compared: a text with as many mistakes as names would take the time
+/// of all pairs.
 #[derive(Debug)]
 pub struct Budget(Cell<usize>);
 
@@ -25,8 +27,8 @@ impl Budget {
     }
 }
 
-/// The nearest of the candidates, if it is near: the same but for upper and lower case, or about one slip for every three
-/// letters. Of equally near ones the first.
+/// The nearest of the candidates, if it is near: the same but for upper and lower case, or about
+/// one slip for every three letters. Of equally near ones the first.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,

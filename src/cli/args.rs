@@ -99,8 +99,9 @@ impl Command {
 /// Which scene, and what to change in it.
 #[derive(Debug, clap::Args)]
 pub struct Overrides {
-    /// Override a field or a `let`: TARGET is BLOCK.FIELD (image, camera, sampler or an object's name)
-    /// or the name of a `let`, VALUE an expression of the language; may be given any number of times
+    /// Override a field or a `let`: TARGET is BLOCK.FIELD (image, camera, sampler or an object's
+    /// name) or the name of a `let`, VALUE an expression of the language; may be given any number
+    /// of times
     #[arg(long = "set", value_name = "TARGET=VALUE", allow_hyphen_values = true)]
     pub sets: Vec<String>,
 }
@@ -125,14 +126,14 @@ impl ThreadArgs {
 pub struct RenderArgs {
     /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
     pub scene: PathBuf,
-    /// Where the picture goes; its ending, .png or .exr, is the format, and `-` is standard output as PNG
-    /// [default: SCENE with the ending .png]
+    /// Where the picture goes; its ending, .png or .exr, is the format, and `-` is standard output
+    /// as PNG [default: SCENE with the ending .png]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub overrides: Overrides,
-    /// Render this part only, in pixels from the top left of the whole picture, within which it must lie;
-    /// takes the place of the crop that a PNG carries
+    /// Render this part only, in pixels from the top left of the whole picture, within which it
+    /// must lie; takes the place of the crop that a PNG carries
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     pub crop: Option<Area>,
     #[command(flatten)]
@@ -173,7 +174,8 @@ pub struct NewArgs {
 pub struct WatchArgs {
     /// The scene: a .scn file
     pub scene: PathBuf,
-    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the ending .png]
+    /// Where the picture goes; its ending, .png or .exr, is the format [default: SCENE with the
+    /// ending .png]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Draw the picture in the terminal too
@@ -243,14 +245,15 @@ pub struct ReportArgs {
     /// The methods [default: all]
     #[arg(long, value_delimiter = ',', value_parser = method())]
     pub methods: Vec<Method>,
-    /// Samples per pixel [default: 1,4,16 and so on, until all methods have come to the errors or the time is up]
+    /// Samples per pixel [default: 1,4,16 and so on, until all methods have come to the errors or
+    /// the time is up]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
     /// Runs of each method with each number of samples [default: up to 9, as the time goes]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub runs: Option<u64>,
-    /// Tell the samples and the time that this error takes, too, in linear light, such as 0.01 or 1/1000: 1/256 is always among
-    /// them; may be given any number of times
+    /// Tell the samples and the time that this error takes, too, in linear light, such as 0.01 or
+    /// 1/1000: 1/256 is always among them; may be given any number of times
     #[arg(long = "error", value_name = "E", allow_negative_numbers = true, value_parser = error)]
     pub errors: Vec<f64>,
     /// About how long a scene may take, where --samples and --runs leave a choice
@@ -258,8 +261,8 @@ pub struct ReportArgs {
     pub budget: u64,
     #[command(flatten)]
     pub overrides: Overrides,
-    /// Count the wrong decisions in a catalogue of hard cases instead, against arithmetic of hundreds of bits and beside
-    /// the formulas of a textbook
+    /// Count the wrong decisions in a catalogue of hard cases instead, against arithmetic of
+    /// hundreds of bits and beside the formulas of a textbook
     #[arg(long, conflicts_with_all = ["scenes", "output", "methods", "samples", "runs", "errors", "budget", "sets"])]
     pub numerics: bool,
     /// How many inputs to ask of each case [default: 10000]
@@ -285,21 +288,27 @@ pub struct FmtArgs {
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
-    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input; whole numbers
-    /// count as sRGB and floats as linear light, and what is transparent is seen on black
+    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input;
+    /// whole numbers count as sRGB and floats as linear light, and what is transparent is seen on
+    /// black
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,
-    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in steps of sRGB
+    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in
+    /// steps of sRGB
     #[arg(short, long = "output", value_name = "HEATMAP")]
     pub output: Option<PathBuf>,
-    /// How much a pixel may differ, in steps of 8-bit sRGB
-    /// [default: what rounding explains, 0.5 for each picture of 8 bits, 0.002 for one of 16, 0.06 for an
-    /// EXR of half floats and next to nothing for one of floats; the exact picture's own bound, as good as
-    /// nothing, always comes on top]
+    /// How much a pixel may differ, in steps of 8-bit sRGB [default: what rounding explains, 0.5
+    /// for each picture of 8 bits, 0.002 for one of 16, 0.06 for an EXR of half floats and next to
+    /// nothing for one of floats; the exact picture's own bound, as good as nothing, always comes
+    /// on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
-    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance implies it
+    /// The part of the scene that A shows, where it does not say so itself
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Area>,
+    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance
+    /// implies it
     #[arg(long)]
     pub strict: bool,
     #[command(flatten)]
@@ -319,13 +328,31 @@ pub struct DiffArgs {
 pub struct GradeArgs {
     /// The scene: a .scn file, or a PNG that Pinhole wrote
     pub scene: PathBuf,
-    /// The pictures, or folders of them
+    /// The pictures, or folders or zip files with a folder or a file a student, as Moodle,
+    /// Gradescope and GitHub Classroom hand them out
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, grade.csv and grade.jsonl; it is made if it is missing, and keeps
-    /// a list `.pinhole` of what was made there: any other file in the way is refused
+    /// The folder for index.html, its pictures, grade.csv and grade.jsonl; it is made if it is
+    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way is
+    /// refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
+    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of several
+    /// the newest is [default: all that are named as pictures are]
+    #[arg(long, value_name = "GLOB")]
+    pub picture: Option<String>,
+    /// The part of the scene that pictures of its size show, where they do not say it themselves
+    #[arg(long, value_name = "X,Y,W,H")]
+    pub crop: Option<Area>,
+    /// A JSON file that says what a right picture gets and what each mistake takes off
+    #[arg(long, value_name = "FILE")]
+    pub points: Option<PathBuf>,
+    /// Moodle's worksheet of grades, to be filled in by --format moodle
+    #[arg(long, value_name = "FILE")]
+    pub worksheet: Option<PathBuf>,
+    /// How a column of the worksheet is called there, such as `Grade=Bewertung`; repeatable
+    #[arg(long, value_name = "COLUMN=HEADING")]
+    pub columns: Vec<String>,
     #[command(flatten)]
     pub effort: EffortArgs,
     #[command(flatten)]
@@ -334,15 +361,33 @@ pub struct GradeArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub threads: ThreadArgs,
-    #[command(flatten)]
-    pub format: FormatArgs,
+    /// For people, on standard error, or for programs, on standard output
+    #[arg(long, value_enum, default_value_t = GradeFormat::Human)]
+    pub format: GradeFormat,
+}
+
+/// For whom a class is graded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum GradeFormat {
+    /// Text for people
+    Human,
+    /// JSON for programs, a line a student
+    Json,
+    /// A table for other programs
+    Csv,
+    /// JUnit XML, as systems of continuous integration show it
+    Junit,
+    /// Gradescope's results.json: of one student on standard output, of several in DIR/STUDENT/
+    Gradescope,
+    /// Moodle's worksheet, filled in: on standard output, or in DIR
+    Moodle,
 }
 
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
-    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of the language, or `language`
-    /// [default: list all codes]
+    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of the
+    /// language, or `language` [default: list all codes]
     #[arg(value_name = "WORD")]
     pub word: Option<String>,
 }

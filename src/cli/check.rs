@@ -73,7 +73,8 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, 
         let name = visible_line(&name);
         output::to_people(&format!("{name}:{line}:{column}: {title}\n"));
     }
-    output::to_people(&held_back(&visible_line(&name), &fixed));
+    let is_utf8 = input.sources.file.invalid_utf8().is_empty();
+    output::to_people(&held_back(&visible_line(&name), &fixed, is_utf8));
     if !fixed.done.is_empty() {
         input.sources.file = Source::from_text(name, fixed.text);
     }
@@ -81,7 +82,7 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, 
 }
 
 /// What was not applied, and how it is had.
-fn held_back(name: &str, fixed: &Fixed) -> String {
+fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {
         1 => format!("{name}: 1 fix {one}"),
@@ -102,6 +103,13 @@ fn held_back(name: &str, fixed: &Fixed) -> String {
             "would make up values",
         );
         text += &format!("{which}, and no command applies such fixes: write your own\n");
+    }
+    if fixed.waiting > 0 && is_utf8 {
+        let which = fixes(fixed.waiting, "is left", "and perhaps more are left");
+        text += &format!("{which}: the same command once more applies them\n");
+    } else if fixed.waiting > 0 {
+        let which = fixes(fixed.waiting, "waits", "wait");
+        text += &format!("{which} until all bytes of the file are UTF-8: save it as that first\n");
     }
     text
 }

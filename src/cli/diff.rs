@@ -93,7 +93,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let Some(scene) = input.scene().scene else {
         return Ok(Status::SceneErrors);
     };
-    let part = judge::part(&a, &scene)
+    let part = judge::part(&a, &scene, args.crop)
         .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
     let reference = progress::watched(part.pixels(), |done| {
         let control = Control {
@@ -173,6 +173,12 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
             shown(path)
         )));
     }
+    check_is_not_compared(path, args)?;
+    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+}
+
+/// Refuses to write a heat map over what it compares.
+fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
             return Err(Trouble(format!(
@@ -181,7 +187,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
             )));
         }
     }
-    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+    Ok(())
 }
 
 /// What the colours of a heat map mean.
@@ -207,6 +213,8 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
+    // A link may lead to one of them by now.
+    check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
     })
@@ -230,7 +238,7 @@ struct Report {
 impl Report {
     fn print(&self, format: Format) -> Result<(), Trouble> {
         match format {
-            Format::Human => output::to_people(&self.human()),
+            Format::Human => output::answer(&self.human())?,
             Format::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,
         }
         Ok(())
@@ -415,7 +423,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// What is right and what is not: all objects, or, where they are many, some of those that are not right.
+/// What is right and what is not: all objects, or, where they are many, some of those that are not
+/// right.
 fn objects(verdict: &Verdict) -> String {
     /// More are not listed.
     const MOST: usize = 12;
@@ -470,7 +479,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up to 255.
+/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up
+/// to 255.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

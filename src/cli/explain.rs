@@ -1,7 +1,8 @@
-//! `explain`: the page of a diagnostic code or of a word of the language, the reference, or the list of all codes.
+//! `explain`: the page of a diagnostic code or of a word of the language, the reference, or the
+//! list of all codes.
 //!
-//! The answer is what was asked for, and is to be piped into a pager: so it goes to standard output, as the manual does, as Markdown
-//! unless a terminal shows it.
+//! The answer is what was asked for, and is to be piped into a pager: so it goes to standard
+//! output, as the manual does, as Markdown unless a terminal shows it.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -30,7 +31,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
             }
         }
     };
-    output::to_programs(text.as_bytes())?;
+    output::page(&text)?;
     Ok(Status::Done)
 }
 

@@ -1,4 +1,5 @@
-//! What `--help` says of each command after its options: examples, the JSON that it prints, its exit status.
+//! What `--help` says of each command after its options: examples, the JSON that it prints, its
+//! exit status.
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -94,16 +95,31 @@ Exit status: 0 for pictures within the tolerance, and for one that is right, but
 pub const GRADE_EXAMPLES: &str = "\
 Examples:
   pinhole grade figure.scn anna.png ben.png
-  pinhole grade figure.scn handed_in/ -o graded  also writes graded/index.html, grade.csv and grade.jsonl
-  pinhole grade figure.scn handed_in/ --format json
+  pinhole grade figure.scn handed_in/ -o graded  also writes graded/index.html with pictures, grade.csv and grade.jsonl
+  pinhole grade figure.scn export.zip --picture 'render*.png' --points points.json
+  pinhole grade figure.scn mine.png --format junit > report.xml
+  pinhole grade figure.scn moodle.zip --format moodle --worksheet Grades.csv --points points.json > filled.csv
 
-Each picture is compared with the scene's exact one, as diff does it, and has a line: its name, the verdict, the root mean \
-square of its differences in linear light, and the samples in a pixel that make as much noise.
+Each picture is compared with the scene's exact one, as diff does it, and each student has a line: the name, the root mean \
+square of the differences in linear light, the samples in a pixel that make as much noise, and the verdict.
 
-JSON, an object a line: what diff prints, with file in front; and rendered_by_pinhole, whether the picture carries the \
-text that Pinhole writes into its own; error instead of the rest where a picture cannot be compared.
+Of a folder or zip file each folder is a student, and each file beside these: Gradescope's exports, with the names in \
+submission_metadata.yml, the clones of GitHub Classroom, and what Moodle hands out. Of several pictures of a student the \
+newest is compared; of several of the same time, as in a clone, all are, and the best one counts. What is equal in every folder is the template, \
+and does not count. Hidden files, __MACOSX and Thumbs.db are passed over. At most 10 000 entries of a zip file are read, \
+unpacked to at most 256 MiB each and 4 GiB in all; archives in it, links and what is encrypted are not.
 
-Exit status: 0 all are right, but for noise; 1 one is wrong, or the scene has errors; 2 one could not be compared, or other trouble.";
+Points are a JSON file: {\"total\": 20, \"object\": 2, \"mistakes\": {\"roll_sign\": 3, \"*\": 2}}. A right picture gets the total; each \
+mistake takes off what stands by its id, else, if it is about an object, that of object, once for each object, else that of *. A picture that is wrong \
+for unknown reasons gets no points, and no zero either.
+
+JSON, an object a line: what diff prints, with file in front; rendered_by_pinhole, whether the picture carries the \
+text that Pinhole writes into its own; student; number, that of Moodle; pictures [{file, verdict, line}], if several were compared; \
+not_compared, the other files; equal_to, other students whose picture is the same in every pixel; score; and error instead \
+of a verdict where there is no picture that can be compared.
+
+Exit status: 0 all are right, but for noise; 1 one is wrong, or a student has none that can be compared, or the scene has errors; 2 a PICTURE is \
+missing, nothing could be compared, or other trouble.";
 
 pub const REPORT_USAGE: &str = "\
 pinhole report [OPTIONS] <SCENE>...

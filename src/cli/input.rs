@@ -27,12 +27,13 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// So much of a picture is read: more than enough for what may stand before its pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// So many bytes of a file say whether it is a picture.
-const START: u64 = 64;
+/// So many bytes of a file say whether it is a picture, also after a program's other words.
+const START: u64 = 4096;
 
 /// What a scene is read from.
 pub struct Input {
-    /// The scene's text and the overrides, those that a picture carries before those of the command line.
+    /// The scene's text and the overrides, those that a picture carries before those of the command
+    /// line.
     pub sources: Sources,
     /// Whether it is a picture that carries the scene.
     pub is_picture: bool,
@@ -228,9 +229,9 @@ pub enum Compared {
 /// the others are read.
 pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compared> {
     let (mut from, length) = opened(path)?;
-    let mut start = Vec::new();
-    from.by_ref().take(START).read_to_end(&mut start)?;
-    let is_picture = film::is_picture(&start);
+    let start = files::read_from(from.by_ref().take(START), START)?;
+    let is_picture = film::is_picture(&start)
+        || matches!(most, Most::Start) && film::is_picture_behind_lines(&start);
     let limit = match (is_picture, most) {
         (true, _) => large.file_limit(),
         (false, Most::Scene) => SCENE_LIMIT,
@@ -283,22 +284,50 @@ fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
 
 /// Reads a scene, or as much of a picture as can matter.
 fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let by_ref = from.by_ref();
-    by_ref
-        .take(SIGNATURE.len() as u64)
-        .read_to_end(&mut bytes)?;
-    if bytes == SIGNATURE {
-        by_ref.take(PICTURE_LIMIT).read_to_end(&mut bytes)?;
-        return Ok(bytes);
-    }
-    by_ref.take(SCENE_LIMIT).read_to_end(&mut bytes)?;
-    match bytes.len() as u64 >= SCENE_LIMIT {
-        true => Err(no_scene()),
-        false => Ok(bytes),
+    let start = files::read_from(from.by_ref().take(START), START)?;
+    let is_picture = start.starts_with(&SIGNATURE);
+    let whole = io::Cursor::new(start).chain(from);
+    match is_picture {
+        true => files::read_from(whole.take(PICTURE_LIMIT), PICTURE_LIMIT),
+        false => files::read_from(whole, SCENE_LIMIT).map_err(|error| match error.kind() {
+            io::ErrorKind::FileTooLarge => no_scene(),
+            _ => error,
+        }),
     }
 }
 
 fn no_scene() -> io::Error {
     io::Error::other("it has more than 256 MiB, too much for a scene")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fails as a disk does.
+    struct Broken;
+
+    impl Read for Broken {
+        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+            Err(io::Error::from_raw_os_error(5))
+        }
+    }
+
+    #[test]
+    fn the_limit_of_a_scene_is_its_last_length() {
+        for (length, is_read) in [(SCENE_LIMIT, true), (SCENE_LIMIT + 1, false)] {
+            let read = limited(io::repeat(b' ').take(length));
+            assert_eq!(read.is_ok(), is_read, "{length}");
+        }
+        let picture = SIGNATURE.as_slice().chain(io::repeat(0));
+        assert_eq!(limited(picture).unwrap().len() as u64, PICTURE_LIMIT);
+    }
+
+    #[test]
+    fn what_the_system_says_of_a_read_is_in_words() {
+        for start in [0, 1, START] {
+            let error = limited(io::repeat(b' ').take(start).chain(Broken)).unwrap_err();
+            assert!(!error.to_string().contains("os error"), "{error}");
+        }
+    }
 }

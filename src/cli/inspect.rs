@@ -16,7 +16,7 @@ pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
     };
     let inspection = inspect::inspect(&scene, &input.sources.file);
     match args.format.format {
-        Format::Human => output::to_people(&inspection.to_string()),
+        Format::Human => output::answer(&inspection.to_string())?,
         Format::Json => output::to_programs(format!("{}\n", inspection.to_json()).as_bytes())?,
     }
     Ok(Status::Done)

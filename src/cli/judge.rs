@@ -21,15 +21,17 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// The part of a scene that a picture shows: the crop that it carries, or all of it.
+/// The part of a scene that a picture shows: the crop that it carries, the one that is named and
+/// has its size, or all of the scene.
 ///
 /// # Errors
 ///
 /// Their sizes differ, in words that follow the picture's name.
-pub fn part(picture: &Picture, scene: &Scene) -> Result<Area, String> {
+pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);
-    match picture.crop {
+    let has_size = |crop: &Area| [crop.width, crop.height] == [width, height];
+    match picture.crop.or(named.filter(has_size)) {
         Some(crop) if [crop.width, crop.height] == [width, height] => match crop.lies_in(whole) {
             true => Ok(crop),
             false => Err(format!(
@@ -42,24 +44,27 @@ pub fn part(picture: &Picture, scene: &Scene) -> Result<Area, String> {
             "has {width} × {height} pixels, and the scene's picture {} × {}{}",
             whole.width,
             whole.height,
-            way_out([width, height], [whole.width, whole.height])
+            way_out([width, height], whole)
         )),
     }
 }
 
-/// What makes a picture of another size comparable, in words that follow both sizes.
-fn way_out([width, height]: [u32; 2], [own_width, own_height]: [u32; 2]) -> String {
-    let product = |a: u32, b: u32| u64::from(a) * u64::from(b);
-    if [width, height] == [own_height, own_width] {
-        return ": its width and its height are exchanged".to_owned();
-    }
-    // Of the same proportions, to within a pixel.
-    let off = product(width, own_height).abs_diff(product(height, own_width));
-    match off <= u64::from(own_width.max(own_height)) {
-        true => format!(
-            ": --set image.width={width} --set image.height={height} makes the scene's as large"
-        ),
-        false => String::new(),
+/// What makes a picture of another size comparable.
+fn way_out([width, height]: [u32; 2], whole: Area) -> String {
+    let [w, h] = [whole.width, whole.height];
+    let is_scaled = u64::from(width) * u64::from(h) == u64::from(height) * u64::from(w);
+    if is_scaled {
+        format!(
+            ": `--set image.width={width} --set image.height={height}` compares it with the scene in its size"
+        )
+    } else if [width, height] == [h, w] {
+        ": its width and height are exchanged".to_owned()
+    } else if width <= w && height <= h {
+        format!(
+            ": if it is a part of it, `--crop X,Y,{width},{height}` says which, X pixels from the left and Y from the top"
+        )
+    } else {
+        String::new()
     }
 }
 

@@ -1,7 +1,8 @@
 //! The command line: reads, calls, prints. A command is a file.
 //!
-//! Pictures and JSON go to standard output, everything for people to standard error. The exit status is 0 when it is done, warnings
-//! or not, 1 when the scene has errors, pictures differ or `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
+//! Pictures and JSON go to standard output, everything for people to standard error. The exit
+//! status is 0 when it is done, warnings or not, 1 when the scene has errors, pictures differ or
+//! `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
 
 mod args;
 mod check;
@@ -10,8 +11,6 @@ mod difference;
 mod explain;
 mod fmt;
 mod grade;
-mod grade_page;
-mod graded;
 mod help;
 mod input;
 mod inspect;
@@ -33,7 +32,6 @@ mod show;
 mod speed;
 #[cfg(feature = "studio")]
 mod studio;
-mod thumbnails;
 mod unified;
 #[cfg(feature = "preview")]
 mod watch;
@@ -140,8 +138,8 @@ fn each(
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, the pictures differ, the layout would change, an editor left without a word: it ran, and the answer
-    /// is no.
+    /// The scene has errors, the pictures differ, the layout would change, an editor left without a
+    /// word: it ran, and the answer is no.
     SceneErrors = 1,
     /// Usage, files, memory.
     Trouble = 2,

@@ -8,16 +8,30 @@ use std::{
 use terminal_size::{Width, terminal_size_of};
 
 use super::Trouble;
-use crate::diagnostic::{Drawing, Style, visible_line};
+use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
-/// Writes to standard output.
-pub fn to_programs(bytes: &[u8]) -> Result<(), Trouble> {
+/// Writes a text to standard output: to programs as it is, and to a terminal so that nothing of it,
+/// such as what a scene holds, can act there.
+pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
+    match io::stdout().is_terminal() {
+        true => page(&visible(&String::from_utf8_lossy(text))),
+        false => write(text),
+    }
+}
+
+/// Writes a page of our own, drawn in the style of the terminal, to standard output.
+pub fn page(text: &str) -> Result<(), Trouble> {
+    write(text.as_bytes())
+}
+
+fn write(bytes: &[u8]) -> Result<(), Trouble> {
     let mut out = Programs::new();
     let written = out.write_all(bytes).and_then(|()| out.flush());
     written.map_err(|error| Trouble(format!("cannot write to standard output: {error}")))
 }
 
-/// Standard output. A reader that has gone away, as `head` does, has had enough: that is no trouble, and what is left goes nowhere.
+/// Standard output. A reader that has gone away, as `head` does, has had enough: that is no
+/// trouble, and what is left goes nowhere.
 pub struct Programs(StdoutLock<'static>);
 
 impl Programs {
@@ -46,6 +60,17 @@ impl Write for Programs {
 /// Writes to standard error; if nobody reads it, there is nobody to tell.
 pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Writes what a command was called for to standard error. A reader that has gone away has had
+/// enough, as one of standard output.
+pub fn answer(text: &str) -> Result<(), Trouble> {
+    match io::stderr().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Trouble(format!("cannot write to standard error: {error}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Says what kept a command from its work.
@@ -82,8 +107,9 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// How reports are drawn on standard error: in colour on a terminal that has it, unless `NO_COLOR` is set; in ASCII where the locale
-/// is not one of UTF-8; in sentences if `NO_GRAPHICS` is set, for screen readers.
+/// How reports are drawn on standard error: in colour on a terminal that has it, unless `NO_COLOR`
+/// is set; in ASCII where the locale is not one of UTF-8; in sentences if `NO_GRAPHICS` is set, for
+/// screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
     Style {
@@ -113,7 +139,8 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Whether a terminal may be written to in colour: <https://no-color.org> and <https://bixense.com/clicolors>.
+/// Whether a terminal may be written to in colour: <https://no-color.org> and
+/// <https://bixense.com/clicolors>.
 fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
     !is("TERM", "dumb") && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
@@ -124,7 +151,8 @@ fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| !value.is_empty())
 }
 
-/// Of the variables for the locale the first that says something counts; where none does, terminals of today know Unicode.
+/// Of the variables for the locale the first that says something counts; where none does, terminals
+/// of today know Unicode.
 fn is_unicode() -> bool {
     ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()

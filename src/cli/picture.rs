@@ -95,7 +95,8 @@ pub fn picture(
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let expected = match sampling.is_exact() {
         true => part.pixels(),
-        // The samples of the part, but for how the extra ones of a total fall: near enough for a bar.
+        // The samples of the part, but for how the extra ones of a total fall: near enough for a
+        // bar.
         false => {
             let share = part.pixels() as f64 / whole.pixels() as f64;
             (sampling.total() as f64 * share) as u64
@@ -132,7 +133,8 @@ const BYTES: &str = "the 8-bit rounding";
 /// What is certain of those of an EXR.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// What is certain of a computed part of the picture, and of the numbers in its file: of so many pixels what is done to them.
+/// What is certain of a computed part of the picture, and of the numbers in its file: of so many
+/// pixels what is done to them.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -144,7 +146,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // No mean of several colours, and so without an error beyond that of the colour's own numbers.
+        // No mean of several colours, and so without an error beyond that of the colour's own
+        // numbers.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -203,7 +206,7 @@ impl Origin {
     fn purpose(self, path: &Path) -> Purpose<'_> {
         match self {
             Self::Given => Purpose::Named,
-            Self::Scene => Purpose::Within(path.parent().unwrap_or(Path::new("."))),
+            Self::Scene => Purpose::Within(files::folder(path)),
         }
     }
 }
@@ -239,12 +242,7 @@ impl Output {
             )),
             Self::Standard => Ok(()),
             Self::File(path, _, origin) => {
-                if input::is_same_file(path, scene) {
-                    return Err(Trouble(format!(
-                        "{} is the scene itself: say with `-o FILE` where the picture goes",
-                        shown(path)
-                    )));
-                }
+                check_is_not(path, scene)?;
                 files::check_writable(path, origin.purpose(path))
                     .map_err(|error| input::unwritable(path, &error))
             }
@@ -259,19 +257,23 @@ impl Output {
         }
     }
 
-    /// Writes the picture, of which as much was kept as it takes, unless `cancel` is set.
+    /// Writes the picture of a scene, of which as much was kept as it takes, unless `cancel` is
+    /// set.
     pub fn write(
         &self,
+        scene: &Path,
         picture: &Picture,
         recipe: &Recipe,
         whole: Area,
         cancel: &AtomicBool,
-    ) -> io::Result<()> {
-        match self {
+    ) -> Result<(), Trouble> {
+        let written = match self {
             Self::Standard => files::write_stream(output::Programs::new(), cancel, |out| {
                 write_png(picture, recipe, out)
             }),
             Self::File(path, format, origin) => {
+                // A link may lead to the scene by now.
+                check_is_not(path, scene)?;
                 files::write(path, origin.purpose(path), cancel, |out| {
                     let linear: Linear = match (format, picture) {
                         (Format::Exr, Picture::Light(light)) => light.film().into(),
@@ -281,7 +283,8 @@ impl Output {
                     film::write_exr(linear, recipe.crop.unwrap_or(whole), whole, out)
                 })
             }
-        }
+        };
+        written.map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
     }
 
     /// What is to be said where the picture should carry its scene and cannot.
@@ -293,6 +296,17 @@ impl Output {
             )),
             false => String::new(),
         }
+    }
+}
+
+/// Refuses to write a picture over its scene.
+fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
+    match input::is_same_file(path, scene) {
+        false => Ok(()),
+        true => Err(Trouble(format!(
+            "{} is the scene itself: say with `-o FILE` where the picture goes",
+            shown(path)
+        ))),
     }
 }
 

@@ -18,7 +18,7 @@ pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {
     };
     let probe = probe::probe(&scene, DVec2::new(args.x, args.y));
     match args.format.format {
-        Format::Human => output::to_people(&probe.to_string()),
+        Format::Human => output::answer(&probe.to_string())?,
         Format::Json => output::to_programs(format!("{}\n", probe.to_json()).as_bytes())?,
     }
     Ok(Status::Done)

@@ -17,12 +17,14 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = Output::of(&args.scene, args.output.as_deref())?;
     let input = Input::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
-    // Before the hours of a render, not after them; and a file that cannot be written outweighs errors of the scene.
+    // Before the hours of a render, not after them; and a file that cannot be written outweighs
+    // errors of the scene.
     output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };
-    // A crop on the command line takes the place of the one that a picture carries; both count in pixels of the whole picture.
+    // A crop on the command line takes the place of the one that a picture carries; both count in
+    // pixels of the whole picture.
     let crop = args.crop.or(input.crop);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = crop.unwrap_or(whole);
@@ -47,11 +49,10 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         Err(error) => return Err(Trouble(error.to_string())),
     };
     let recipe = input.recipe(crop);
-    if let Err(error) = output.write(&picture, &recipe, whole, cancel) {
-        if interrupt.pressed() {
-            return Ok(Status::Interrupted);
-        }
-        return Err(Trouble(format!("cannot write to {output}: {error}")));
+    match output.write(&args.scene, &picture, &recipe, whole, cancel) {
+        Ok(()) => {}
+        Err(_) if interrupt.pressed() => return Ok(Status::Interrupted),
+        Err(trouble) => return Err(trouble),
     }
     output::to_people(&output.note_of_length(&recipe));
     output::to_people(&picture.notes(part, &output));

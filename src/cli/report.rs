@@ -47,7 +47,7 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
     });
     let table = table.map_err(|error| Trouble(RenderError::from(error).to_string()))?;
     match args.format.format {
-        Format::Human => output::to_people(&table.to_string()),
+        Format::Human => output::answer(&table.to_string())?,
         Format::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,
     }
     Ok(match table.is_complete() {

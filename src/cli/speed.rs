@@ -80,7 +80,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         };
         if args.format.format == Format::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
-            output::to_people(&format!("{gap}{}", speed::text(&found)));
+            output::answer(&format!("{gap}{}", speed::text(&found)))?;
         }
         measured.push(found);
         if interrupt.pressed() {
@@ -227,8 +227,9 @@ fn unmade(error: io::Error) -> Trouble {
     Trouble(format!("cannot make the report: {error}"))
 }
 
-/// A scene's folder: its file's name without the ending, with a number if another one has that, or the page. It is a name within the report's
-/// folder, whatever the file is called: no dots at its ends, and nothing but letters, digits and what is usual between them.
+/// A scene's folder: its file's name without the ending, with a number if another one has that, or
+/// the page. It is a name within the report's folder, whatever the file is called: no dots at its
+/// ends, and nothing but letters, digits and what is usual between them.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),

@@ -7,8 +7,8 @@ use std::ops::Range;
 /// Lines that are shown around a change.
 const AROUND: usize = 3;
 
-/// Farthest that two texts are searched for lines that are the same again.
-const FAR: usize = 500;
+/// Maximum number of lines passed over in both texts together until two are the same again.
+const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new one in their place.
 struct Change {
@@ -88,7 +88,7 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
                 old.take(2).eq(new.take(2))
             }
         };
-        let steps = (1..=2 * FAR).flat_map(|sum| (0..=sum).map(move |i| (i, sum - i)));
+        let steps = (1..=MOST_STEPS).flat_map(|sum| (0..=sum).map(move |i| (i, sum - i)));
         let (i, j) = steps
             .into_iter()
             .find(is_same)
@@ -100,4 +100,45 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
         (a, b) = (a + i, b + j);
     }
     changes
+}
+
+#[cfg(all(test, unix))]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the tests are another program here"
+)]
+mod tests {
+    use std::{fs, process::Command};
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Texts of a few different lines, also of none, with and without a line feed at the end.
+    fn text() -> impl Strategy<Value = String> {
+        ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn patch_makes_the_new_text_of_the_old_one(old in text(), new in text()) {
+            let folder = tempfile::tempdir()?;
+            let write = |name, text: &str| fs::write(folder.path().join(name), text);
+            write("old", &old)?;
+            let diff = unified_diff("old", &old, &new);
+            prop_assert_eq!(diff.is_empty(), old == new);
+            write("diff", &diff)?;
+            let mut patch = Command::new("patch");
+            patch.args(["--silent", "--fuzz=0", "old", "diff"]);
+            let Ok(output) = patch.current_dir(folder.path()).output() else {
+                return Ok(());
+            };
+            prop_assert!(diff.is_empty() || output.status.success(), "{:?} {}", output, diff);
+            // An empty text may be no file.
+            let made = fs::read_to_string(folder.path().join("old")).unwrap_or_default();
+            prop_assert_eq!(made, new, "{}", diff);
+        }
+    }
 }

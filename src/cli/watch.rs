@@ -107,7 +107,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     }
 }
 
-/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes, nor when there is a newer one.
+/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes,
+/// nor when there is a newer one.
 fn make(
     args: &WatchArgs,
     bytes: Vec<u8>,
@@ -131,11 +132,7 @@ fn make(
     };
     let recipe = input.recipe(None);
     let whole = Area::whole(scene.image.width, scene.image.height);
-    // The picture must not take the place of the scene, should a link lead there by now.
-    let written = output.check(&args.scene).and_then(|()| {
-        let written = output.write(&picture, &recipe, whole, is_stale);
-        written.map_err(|error| Trouble(format!("cannot write to {output}: {error}")))
-    });
+    let written = output.write(&args.scene, &picture, &recipe, whole, is_stale);
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
         return Ok(None);
     }

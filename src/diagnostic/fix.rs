@@ -124,8 +124,8 @@ impl Fix {
         Self::new(title, [Edit::remove(span, sources)])
     }
 
-    /// Takes away a field or an item as a whole: with the comments on its lines where nothing else stands on them, as they
-    /// speak of it.
+    /// Takes away a field or an item as a whole: with the comments on its lines where nothing else
+    /// stands on them, as they speak of it.
     pub fn remove_whole(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         let whole = with_comments(span, sources);
         let title = match whole == span {
@@ -192,7 +192,8 @@ impl Edit {
         Self::new(Span::new(source, at, at), text)
     }
 
-    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their own.
+    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their
+    /// own.
     pub fn add_fields(block: Span, sources: &Sources, fields: &[String]) -> Option<Self> {
         if block.source != SourceId::File {
             return None;
@@ -205,7 +206,8 @@ impl Edit {
         let (end, added) = match gap.rsplit_once('\n') {
             Some((_, indent)) => {
                 let last = tight.lines().next_back()?;
-                // On the line that the block starts on, a comment or a field may stand behind the `{`.
+                // On the line that the block starts on, a comment or a field may stand behind the
+                // `{`.
                 let deeper = match last.ends_with('{') || !tight.contains('\n') {
                     true => format!("{indent}  "),
                     false => last.chars().take_while(|c| c.is_whitespace()).collect(),
@@ -220,8 +222,8 @@ impl Edit {
         Some(Self::new(Span::new(SourceId::File, at, end), added))
     }
 
-    /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the blanks on one side too.
-    /// What stood on both sides of it stays apart.
+    /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the
+    /// blanks on one side too. What stood on both sides of it stays apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {
         Self::remove_in(span, sources.get(span.source).text())
     }

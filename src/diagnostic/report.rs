@@ -1,7 +1,7 @@
 //! Reports for people.
 //!
-//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette, or narrated. Only the
-//! labelled lines are handed to miette, cut to what can be shown.
+//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette,
+//! or narrated. Only the labelled lines are handed to miette, cut to what can be shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write, ops::Range};
 
@@ -252,8 +252,8 @@ impl miette::Diagnostic for Snippet<'_> {
 
 /// The labelled lines of one source, with long lines cut to the parts around the labels.
 ///
-/// miette reads it instead of the text: a line of ten megabytes is neither printed nor walked, and every label lies within
-/// it (miette leaves out a label at the end of a text, and panics past it).
+/// miette reads it instead of the text: a line of ten megabytes is neither printed nor walked, and
+/// every label lies within it (miette leaves out a label at the end of a text, and panics past it).
 #[derive(Debug)]
 struct Excerpt<'s> {
     source: &'s Source,
@@ -270,7 +270,8 @@ struct ExcerptLine {
     start: usize,
     /// Where it ends in the excerpt, without its line feed.
     end: usize,
-    /// Where the characters that it shows stand, in the source and in the excerpt, and where they end.
+    /// Where the characters that it shows stand, in the source and in the excerpt, and where they
+    /// end.
     shown: Vec<(usize, usize)>,
 }
 
@@ -339,7 +340,8 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette joins the frames of labels whose lines follow one another, and numbers them on from the first.
+        // miette joins the frames of labels whose lines follow one another, and numbers them on
+        // from the first.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -438,7 +440,8 @@ fn shorten(span: Span, source: &Source) -> Span {
     span
 }
 
-/// The parts of a line that are shown: all of a short one, and of a long one what stands around its labels.
+/// The parts of a line that are shown: all of a short one, and of a long one what stands around its
+/// labels.
 fn shown_pieces(source: &Source, line: Range<usize>, labels: &[(Span, &str)]) -> Vec<Range<usize>> {
     if line.len() <= LONG_LINE {
         return vec![line];

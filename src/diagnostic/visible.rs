@@ -1,7 +1,9 @@
 //! Text that a terminal may show.
 //!
-//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything made visible by which it could act on a terminal, or be shown in
-//! another order than it is written: control characters, C1 controls, and the controls of bidirectional text.
+//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything
+//! made visible by which it could act on a terminal, or be shown in another order than it is
+//! written, or which is not seen at all: control characters, and those that Unicode says to show
+//! nothing of.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -55,16 +57,32 @@ pub fn push_visible(text: &mut String, character: char) {
     }
 }
 
-/// Whether a character is shown as its code.
+/// Whether a character is shown as its code: control characters, what the Unicode Character
+/// Database (DerivedCoreProperties) gives the property `Default_Ignorable_Code_Point`, which
+/// includes the controls of bidirectional text, and the marks of annotations.
 fn is_invisible(character: char) -> bool {
+    // Nearly all characters are among these.
+    if character.is_ascii() {
+        return character.is_ascii_control() && !matches!(character, '\n' | '\t');
+    }
     match character {
-        '\n' | '\t' => false,
-        // Unicode Standard Annex #9, table 4: the marks, embeddings, overrides and isolates.
-        '\u{061c}'
-        | '\u{200e}'
-        | '\u{200f}'
+        '\u{ad}'
+        | '\u{34f}'
+        | '\u{61c}'
+        | '\u{115f}'..='\u{1160}'
+        | '\u{17b4}'..='\u{17b5}'
+        | '\u{180b}'..='\u{180f}'
+        | '\u{200b}'..='\u{200f}'
         | '\u{202a}'..='\u{202e}'
-        | '\u{2066}'..='\u{2069}' => true,
+        | '\u{2060}'..='\u{206f}'
+        | '\u{3164}'
+        | '\u{fe00}'..='\u{fe0f}'
+        | '\u{feff}'
+        | '\u{ffa0}'
+        | '\u{fff0}'..='\u{fffb}'
+        | '\u{1bca0}'..='\u{1bca3}'
+        | '\u{1d173}'..='\u{1d17a}'
+        | '\u{e0000}'..='\u{e0fff}' => true,
         _ => character.is_control(),
     }
 }

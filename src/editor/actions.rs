@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// The ways out of the problems that a range touches, each with its problem. A problem counts where its first place is: the place
-/// that an editor underlines.
+/// The ways out of the problems that a range touches, each with its problem. A problem counts where
+/// its first place is: the place that an editor underlines.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,

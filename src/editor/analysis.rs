@@ -1,5 +1,7 @@
 //! A text with everything that the answers are made from.
 
+use std::cell::OnceCell;
+
 use super::tokens::{self, Token};
 use crate::{
     diagnostic::Diagnostic,
@@ -9,14 +11,14 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Item},
 };
 
-/// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a thousand objects, so
-/// that nobody has to keep it.
+/// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a
+/// thousand objects, so that nobody has to keep it.
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// What is known of it.
     pub model: SemanticModel<'s>,
-    /// The words and signs, by their places.
-    pub tokens: Vec<Token>,
+    /// Read when they are asked for: neither a picture nor a list of problems needs them.
+    tokens: OnceCell<Vec<Token>>,
 }
 
 /// What stands at a place of the tree, from the whole to the smallest part.
@@ -35,11 +37,15 @@ pub(super) struct Path<'a, 's> {
 impl<'s> Analysis<'s> {
     /// Reads a text.
     pub fn new(sources: &'s Sources) -> Self {
-        let model = scene::analyze(sources);
         Self {
-            tokens: tokens::tokens(&model),
-            model,
+            model: scene::analyze(sources),
+            tokens: OnceCell::new(),
         }
+    }
+
+    /// The words and signs, by their places.
+    pub fn tokens(&self) -> &[Token] {
+        self.tokens.get_or_init(|| tokens::tokens(&self.model))
     }
 
     /// The file.
@@ -87,11 +93,11 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// The word, number or sign that a place touches: of two that meet there a word before a sign, and the one behind it before the
-    /// one that ends there.
+    /// The word, number or sign that a place touches: of two that meet there a word before a sign,
+    /// and the one behind it before the one that ends there.
     pub(super) fn token_at(&self, at: usize) -> Option<Token> {
-        let index = self.tokens.partition_point(|token| token.span.end < at);
-        let touching = self.tokens.iter().skip(index);
+        let index = self.tokens().partition_point(|token| token.span.end < at);
+        let touching = self.tokens().iter().skip(index);
         let touching = touching.take_while(|token| token.span.start <= at);
         let touching: Vec<Token> = touching.copied().collect();
         let behind = touching.iter().rev();

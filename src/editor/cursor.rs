@@ -1,7 +1,7 @@
 //! What could stand at a place of a text in which somebody types.
 //!
-//! A made-up name takes the place of the word there, and the text is parsed as any other: where that name is in the tree tells what
-//! could stand there.
+//! A made-up name takes the place of the word there, and the text is parsed as any other: where
+//! that name is in the tree tells what could stand there.
 
 use super::{
     analysis::{Analysis, Path},
@@ -36,7 +36,8 @@ pub struct Situation {
     pub defining: Option<Span>,
     /// Whether it is a whole value, nothing of which stands here yet.
     pub is_whole_value: bool,
-    /// Whether what belongs to the word follows it: the braces of a block, the value of a field, the arguments of a function.
+    /// Whether what belongs to the word follows it: the braces of a block, the value of a field,
+    /// the arguments of a function.
     pub goes_on: bool,
     /// The word that is being typed, or nothing.
     pub word: Span,
@@ -62,7 +63,8 @@ pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
     is_word.then(|| with_cursor(analysis, word, ask)).flatten()
 }
 
-/// The innermost call around a place, by the place of the function's name, and which of its arguments is written there.
+/// The innermost call around a place, by the place of the function's name, and which of its
+/// arguments is written there.
 pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     let word = touched(analysis, at, |token| is_part(analysis, token))?;
     with_cursor(analysis, word, |path| {
@@ -89,7 +91,8 @@ fn is_letter(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// The token that a place touches, of those that are meant, or the place itself; none within comments.
+/// The token that a place touches, of those that are meant, or the place itself; none within
+/// comments.
 fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool) -> Option<Span> {
     let comments = analysis.comments();
     let next = comments.partition_point(|comment| comment.end < at);
@@ -98,7 +101,7 @@ fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool
         let is_closed = comment.end == at && analysis.slice(*comment).ends_with("*/");
         comment.start < at && !is_closed
     });
-    let tokens = &analysis.tokens;
+    let tokens = analysis.tokens();
     let first = tokens.partition_point(|token| token.span.end < at);
     let mut touching = tokens.iter().skip(first);
     let token = touching
@@ -139,7 +142,7 @@ fn with_cursor<T>(
 
 /// How many lists are open at a place.
 fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
-    let before = analysis.tokens.iter();
+    let before = analysis.tokens().iter();
     let before = before.take_while(|token| token.span.end <= at);
     before.fold(0, |open, token| match analysis.slice(token.span) {
         "(" => open + 1,
@@ -232,7 +235,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors) => Some(Type::Color),
-                // Parentheses around a part of an expression, or those of a vector: both hold numbers most of the time.
+                // Parentheses around a part of an expression, or those of a vector: both hold
+                // numbers most of the time.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

@@ -1,4 +1,5 @@
-//! The names that a text defines: where each is defined, where it is used, and what it could be called instead.
+//! The names that a text defines: where each is defined, where it is used, and what it could be
+//! called instead.
 //!
 //! A `let` and an object may have the same name, and have nothing to do with each other then.
 
@@ -34,12 +35,13 @@ pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     first.map(|occurrence| occurrence.span)
 }
 
-/// Every place where the name at a place stands, in order; nothing where there is no name of the scene's own.
+/// Every place where the name at a place stands, in order; nothing where there is no name of the
+/// scene's own.
 pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     let Some((name, space)) = name_at(analysis, at) else {
         return Vec::new();
     };
-    let tokens = analysis.tokens.iter();
+    let tokens = analysis.tokens().iter();
     let same = tokens.filter(|token| analysis.slice(token.span) == analysis.slice(name.span));
     let occurrences: Vec<Occurrence> = same
         .filter(|token| space_of(token.role) == Some(space))
@@ -106,7 +108,7 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
     let is_taken =
         |token: &&Token| space_of(token.role) == Some(space) && analysis.slice(token.span) == new;
     // One that nothing defines would be this one from then on.
-    let taken = analysis.tokens.iter().find(is_taken);
+    let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(
             "`{new}` is taken: it stands in line {}",

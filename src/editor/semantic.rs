@@ -60,7 +60,7 @@ impl SemanticKind {
 
 /// The tokens of the text in order.
 pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
-    let words = analysis.tokens.iter();
+    let words = analysis.tokens().iter();
     let words = words.filter_map(|token| classified(analysis, token));
     let comments = analysis.comments().iter().map(|&span| SemanticToken {
         span,

@@ -1,15 +1,18 @@
 //! How long a pixel may take, and how well it is to be known.
 //!
-//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not computed any more counts as the mean of what may be
-//! there, with its whole area as its bound, so that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the same picture.
+//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not
+//! computed any more counts as the mean of what may be there, with its whole area as its bound, so
+//! that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the
+//! same picture.
 
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// So many units of work may be spent on a pixel. A unit is one square of a board cut out of a
-/// polygon, some 50 ns as measured; so this is about 0.6 seconds, of the second that is allowed.
+/// Maximum number of units of work that are spent on a pixel. A unit is one square of a board cut
+/// out of a polygon, some 50 ns on the machine where it was measured, and about 0.6 seconds for
+/// all.
 const PIXEL: f64 = 1.2e7;
 
 /// The work that may still be spent on a pixel, and the flag by which its picture is given up.

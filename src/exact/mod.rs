@@ -1,22 +1,30 @@
 //! A pixel's mean without samples: the area integral itself.
 //!
-//! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in linear light, with a bound on
-//! its error. In ordinary views (a vertical field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within
-//! 1e±9 or 0) the bound is at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour. A pixel takes a
-//! second at most (`budget`).
+//! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in
+//! linear light, with a bound on its error. In ordinary views (a vertical field of view of 1 to 170
+//! degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within 1e±9 or 0) the bound is
+//! at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour.
+//! The work on a pixel is limited: to about a second on the machine where it was measured
+//! (`budget`).
 //!
-//! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard) between them. So:
+//! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard)
+//! between them. So:
 //!
-//! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel. Pixels that show nothing but a checkerboard, and few of its
-//!    lines, are computed eight at a time (`checker::board_pixels`).
-//! 2. In any other pixel the boundaries of what may be seen there cut it into regions: convex polygons where all are lines
-//!    (`arrangement`), slabs between neighbouring curves where some are conics (`slabs`). A pixel with too many curves is quartered first.
-//! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen there (`region`). Boundaries that
-//!    are hidden do no harm: both sides of them get the same colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
+//! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel.
+//!    Pixels that show nothing but a checkerboard, and few of its lines, are computed eight at a
+//!    time (`checker::board_pixels`).
+//! 2. In any other pixel the boundaries of what may be seen there cut it into regions: convex
+//!    polygons where all are lines (`arrangement`), slabs between neighbouring curves where some
+//!    are conics (`slabs`). A pixel with too many curves is quartered first.
+//! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen
+//!    there (`region`). Boundaries that are hidden do no harm: both sides of them get the same
+//!    colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
 //!    polygons so; conics and the board are added here.)
-//! 4. Areas have closed forms: `conic_segment` for what lies between arcs and chords. What a region shows of a checkerboard is `checker`'s to say.
+//! 4. Areas have closed forms: `conic_segment` for what lies between arcs and chords. What a region
+//!    shows of a checkerboard is `checker`'s to say.
 //!
-//! The bound adds up what each step may be off: rounding, what could not be told apart, and what is cut off of infinite sums.
+//! The bound adds up what each step may be off: rounding, what could not be told apart, and what is
+//! cut off of infinite sums.
 
 mod arrangement;
 mod boundaries;
@@ -52,20 +60,26 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// A pixel whose bound is no greater than this, in area, is known well enough if nothing else is said: 1e-9 is asked for, roundings of sums included.
+/// A pixel whose bound is no greater than this, in area, is known well enough if nothing else is
+/// said: 1e-9 is asked for, roundings of sums included.
 const ENOUGH: f64 = 9e-10;
-/// A piece with more curves than this is quartered before anything is computed of it: n curves cross in some n² places, and at each of them all have to be
-/// looked at, while about half of them pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it takes with 24, and with 96 seven
-/// times as long; a dozen objects take a tenth longer with 6.)
+/// A piece with more curves than this is quartered before anything is computed of it: n curves
+/// cross in some n² places, and at each of them all have to be looked at, while about half of them
+/// pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it
+/// takes with 24, and with 96 seven times as long; a dozen objects take a tenth longer with 6.)
 const MOST_CURVES: usize = 12;
-/// With each quartering so many more are allowed: curves that stay together in small pieces are not likely to part in smaller ones. (Measured: of a heap 1
-/// more takes two thirds of the time, and 16 more four times as long.)
+/// With each quartering so many more are allowed: curves that stay together in small pieces are not
+/// likely to part in smaller ones. (Measured: of a heap 1 more takes two thirds of the time, and 16
+/// more four times as long.)
 const MORE_CURVES: usize = 4;
-/// So many computed pieces of a pixel are quartered at most, the worst first, where the bound is above what is asked for. Near a point that a few curves share
-/// each takes the bound to a quarter, so that 16 take it to 2^−32 of itself.
+/// Maximum number of computed pieces of a pixel that are quartered, the worst first, where the
+/// bound is above what is asked for. Near a point that a few curves share each takes the bound to a
+/// quarter, so that 16 take it to 2^−32 of itself.
 const MOST_QUARTERINGS: usize = 16;
-/// Maximum memory of the open pieces of a pixel, in bytes. A pixel that needs more is not divided any further, and its
-/// bound says how much of it is in doubt.
+/// Maximum memory of the open pieces of a pixel, in bytes, unless the whole pixel as one piece
+/// takes more. A pixel that needs more is not divided any further, and its bound says how much of
+/// it is in doubt. What one piece takes while it is computed, which grows with its objects, is not
+/// counted.
 const MOST_MEMORY: usize = 64 << 20;
 /// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
 const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
@@ -79,7 +93,8 @@ const SLABS_WORK: f64 = 60.0;
 /// The work of a pixel that shows nothing but a few squares of a checkerboard.
 const BOARD_PIXEL_WORK: u64 = 10;
 
-/// A pixel computed: of N numbers from 0 to 1 that each colour has, its channels in linear light if nothing else is said.
+/// A pixel computed: of N numbers from 0 to 1 that each colour has, its channels in linear light if
+/// nothing else is said.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
     /// Their means.
@@ -132,11 +147,11 @@ impl Piece {
         self.area() * self.shares.bound
     }
 
-    /// Its memory in bytes.
+    /// Its memory in bytes, apart from its place in the heap.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<Candidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
-        size_of::<ByKey<Self>>() + candidates + shares
+        candidates + shares
     }
 }
 
@@ -172,12 +187,14 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self
     }
 
-    /// The units of work that were spent, of some 50 ns each: the same for the same pixels, whatever the machine.
+    /// The units of work that were spent, of some 50 ns each: the same for the same pixels,
+    /// whatever the machine.
     pub fn work(&self) -> u64 {
         self.work.load(Relaxed)
     }
 
-    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends within a pixel, too, or given up.
+    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends
+    /// within a pixel, too, or given up.
     pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel<N>>> {
         let black = ExactPixel {
             mean: [0.0; N],
@@ -229,7 +246,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_ended()).then_some(film.pixels)
     }
 
-    /// One pixel, of what may be seen in it: in pieces where the whole has too many curves, or is not known well enough.
+    /// One pixel, of what may be seen in it: in pieces where the whole has too many curves, or is
+    /// not known well enough.
     fn pixel(
         &self,
         x: u32,
@@ -247,8 +265,18 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut open = BinaryHeap::from([ByKey(bound, whole)]);
         let mut quarterings = 0;
         while bound > self.tolerance
-            && memory <= MOST_MEMORY
             && !budget.is_spent()
+            && open.peek().is_some_and(|ByKey(_, worst)| {
+                // A heap that is full has its old places beside twice as many new ones for a
+                // moment.
+                let copies = if open.len() + 3 > open.capacity() {
+                    3
+                } else {
+                    1
+                };
+                let places = copies * open.capacity() * size_of::<ByKey<Piece>>();
+                memory + places + 4 * worst.memory() <= MOST_MEMORY
+            })
             && let Some(ByKey(_, worst)) = open.pop()
         {
             memory -= worst.memory();
@@ -319,7 +347,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one of the others.
+    /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one
+    /// of the others.
     fn set(
         &self,
         pixel: BoardPixel,
@@ -399,8 +428,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// What the mean of so many colours is rounded by at most: the sum of its products and that of the shares have as many roundings as there are colours, a
-/// product has one, and so has the quotient. One colour has none.
+/// What the mean of so many colours is rounded by at most: the sum of its products and that of the
+/// shares have as many roundings as there are colours, a product has one, and so has the quotient.
+/// One colour has none.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -10,9 +10,10 @@ use std::{
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
-    kind::{self, Kind, folder, without_waiting},
+    kind::{Kind, folder, without_waiting},
     original::Original,
-    state::state_folder,
+    state::{self, digest, state_folder},
+    temporary::{self, locked},
     words::in_words,
 };
 
@@ -41,8 +42,6 @@ pub fn write_in_place(
     let Some(mut copy) = copy_beside(path) else {
         return Err(reason);
     };
-    // As long as it is locked, nobody takes it for a leftover.
-    let _ = copy.as_file().lock();
     copy.write_all(content)?;
     copy.as_file().sync_all()?;
     let mut file = without_waiting(OpenOptions::new().write(true)).open(path)?;
@@ -68,43 +67,50 @@ pub fn write_in_place(
 }
 
 /// The copies of a file that were left by processes that were killed while they wrote it, whole or
-/// in part: beside it, and of files of its name in the user's folder for such things.
+/// in part: beside it, and in the user's folder for such things.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
-    let path = match fs::read_link(path) {
+    // A file beside one that no link leads to is named as that is.
+    let beside = match fs::read_link(path) {
         Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
         Err(_) => path.to_owned(),
     };
-    let prefix = copy_prefix(&path);
-    let copies_in = |listed: &Path, named: &Path| -> Vec<PathBuf> {
-        let entries = fs::read_dir(listed).into_iter().flatten().flatten();
-        let names = entries.map(|entry| entry.file_name());
-        let copies = names.filter(|name| name.to_string_lossy().starts_with(&prefix));
-        copies.map(|name| named.join(name)).collect()
+    let names = |folder: &Path, prefix: &str| {
+        let left = temporary::left(folder, prefix, "").into_iter();
+        left.map(|(name, _)| name).collect::<Vec<_>>()
     };
-    let mut left = copies_in(folder(&path), path.parent().unwrap_or(Path::new("")));
-    if let Some(state) = state_folder() {
-        left.extend(copies_in(&state, &state));
+    let copies = names(folder(&beside), &copy_prefix(&beside)).into_iter();
+    let mut left: Vec<_> = copies.map(|name| beside.with_file_name(name)).collect();
+    if let (Some(state), Ok(path)) = (state_folder(), fs::canonicalize(path)) {
+        let copies = names(&state, &prefix_in_state(&path)).into_iter();
+        left.extend(copies.map(|name| state.join(name)));
     }
-    // One that is locked is in use.
-    left.retain(|copy| kind::open(copy).is_ok_and(|file| file.try_lock().is_ok()));
     left.sort();
     left
 }
 
-/// What the name of a copy begins with.
+/// What the name of a copy beside its file begins with.
 fn copy_prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(50).collect();
     format!("{name}.copy-")
 }
 
-/// An empty file for the copy, if there is a place for one.
+/// What it begins with where files of all folders have theirs, for a canonical path.
+fn prefix_in_state(path: &Path) -> String {
+    let digest = digest(path.as_os_str().as_encoded_bytes());
+    format!("{digest}-{}", copy_prefix(path))
+}
+
+/// An empty file for the copy of what is at a canonical path, if there is a place for one.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
-    let prefix = copy_prefix(path);
-    let copy_in = |folder: &Path| Builder::new().prefix(&prefix).tempfile_in(folder).ok();
-    copy_in(folder(path)).or_else(|| {
+    let copy_in = |folder: &Path, prefix: &str| {
+        let mut builder = Builder::new();
+        builder.prefix(prefix);
+        locked(|| builder.tempfile_in(folder)).ok()
+    };
+    copy_in(folder(path), &copy_prefix(path)).or_else(|| {
         let folder = state_folder()?;
-        fs::create_dir_all(&folder).ok()?;
-        copy_in(&folder)
+        state::make(&folder).ok()?;
+        copy_in(&folder, &prefix_in_state(path))
     })
 }

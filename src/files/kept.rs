@@ -8,7 +8,9 @@ use std::{
 };
 
 use super::{
-    state::state_folder,
+    kind::folder,
+    state::{self, digest, state_folder},
+    words::in_words,
     write::{Purpose, write},
 };
 
@@ -17,15 +19,11 @@ pub fn kept_folder(name: &str) -> Option<PathBuf> {
     Some(state_folder()?.join(name))
 }
 
-/// Keeps a text in a file of such a folder, which no other user can look into.
+/// Keeps a text in a file of such a folder. No other user can read it.
 pub fn keep(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    let mut builder = fs::DirBuilder::new();
-    builder.recursive(true);
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(folder)?;
-    let purpose = Purpose::Within(folder);
+    let folder = folder(path);
+    state::make(folder).map_err(in_words)?;
+    let purpose = Purpose::Private(folder);
     write(path, purpose, &AtomicBool::new(false), |file| {
         file.write_all(text.as_bytes())
     })
@@ -48,7 +46,5 @@ pub fn forget_older(folder: &Path, age: Duration) {
 
 /// The name of the file that belongs to something that has a longer name.
 pub fn name_of(long: &[u8]) -> String {
-    let digest = hmac_sha256::Hash::hash(long);
-    let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));
-    digits.collect::<String>() + ".json"
+    digest(long) + ".json"
 }

@@ -2,10 +2,10 @@
 //!
 //! In: a path, and what somebody wants with it. Out: a file, or why there is none. `kind` looks at
 //! what a path leads to before it is opened, so that nothing waits for a pipe; `original` knows a
-//! file again that was read; `write` writes every file whole or not at all; and `output_folder`
-//! replaces in a folder only what was made there; `kept` has the small files that are kept of a
-//! user, in the folder that `state` knows. What the system says when that fails, `words` says to
-//! people. What is in the files is left to others.
+//! file again that was read; `write` writes every file whole or not at all, by way of a `temporary`
+//! one; and `output_folder` replaces in a folder only what was made there; `kept` has the small
+//! files that are kept of a user, in the folder that `state` knows. What the system says when that
+//! fails, `words` says to people. What is in the files is left to others.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"
@@ -19,6 +19,7 @@ mod original;
 #[cfg(feature = "cli")]
 mod output_folder;
 mod state;
+mod temporary;
 mod words;
 mod write;
 
@@ -28,7 +29,7 @@ pub use self::kept::{forget, forget_older, keep, kept_folder, name_of};
 pub use self::output_folder::{NotWritten, OutputFolder};
 pub use self::{
     in_place::copies_left,
-    kind::{open, open_argument, read, read_from, read_system_text},
+    kind::{folder, open, open_argument, read, read_from, read_system_text},
     original::{FileId, Original, id, is_changed},
     write::{Purpose, Sink, check_writable, write, write_stream},
 };

@@ -14,7 +14,9 @@ use std::{
 use hmac_sha256::Hash;
 
 use super::{
-    kind::{Kind, read},
+    kind::{Kind, folder, read},
+    original::Original,
+    words::in_words,
     write::{Purpose, check_writable, write},
 };
 
@@ -48,6 +50,15 @@ pub struct NotWritten {
     pub error: io::Error,
 }
 
+impl NotWritten {
+    fn new(path: &Path, error: io::Error) -> Self {
+        Self {
+            path: path.to_owned(),
+            error: in_words(error),
+        }
+    }
+}
+
 impl OutputFolder {
     /// The folder at a path, which is made if there is none, for files with these names.
     ///
@@ -58,10 +69,7 @@ impl OutputFolder {
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
     ) -> Result<Self, NotWritten> {
-        let failed = |error| NotWritten {
-            path: path.to_owned(),
-            error,
-        };
+        let failed = |error| NotWritten::new(path, error);
         match fs::metadata(path) {
             Ok(found) if !found.is_dir() => {
                 let message = format!("it is {}, not a folder", Kind::of(&found));
@@ -76,18 +84,17 @@ impl OutputFolder {
             }
             Err(error) => return Err(failed(error)),
         }
-        let list = path.join(LIST);
-        let about_list = |error| NotWritten {
-            path: list.clone(),
-            error,
-        };
-        let made = made(&list).map_err(about_list)?;
-        check_writable(&list, Purpose::Within(path)).map_err(about_list)?;
-        let folder = Self {
+        let mut folder = Self {
             path: path.to_owned(),
-            made,
+            made: BTreeMap::new(),
         };
-        names.into_iter().try_for_each(|name| folder.check(name))?;
+        folder.read_list()?;
+        let list = path.join(LIST);
+        check_writable(&list, Purpose::Within(path))
+            .map_err(|error| NotWritten::new(&list, error))?;
+        for name in names {
+            folder.check(name)?;
+        }
         Ok(folder)
     }
 
@@ -97,42 +104,63 @@ impl OutputFolder {
     ///
     /// A file in the way, which is known before the first one is written, unless another program
     /// puts it there meanwhile; or what kept one from being written. Those after it are missing.
-    pub fn write(&mut self, files: &[(String, String)]) -> Result<(), NotWritten> {
+    pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
+        // Another run may have made other files here since it was opened.
+        let list = self.read_list()?;
         for (name, _) in files {
             self.check(name)?;
         }
-        let before = self.made.clone();
         // Wherever this process is ended, the list has what each file holds by then.
         for (name, text) in files {
             let hashes = self.made.entry(name.clone()).or_default();
-            hashes.push(hash(text.as_bytes()));
+            let hash = hash(text.as_ref());
+            if !hashes.contains(&hash) {
+                hashes.push(hash);
+            }
         }
-        if self.made != before {
-            self.write_one(LIST, &self.list())?;
-        }
+        self.write_list(&list)?;
         for (name, text) in files {
             // Another program may have put something there while those before it were written.
-            self.check(name)?;
-            if let Some(folder) = self.path.join(name).parent() {
-                fs::create_dir_all(folder).map_err(|error| NotWritten {
-                    path: folder.to_owned(),
-                    error,
-                })?;
-            }
-            self.write_one(name, text)?;
+            let original = self.check(name)?;
+            let path = self.path.join(name);
+            let folder = folder(&path);
+            fs::create_dir_all(folder).map_err(|error| NotWritten::new(folder, error))?;
+            self.write_one(name, &original, text.as_ref())?;
         }
+        let list = self.read_list()?;
         for (name, text) in files {
-            self.made.insert(name.clone(), vec![hash(text.as_bytes())]);
+            self.made.insert(name.clone(), vec![hash(text.as_ref())]);
         }
-        self.write_one(LIST, &self.list())
+        self.write_list(&list)
     }
 
-    fn write_one(&self, name: &str, text: &str) -> Result<(), NotWritten> {
+    /// Writes a file, if what was there before still is.
+    fn write_one(&self, name: &str, original: &Original, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
-        let purpose = Purpose::Within(&self.path);
-        write(&path, purpose, &go_on, |out| out.write_all(text.as_bytes()))
+        let purpose = Purpose::Again {
+            within: &self.path,
+            original,
+        };
+        write(&path, purpose, &go_on, |out| out.write_all(bytes))
             .map_err(|error| NotWritten { path, error })
+    }
+
+    /// Reads the list of what was made.
+    fn read_list(&mut self) -> Result<Original, NotWritten> {
+        let path = self.path.join(LIST);
+        let list = list(&path).map_err(|error| NotWritten::new(&path, error))?;
+        self.made = made(&list).map_err(|error| NotWritten::new(&path, error))?;
+        Ok(list)
+    }
+
+    /// Writes the list in the place of the one that was read.
+    fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
+        let text = self.list();
+        match original.bytes() == Some(text.as_bytes()) {
+            true => Ok(()),
+            false => self.write_one(LIST, original, text.as_bytes()),
+        }
     }
 
     fn list(&self) -> String {
@@ -143,69 +171,89 @@ impl OutputFolder {
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Refuses a name at which there is something that was not made here, or was changed since, and
-    /// a folder on the way to it that is none.
-    fn check(&self, name: &str) -> Result<(), NotWritten> {
+    /// Reads what there is of a name. Refuses what was not made here, or was changed since, and a
+    /// folder on the way to it that is none.
+    fn check(&self, name: &str) -> Result<Original, NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();
+        let mut original = Original::missing();
         while let Some(part) = parts.next() {
             path.push(part);
-            let is_last = parts.peek().is_none();
-            match self.check_part(&path, is_last.then_some(name)) {
+            let checked = match parts.peek() {
+                Some(_) => check_folder(&path),
+                None => self.check_file(&path, name).map(|found| original = found),
+            };
+            match checked {
                 Ok(()) => {}
-                Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
-                Err(error) => return Err(NotWritten { path, error }),
+                Err(error) if error.kind() == io::ErrorKind::NotFound => break,
+                Err(error) => return Err(NotWritten::new(&path, error)),
             }
         }
-        Ok(())
+        Ok(original)
     }
 
-    fn check_part(&self, path: &Path, file: Option<&str>) -> io::Result<()> {
-        let refused = |message| Err(io::Error::new(io::ErrorKind::AlreadyExists, message));
+    fn check_file(&self, path: &Path, name: &str) -> io::Result<Original> {
         let found = fs::symlink_metadata(path)?;
-        let Some(name) = file else {
-            return match Kind::of(&found) {
-                _ if found.is_symlink() => refused(LINK),
-                Kind::Folder => Ok(()),
-                _ => {
-                    refused("it is in the place of a folder: move it away, or name another folder")
-                }
-            };
-        };
         match Kind::of(&found) {
-            _ if found.is_symlink() => return refused(LINK),
+            _ if found.is_symlink() => return Err(refused(LINK)),
             Kind::File => {}
             kind => return Err(kind.refused()),
         }
         let Some(hashes) = self.made.get(name) else {
-            return refused("pinhole did not make this file: move it away, or name another folder");
+            return Err(refused(
+                "pinhole did not make this file: move it away, or name another folder",
+            ));
         };
-        match read(path, FILE_LIMIT) {
-            Ok(bytes) if hashes.contains(&hash(&bytes)) => Ok(()),
+        let is_made = |bytes: &[u8]| hashes.contains(&hash(bytes));
+        match Original::read(path, |path| read(path, FILE_LIMIT)) {
+            Ok(found) if found.bytes().is_some_and(is_made) => Ok(found),
             Err(error) if error.kind() != io::ErrorKind::FileTooLarge => Err(error),
-            _ => refused(
+            _ => Err(refused(
                 "it was changed since pinhole made it: move it away, or name another folder",
-            ),
+            )),
         }
     }
 }
 
+fn check_folder(path: &Path) -> io::Result<()> {
+    let found = fs::symlink_metadata(path)?;
+    match Kind::of(&found) {
+        _ if found.is_symlink() => Err(refused(LINK)),
+        Kind::Folder => Ok(()),
+        _ => Err(refused(
+            "it is in the place of a folder: move it away, or name another folder",
+        )),
+    }
+}
+
+fn refused(message: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::AlreadyExists, message)
+}
+
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// What a list says was made.
-fn made(list: &Path) -> io::Result<BTreeMap<String, Vec<String>>> {
-    match fs::symlink_metadata(list) {
+/// What there is of a list.
+fn list(path: &Path) -> io::Result<Original> {
+    match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
         Ok(_) => {}
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(BTreeMap::new()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Original::missing()),
         Err(error) => return Err(error),
     }
+    Original::read(path, |path| read(path, LIST_LIMIT))
+}
+
+/// What a list says was made.
+fn made(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
+    let Some(bytes) = list.bytes() else {
+        return Ok(BTreeMap::new());
+    };
     let no_list = || {
         let message =
             "it is no list of files that pinhole made: move it away, or name another folder";
         io::Error::new(io::ErrorKind::InvalidData, message)
     };
-    let text = String::from_utf8(read(list, LIST_LIMIT)?).map_err(|_| no_list())?;
+    let text = std::str::from_utf8(bytes).map_err(|_| no_list())?;
     let mut made = BTreeMap::<_, Vec<_>>::new();
     for line in text.strip_prefix(HEAD).ok_or_else(no_list)?.lines() {
         let (hash, name) = line.split_once("  ").ok_or_else(no_list)?;

@@ -13,6 +13,7 @@ use super::{
     in_place,
     kind::{self, Kind, folder, without_waiting},
     original::{Original, changed},
+    temporary::{self, locked},
     words::in_words,
 };
 
@@ -30,10 +31,39 @@ pub enum Purpose<'a> {
     /// It has a name of our own in this folder, or below it: a file is replaced, also one that a
     /// link there leads to, but none outside of the folder.
     Within(&'a Path),
+    /// The same, if there still is what was read, or still nothing.
+    Again {
+        /// The folder.
+        within: &'a Path,
+        /// What was read.
+        original: &'a Original,
+    },
+    /// The same as `Within`, and no other user can read it.
+    Private(&'a Path),
     /// It is new: whatever is there stays.
     New,
     /// The text of a file is changed, if it still is what was read; a link is followed.
     Change(&'a Original),
+}
+
+impl<'a> Purpose<'a> {
+    /// The folder that it must not lead out of.
+    fn outer(self) -> Option<&'a Path> {
+        match self {
+            Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
+                Some(outer)
+            }
+            Self::Named | Self::New | Self::Change(_) => None,
+        }
+    }
+
+    /// What must still be there.
+    fn original(self) -> Option<&'a Original> {
+        match self {
+            Self::Change(original) | Self::Again { original, .. } => Some(original),
+            Self::Named | Self::Within(_) | Self::Private(_) | Self::New => None,
+        }
+    }
 }
 
 /// Has `write` write the content of the file at `path`, which stays as it was until the new content
@@ -98,7 +128,7 @@ pub fn write_stream(
 /// learn it after a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     let is_writable = match place(path, purpose) {
-        Ok(Place::File(place)) => temporary(&place).and_then(NamedTempFile::close),
+        Ok(Place::File(place)) => temporary(&place, purpose).and_then(NamedTempFile::close),
         Ok(Place::Stream) => Ok(()),
         Err(error) => Err(error),
     };
@@ -138,28 +168,34 @@ fn place(path: &Path, purpose: Purpose<'_>) -> io::Result<Place> {
         };
     }
     let place = behind_links(path)?;
-    match (&place, purpose) {
-        (Place::Stream, Purpose::Named) => {}
-        (Place::Stream, _) => return Err(Kind::of(&fs::metadata(path)?).refused()),
-        (Place::File(place), Purpose::Within(outer)) => {
-            let inner = fs::canonicalize(folder(&place.path))?;
-            let outer = match outer == Path::new("") {
-                true => Path::new("."),
-                false => outer,
-            };
-            if !inner.starts_with(fs::canonicalize(outer)?) {
-                let message = "a link leads out of its folder from there";
-                return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    match &place {
+        Place::Stream if matches!(purpose, Purpose::Named) => {}
+        Place::Stream => return Err(Kind::of(&fs::metadata(path)?).refused()),
+        Place::File(place) => {
+            check_folder(place, purpose)?;
+            let is_there = place.found.is_some();
+            let original = purpose.original().map(Original::bytes);
+            if original.is_some_and(|bytes| bytes.is_some() != is_there) {
+                return Err(changed());
             }
         }
-        (Place::File(place), Purpose::Change(original))
-            if place.found.is_some() != original.bytes().is_some() =>
-        {
-            return Err(changed());
-        }
-        _ => {}
     }
     Ok(place)
+}
+
+/// Fails if what is written to a place would now lie outside of the folder that it is meant for.
+fn check_folder(place: &FilePlace, purpose: Purpose<'_>) -> io::Result<()> {
+    let Some(outer) = purpose.outer() else {
+        return Ok(());
+    };
+    let inner = fs::canonicalize(folder(&place.path))?;
+    match inner.starts_with(fs::canonicalize(outer)?) {
+        true => Ok(()),
+        false => {
+            let message = "a link leads out of its folder from there";
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+        }
+    }
 }
 
 fn behind_links(path: &Path) -> io::Result<Place> {
@@ -197,7 +233,7 @@ fn replace(
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    let temporary = temporary(place)?;
+    let temporary = temporary(place, purpose)?;
     // Not the temporary file itself, whose errors would name it.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
@@ -207,14 +243,15 @@ fn replace(
     // Only now it is known that there was room for all of it.
     temporary.as_file().sync_all()?;
     check(cancel)?;
-    let must_be_new = match purpose {
-        Purpose::Named | Purpose::Within(_) => false,
-        Purpose::New => true,
-        Purpose::Change(original) => {
+    // While the content was written, others may have changed what was found before.
+    let must_be_new = match purpose.original() {
+        Some(original) => {
             original.check(&place.path)?;
             original.bytes().is_none()
         }
+        None => matches!(purpose, Purpose::New),
     };
+    check_folder(place, purpose)?;
     let persisted = match must_be_new {
         true => temporary.persist_noclobber(&place.path),
         false => temporary.persist(&place.path),
@@ -222,8 +259,8 @@ fn replace(
     match persisted {
         Ok(_) => Ok(()),
         Err(error) => Err(match (purpose, error.error.kind()) {
-            (Purpose::Change(_), io::ErrorKind::AlreadyExists) => changed(),
             (Purpose::New, io::ErrorKind::AlreadyExists) => exists(),
+            (_, io::ErrorKind::AlreadyExists) => changed(),
             _ => error.error,
         }),
     }
@@ -266,30 +303,27 @@ fn write_device(
 /// What the name of a temporary file ends in.
 const SUFFIX: &str = ".tmp";
 
-/// A temporary file, locked as long as it is open: what is not locked belongs to nobody.
-fn temporary(FilePlace { path, found }: &FilePlace) -> io::Result<NamedTempFile> {
+/// A temporary file for a place.
+fn temporary(place: &FilePlace, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
+    let FilePlace { path, found } = place;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     // In most systems a name has at most 255 bytes, of which each character may take four.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
+    // What nothing else is said of, no other user can read.
+    let is_private = matches!(purpose, Purpose::Private(_));
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
-    if found.is_none() {
+    if found.is_none() && !is_private {
         // The usual permissions of a new file: the system takes the mask off.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
-    let temporary = loop {
-        let temporary = builder.tempfile_in(folder(path))?;
-        // Where the file system has no locks, nobody finds one that is free.
-        let _ = temporary.as_file().lock();
-        // Before that, another process may have taken it for a leftover.
-        if temporary.path().exists() {
-            break temporary;
-        }
-    };
-    if let Some(found) = found {
+    let temporary = locked(|| builder.tempfile_in(folder(path)))?;
+    if let Some(found) = found
+        && !is_private
+    {
         keep_owner(temporary.as_file(), found)?;
     }
     Ok(temporary)
@@ -297,23 +331,14 @@ fn temporary(FilePlace { path, found }: &FilePlace) -> io::Result<NamedTempFile>
 
 /// Removes temporary files of processes that were killed. It is no matter if that fails.
 fn remove_leftovers(folder: &Path, prefix: &str) {
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let is_temporary = name
-            .to_str()
-            .and_then(|name| name.strip_prefix(prefix)?.strip_suffix(SUFFIX))
-            .is_some_and(|random| random.len() == 6);
-        if is_temporary
-            && entry.file_type().is_ok_and(|kind| kind.is_file())
-            && let Ok(file) = kind::open(&entry.path())
-            && file.try_lock().is_ok()
-        {
-            let _ = fs::remove_file(entry.path());
-        }
+    // Each stays locked until it is gone: nobody can begin to write to it.
+    for (name, _lock) in temporary::left(folder, prefix, SUFFIX) {
+        let _ = fs::remove_file(folder.join(name));
     }
 }
 
-/// Gives a file the owner and the permissions of another one.
+/// Gives a file the owner and the permissions of another one, as far as the system allows that.
+/// Only root may give files away, and others may give them to their own groups.
 #[cfg(unix)]
 fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     use std::{
@@ -321,9 +346,17 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         os::unix::fs::{MetadataExt, PermissionsExt, fchown},
     };
 
-    // Only root may give files away, and may edit those of others without taking them over.
-    let _ = fchown(file, Some(found.uid()), Some(found.gid()));
-    file.set_permissions(Permissions::from_mode(found.mode() & 0o777))
+    let (owner, group) = (Some(found.uid()), Some(found.gid()));
+    let has_group = fchown(file, owner, group)
+        .or_else(|_| fchown(file, None, group))
+        .is_ok();
+    let mode = found.mode() & 0o777;
+    // Another group may do no more than everybody.
+    let allowed = match has_group {
+        true => mode,
+        false => mode & (0o707 | mode << 3),
+    };
+    file.set_permissions(Permissions::from_mode(allowed))
 }
 
 #[cfg(not(unix))]

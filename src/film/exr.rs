@@ -2,14 +2,20 @@
 //!
 //! The display window is the whole picture, and the data window the part of it that the file holds.
 
-use std::io::{self, Cursor};
+use std::{
+    collections::BTreeSet,
+    io::{self, Cursor},
+};
 
 use exr::{
     block,
     error::Error,
     image::{
         Encoding, Image, SpecificChannels,
-        read::{image::ReadLayers, layers::ReadChannels, read as reader},
+        read::{
+            image::ReadLayers, layers::ReadChannels, read as reader,
+            specific_channels::ReadSpecificChannel,
+        },
         write::WritableImage,
     },
     math::Vec2,
@@ -17,7 +23,7 @@ use exr::{
         attribute::{
             ChannelDescription, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
         },
-        header::ImageAttributes,
+        header::{Header, ImageAttributes},
     },
     prelude::{Blocks, Compression, LayerAttributes},
 };
@@ -89,7 +95,8 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // A block of 16 rows is in memory several times over, which for the widest pictures would be more than the film.
+        // A block of 16 rows is in memory several times over, which for the widest pictures would
+        // be more than the film.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
             _ => Compression::ZIP1,
@@ -128,7 +135,8 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         })
 }
 
-/// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not looked at.
+/// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not
+/// looked at.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
@@ -142,10 +150,15 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         let channel = sizes.sum::<usize>().div_ceil(4);
         check_size([width as u64, height as u64], channel as u64, limit)?;
     }
+    let [red, green, blue] = channels(file.headers())?;
     let image = reader()
         .no_deep_data()
         .largest_resolution_level()
-        .rgb_channels(
+        .specific_channels()
+        .required(red)
+        .required(green)
+        .required(blue)
+        .collect_pixels(
             |Vec2(width, height), _| Film::new(width as u32, height as u32),
             |film: &mut Result<Film, TooLarge>, Vec2(x, y), (r, g, b): (f32, f32, f32)| {
                 if let Ok(film) = film {
@@ -185,6 +198,33 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         crop,
         opacity: None,
     })
+}
+
+/// The names of the channels that are read: R, G and B, or those of the only layer that has such
+/// ones.
+fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
+    let names = headers.iter().flat_map(|header| &header.channels.list);
+    let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();
+    let of = |layer: &str| ["R", "G", "B"].map(|letter| format!("{layer}{letter}"));
+    let layers = names.iter().filter_map(|name| name.strip_suffix('R'));
+    let is_whole = |layer: &&str| of(layer).iter().all(|name| names.contains(name));
+    let layers: Vec<&str> = layers.filter(is_whole).collect();
+    let layer = match layers[..] {
+        [layer] => layer,
+        _ if layers.contains(&"") => "",
+        _ => {
+            let names: Vec<_> = names.iter().map(String::as_str).collect();
+            let cause = format!(
+                "its channels are {}, of which R, G and B are read, or those of one layer, such as beauty.R",
+                names.join(", ")
+            );
+            return Err(Unreadable::Unsupported {
+                format: "OpenEXR".to_owned(),
+                cause,
+            });
+        }
+    };
+    Ok(of(layer).map(|name| Text::from(&*name)))
 }
 
 fn unreadable(error: Error) -> Unreadable {

@@ -1,8 +1,9 @@
 //! Pixels, and the files they go to.
 //!
-//! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in memory, and a picture file: `png` with the
-//! scene that made it, or `exr`. `read` makes a `picture` of a file, also of
-//! another program's, `compare` says how far two films are apart, and `embed` puts one into a page.
+//! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in
+//! memory, and a picture file: `png` with the scene that made it, or `exr`. `read` makes a
+//! `picture` of a file, also of another program's, `compare` says how far two films are apart, and
+//! `embed` puts one into a page.
 
 mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]
@@ -11,14 +12,19 @@ mod exr;
 mod jpeg;
 mod mean;
 mod memory;
+#[cfg(feature = "cli")]
+mod part;
 mod picture;
 mod pixels;
 mod png;
+mod pnm;
 mod read;
 mod srgb;
 
 #[cfg(any(feature = "cli", feature = "report"))]
 pub use self::embed::{data_uri, reduced};
+#[cfg(feature = "cli")]
+pub use self::part::place_of_part;
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
@@ -30,6 +36,6 @@ pub use self::{
     picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable},
     pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    read::{is_picture, read_picture, read_picture_up_to},
+    read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
     srgb::Encoder,
 };

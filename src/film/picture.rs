@@ -48,10 +48,11 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the way from black to white.
+    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the
+    /// way from black to white.
     ///
-    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 · 1.055/2.4 steps of a unit of light at
-    /// white, where that product is greatest, rounded up.
+    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 ·
+    /// 1.055/2.4 steps of a unit of light at white, where that product is greatest, rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -71,8 +72,15 @@ pub enum Coding {
     Lossy,
     /// It replaces them by the nearest of at most 256: GIF.
     Palette,
-    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA` or `iCCP`.
+    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA`
+    /// or `iCCP`.
     OtherCurve,
+    /// It is a PNM with a mark or lines of text in front, which are passed over.
+    TextBefore,
+    /// It is a PNM of numbers in UTF-16.
+    Utf16,
+    /// It is a PNM of bytes in which every line feed had become two, as in a text.
+    TextMode,
 }
 
 impl Coding {
@@ -84,6 +92,15 @@ impl Coding {
                 "its coding is lossy and changes colours, most of all where they meet: a PNG keeps them",
             ),
             Self::Palette => Some("it has 256 colours at most: a PNG keeps all of them"),
+            Self::TextBefore => Some(
+                "there is text before the picture, which most programs cannot read so: print it to standard error",
+            ),
+            Self::Utf16 => Some(
+                "it is UTF-16, as `>` of PowerShell makes it, which most programs cannot read: have the program write the file itself",
+            ),
+            Self::TextMode => Some(
+                "each of its line feeds had become CR LF, which most programs cannot read so: open the file in binary mode (\"wb\")",
+            ),
             Self::OtherCurve => Some(
                 "its gAMA or iCCP says that its numbers follow another curve than sRGB's, and they are read as sRGB",
             ),

@@ -1,10 +1,12 @@
 //! Picture files of any program become films.
 //!
-//! In: the bytes of a picture in PNG, in OpenEXR, or in any format that `image` reads here. Out: linear means, how far the file's rounding
-//! may have moved them, and what else its coding does to colours.
+//! In: the bytes of a picture in PNG, in OpenEXR, or in any format that `image` reads here. Out:
+//! linear means, how far the file's rounding may have moved them, and what else its coding does to
+//! colours.
 //!
-//! Whole numbers count as sRGB, whatever a `gAMA` or a colour profile says: that is how the pictures of a scene are meant, and what
-//! most programs write without saying so. Floats count as linear light. What is transparent is seen on black, mixed in linear light.
+//! Whole numbers count as sRGB, whatever a `gAMA` or a colour profile says: that is how the
+//! pictures of a scene are meant, and what most programs write without saying so. Floats count as
+//! linear light. What is transparent is seen on black, mixed in linear light.
 
 use std::{error::Error, io::Cursor};
 
@@ -17,6 +19,7 @@ use super::{
     picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable, check_size, name},
     pixels::Film,
     png::read_recipe,
+    pnm,
 };
 use crate::color::srgb_to_linear;
 
@@ -25,7 +28,12 @@ const UNPACKING: usize = 512 << 20;
 
 /// Whether a file begins as a picture does, of a format that is read here or not.
 pub fn is_picture(bytes: &[u8]) -> bool {
-    format(bytes).is_some()
+    pnm::start(bytes).is_some() || format(bytes).is_some()
+}
+
+/// Whether a PNM begins after lines of text, among as many of a file's first bytes as there are.
+pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
+    pnm::after_lines(bytes).is_some()
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
@@ -49,7 +57,10 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
+        Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
+        // A mark, UTF-16 or lines of text come before it.
+        None => pnm::read(bytes, limit)?,
         other => return Err(Unreadable::Format(other)),
     };
     let width = picture.film.width() as usize;
@@ -171,7 +182,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP` both.
+/// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules
+/// `gAMA`, and `iCCP` both.
 fn says_other_curve(info: &png::Info) -> bool {
     match (&info.icc_profile, info.srgb, info.gama_chunk) {
         (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
@@ -180,7 +192,8 @@ fn says_other_curve(info: &png::Info) -> bool {
     }
 }
 
-/// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from sRGB's; none if there is none.
+/// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from
+/// sRGB's; none if there is none.
 fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let count = number(128)?.min(100) as usize;

@@ -1,7 +1,7 @@
-//! Frames: pictures of an open text, made in slices, so that other messages are answered in between.
+//! Frames: pictures of an open text, made in slices, so that other messages are answered in
+//! between.
 //!
-//! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does not depend on the rectangle that is asked for, and
-//! no clock is needed, which a web worker's Rust does not have. A frame that is not wanted any more is dropped between two slices.
+//! A frame that is not wanted any more is dropped between two slices.
 
 use std::collections::HashMap;
 
@@ -16,17 +16,11 @@ use super::{
 };
 use crate::{
     area::Area,
-    film::{self, Film},
-    render::{Control, render_as_asked},
+    film,
+    render::{SLICE, Slices, pixel_work},
     sampling::Sampling,
     scene::{Count, Method, Sampler},
 };
-
-/// The samples of a slice: some 10 ms of two processors for a few objects. No pixel may have more, since a pixel is not divided.
-const SLICE: u64 = 1 << 20;
-
-/// A pixel without samples takes as long as so many samples, for figure 9.9.
-const EXACT: u64 = 64;
 
 /// The most pixels of a frame. More than a page can show is a file's business.
 const MOST_PIXELS: u64 = 1 << 24;
@@ -43,13 +37,7 @@ struct Frame {
     scale: u32,
     /// What the scene asks for if it is none.
     samples: Option<u64>,
-    sampling: Sampling,
-    /// Takes no memory until there are pixels in it.
-    film: Film<[u8; 3]>,
-    /// The side of a slice.
-    side: u32,
-    /// How many slices are made, row by row.
-    made: u32,
+    slices: Slices<[u8; 3]>,
 }
 
 impl Frames {
@@ -137,10 +125,7 @@ impl Frame {
             ..own
         };
         let sampling = Sampling::new(&samples.map_or(own, regular), width, height);
-        let work = match sampling.is_exact() {
-            true => EXACT,
-            false => sampling.samples_per_pixel().max(1),
-        };
+        let work = pixel_work(&sampling);
         if work > SLICE {
             let message = format!(
                 "{work} samples a pixel take too long for a frame; at most {SLICE} can be asked for, by `samples`"
@@ -152,46 +137,24 @@ impl Frame {
             uri,
             scale,
             samples,
-            sampling,
-            film: Film::new(width, height).map_err(Refusal::failed)?,
-            // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of one.
-            side: 1 << ((SLICE / work).ilog2() / 2),
-            made: 0,
-        })
-    }
-
-    /// What is to be made next; nothing if nothing is left.
-    fn slice(&self) -> Option<Area> {
-        let (width, height, side) = (self.film.width(), self.film.height(), self.side);
-        let columns = width.div_ceil(side);
-        let (x, y) = (self.made % columns * side, self.made / columns * side);
-        (y < height).then(|| Area {
-            x,
-            y,
-            width: side.min(width - x),
-            height: side.min(height - y),
+            slices: Slices::new(sampling, [width, height]).map_err(Refusal::failed)?,
         })
     }
 
     /// Makes the next slice. Returns the answer if none is left.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
-        if let Some(part) = self.slice() {
-            let (_, world) = version.world(self.scale);
-            let made = render_as_asked(world, &self.sampling, part, &Control::default());
-            let made = made.map_err(Refusal::failed)?;
-            self.film.put(part, made.film().pixels());
-            self.made += 1;
-        }
-        if self.slice().is_some() {
+        let (_, world) = version.world(self.scale);
+        if !self.slices.advance(world).map_err(Refusal::failed)? {
             return Ok(None);
         }
+        let film = self.slices.film();
         let mut png = Vec::new();
-        film::write_png(&self.film, None, &mut png).map_err(Refusal::failed)?;
+        film::write_png(film, None, &mut png).map_err(Refusal::failed)?;
         let image = &version.scene.image;
         Ok(Some(json!({
             "version": version.number,
-            "width": self.film.width(),
-            "height": self.film.height(),
+            "width": film.width(),
+            "height": film.height(),
             "size": [image.width, image.height],
             "png": BASE64_STANDARD.encode(png),
         })))

@@ -18,7 +18,8 @@ use crate::editor::{
 /// What the names of our own requests begin with.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// The answer to a request but that for a frame; null where the text has errors. The analysis is not made where it is not asked.
+/// The answer to a request but that for a frame; null where the text has errors. The analysis is
+/// not made where it is not asked.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -36,7 +37,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
         "pick" => pick(params, converter, version),
         "objects" => objects(params, converter, version),
         "overlays" => overlays(params, converter, version),
-        "drag" => drag(params, converter, analysis, version),
+        "drag" => drag(params, converter, version),
         "samples" => samples(params, version),
         _ => Err(Refusal::unknown(&format!("{NAMESPACE}{about}"))),
     }
@@ -124,12 +125,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) ->
     }))
 }
 
-fn drag(
-    params: &Value,
-    converter: Converter<'_>,
-    analysis: &Analysis<'_>,
-    version: &SceneVersion,
-) -> Answer {
+fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let object: Option<usize> = optional(params, "object")?;
     let handle: String = at(params, "/handle")?;
     let along: Option<String> = optional(params, "along")?;
@@ -149,7 +145,9 @@ fn drag(
         to,
         along: along.transpose()?,
     };
-    let dragged = viewport::drag(analysis, &version.scene, &drag).map_err(Refusal::failed)?;
+    let sources = &converter.document.sources;
+    let (scene, alone) = version.alone(sources, object);
+    let dragged = viewport::drag(sources, alone, scene, &drag).map_err(Refusal::failed)?;
     let edits = converter.text_edits(dragged.edits);
     let viewport::Dragged { values, also, .. } = dragged;
     Ok(json!({ "edits": edits, "values": values, "also": also }))

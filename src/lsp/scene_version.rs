@@ -1,17 +1,23 @@
-//! A version of a text as its picture needs it: the scene, and the worlds that pictures and rays ask.
+//! A version of a text as its picture needs it: the scene, and the worlds that pictures and rays
+//! ask.
 //!
-//! All is made once for a version, so that a pick in a scene of 100 000 spheres reads none of them again.
+//! All is made once for a version, so that a pick in a scene of 100 000 spheres reads none of them
+//! again.
 
 use std::collections::VecDeque;
 
 use crate::{
-    editor::{Analysis, viewport::selections},
+    editor::{
+        Analysis,
+        viewport::{self, selections},
+    },
     scene::Scene,
-    source::Span,
+    source::{Sources, Span},
     tracer::World,
 };
 
-/// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown until it is done.
+/// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown
+/// until it is done.
 const WORLDS: usize = 4;
 
 /// A version of a text that has a picture.
@@ -24,6 +30,8 @@ pub struct SceneVersion {
     /// For each object the name or the keyword that stands for it.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
+    /// The text with the object that was dragged last alone.
+    alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
@@ -35,6 +43,7 @@ impl SceneVersion {
             selections: selections(analysis, &scene),
             scene,
             worlds: VecDeque::new(),
+            alone: None,
         })
     }
 
@@ -57,6 +66,14 @@ impl SceneVersion {
             self.worlds.len() - 1
         });
         (&self.scene, &self.worlds[index].1)
+    }
+
+    /// The text with an object alone, or with none, by which drags are read: each step asks for it.
+    pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
+        let known = self.alone.take_if(|(known, _)| *known == object);
+        let made = || (object, viewport::alone(sources, &self.scene, object));
+        let (_, alone) = self.alone.insert(known.unwrap_or_else(made));
+        (&self.scene, alone)
     }
 
     /// Width and height divided by `scale`, rounded up.

@@ -1,15 +1,19 @@
 //! Which content a file has, and when it changes.
 //!
-//! It is the folder that is watched: many editors save by writing another file and renaming it, and the file that was there before is
-//! gone then, with whatever watched it. Of a symbolic link, the folder of the file at its end is watched as well.
+//! It is the folder that is watched: many editors save by writing another file and renaming it, and
+//! the file that was there before is gone then, with whatever watched it. Of a symbolic link, the
+//! folder of the file at its end is watched as well.
 //!
-//! Events come in bursts, so the file is read once there was none for a moment. (notify's own debouncers do that too, but the small one
-//! forgets what kind an event is, and would be woken by our own reading, and the large one keeps books on files that were renamed,
-//! which nobody asks for here.) Once a second the file's time and length are looked at in any case, for folders without events, such as
-//! those on other machines, or where the system has no watch left, and for those that come and go.
+//! Events come in bursts, so the file is read once there was none for a moment. (notify's own
+//! debouncers do that too, but the small one forgets what kind an event is, and would be woken by
+//! our own reading, and the large one keeps books on files that were renamed, which nobody asks for
+//! here.) Once a second the file's time and length are looked at in any case, for folders without
+//! events, such as those on other machines, or where the system has no watch left, and for those
+//! that come and go.
 //!
-//! A save is told by the file's time, its length and which file it is, and not by the text alone: who saves the text that was there
-//! wants to see something happen. Whatever else an editor does to a file that it has written changes none of them.
+//! A save is told by the file's time, its length and which file it is, and not by the text alone:
+//! who saves the text that was there wants to see something happen. Whatever else an editor does to
+//! a file that it has written changes none of them.
 
 use std::{
     collections::BTreeSet,
@@ -127,7 +131,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                         self.follow();
                         continue;
                     }
-                    // It has changed without an event: what was watched is no longer there, or never told.
+                    // It has changed without an event: what was watched is no longer there, or
+                    // never told.
                     self.forget_folders();
                 }
             }
@@ -212,8 +217,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// The file's content, with the stamp that it has. What was written while it was read is read again: with the stamp of before, a
-    /// save that was read already would be taken for another one.
+    /// The file's content, with the stamp that it has. What was written while it was read is read
+    /// again: with the stamp of before, a save that was read already would be taken for another
+    /// one.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -261,13 +267,10 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     (folders, names.into_iter().collect())
 }
 
-/// The folder of a file, by one name however the file is named: the system watches a folder once, so that with the watch of one of
-/// two names that of the other would end.
+/// The folder of a file, by one name however the file is named: the system watches a folder once,
+/// so that with the watch of one of two names that of the other would end.
 fn folder(path: &Path) -> PathBuf {
-    let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    };
+    let folder = files::folder(path);
     // One that is gone is called as it was named.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }

@@ -1,15 +1,17 @@
 //! A world becomes a film: with samples, or exactly.
 //!
-//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the means of its pixels. The part is
-//! cut into tiles, which the threads take as they come; neither the number of threads nor the tiles nor the part asked for can change a bit
-//! of a pixel.
+//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the
+//! means of its pixels. The part is cut into tiles, which the threads take as they come; neither
+//! the number of threads nor the tiles nor the part asked for can change a bit of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without. Which of them a scene asks for is decided here, and what both
-//! have in common is here.
+//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without; `slices`
+//! makes a picture of either kind step by step. Which of them a scene asks for is decided here, and
+//! what both have in common is here.
 
 mod exact;
 mod renderer;
 mod sampled;
+mod slices;
 mod tally;
 mod tile;
 
@@ -34,6 +36,7 @@ use crate::{
 pub use self::{
     exact::{Exact, render_exact, render_numbers},
     sampled::render,
+    slices::{SLICE, Slices, pixel_work},
 };
 
 /// How a render is watched, and by how many it is done.
@@ -101,8 +104,9 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or exactly. The film keeps light, or the bytes of sRGB of which
-/// a PNG file is made: the same file, and less memory to touch.
+/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or
+/// exactly. The film keeps light, or the bytes of sRGB of which a PNG file is made: the same file,
+/// and less memory to touch.
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
@@ -115,8 +119,8 @@ pub fn render_as_asked<P: Pixel>(
     }
 }
 
-/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long as they are wanted: to hand out millions that nobody
-/// renders would take a second.
+/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long
+/// as they are wanted: to hand out millions that nobody renders would take a second.
 fn wanted(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))

@@ -20,6 +20,9 @@ pub struct Fixed {
     pub held_back: usize,
     /// Number of errors left whose fixes only make up a value.
     pub placeholders: usize,
+    /// Number of errors left whose fixes another call would apply: the text has too many of them
+    /// for one call, or bytes that are not UTF-8, which a fixed text would not keep.
+    pub waiting: usize,
 }
 
 /// A fix that was applied.
@@ -37,9 +40,9 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
     /// A fix can show what another mistake hid; so many in a row are more than any text has.
     const ROUNDS: usize = 1000;
-    /// So many bytes are read for it at most: of long texts with more mistakes than a reading
-    /// tells, some are left.
-    const READ: usize = 1 << 24;
+    /// Maximum number of bytes that are read for it: of long texts with more mistakes than a
+    /// reading tells, some are left.
+    const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
@@ -51,10 +54,12 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         true => ROUNDS.min(READ / sources.file.text().len().max(1)).max(1),
         false => 0,
     };
+    let mut is_finished = false;
     for _ in 0..rounds {
         let round = Round::new(&sources, &problems, &staying, most);
         let text = apply(&round.fix, SourceId::File, sources.file.text());
         if round.done.is_empty() || seen.contains(&text) {
+            is_finished = true;
             break;
         }
         let mut after = sources.clone();
@@ -87,6 +92,10 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
             _ => 0,
         },
         placeholders: count(Applicability::Placeholder),
+        waiting: match is_finished {
+            true => 0,
+            false => left.iter().filter(|&&other| other <= most).count(),
+        },
     }
 }
 
@@ -108,7 +117,8 @@ impl Problem {
     }
 }
 
-/// The first fixes of all errors as one, but for those that would change what another one changes: they wait for the next round.
+/// The first fixes of all errors as one, but for those that would change what another one changes:
+/// they wait for the next round.
 struct Round {
     fix: Fix,
     /// The edits that make the text longer, and the problems that offer them: where all of these

@@ -60,7 +60,8 @@ pub struct Block {
 /// Ways to say the same thing, of which a block takes one.
 #[derive(Debug)]
 pub struct Choice {
-    /// Each way, with the fields that belong to it. A way that is taken needs those of them that are [alternatives](Preset::Alternative).
+    /// Each way, with the fields that belong to it. A way that is taken needs those of them that
+    /// are [alternatives](Preset::Alternative).
     pub ways: &'static [&'static [&'static str]],
     /// Why it is one of them.
     pub why: &'static str,
@@ -244,7 +245,8 @@ impl Block {
         })
     }
 
-    /// The fields without which there is no such block: those that have no default, and of alternatives the first.
+    /// The fields without which there is no such block: those that have no default, and of
+    /// alternatives the first.
     pub fn least_fields(&self) -> Vec<&'static Field> {
         let is_needed = |field: &&Field| match field.preset {
             Preset::Required => true,
@@ -268,7 +270,8 @@ impl Block {
         }
     }
 
-    /// The field that is written like this but for capitals and `_`, or that people try this word for.
+    /// The field that is written like this but for capitals and `_`, or that people try this word
+    /// for.
     pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
         let find = |words: fn(&Field) -> &'static str| {
             let mut fields = self.fields.iter();
@@ -277,8 +280,8 @@ impl Block {
         find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
-    /// The field that was probably meant, if any is near: by its letters, or by a word within what was written, as in `near_clip` and
-    /// `eyepoint`.
+    /// The field that was probably meant, if any is near: by its letters, or by a word within what
+    /// was written, as in `near_clip` and `eyepoint`.
     pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
         let words = suggest::words(written);
         let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);

@@ -1,18 +1,16 @@
 //! The conversation with one page, over a web socket.
 //!
-//! What a page asks supersedes what it asked before, so all that has come is taken in before the next slice of work. While there is no work, the socket is waited
-//! for; the scene's file and the picture that another thread makes are looked at a little later.
+//! What a page asks supersedes what it asked before, so all that has come is taken in before the
+//! next slice of work. While there is no work, the socket is waited for; the scene's file and the
+//! picture that another thread makes are looked at a little later.
 
 use std::{
     convert::Infallible,
     pin::pin,
-    sync::{
-        Arc, Mutex, TryLockError,
-        atomic::{AtomicBool, Ordering},
-    },
+    sync::{Arc, Mutex, TryLockError, atomic::Ordering},
     task::{Context, Poll, Waker},
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use axum::extract::ws::{CloseCode, CloseFrame, Message as SocketMessage, WebSocket, close_code};
@@ -23,30 +21,40 @@ use tokio::{runtime::Handle, sync::watch, time::timeout};
 use super::{
     access::{NotAdmitted, Pass},
     download,
+    draft::{Kept, Unsaved},
     scene_file::{NotSaved, SceneFile, lock},
+    watched::{self, Watch},
 };
 use crate::{
     lsp::{
         Refusal, Server,
         messages::{self, Malformed},
-        response,
+        optional, response,
     },
     threads,
 };
 
-/// The longest message of a page, in bytes: far more than any text that an editor in a browser can hold, and little enough for memory.
+/// The longest message of a page, in bytes: far more than any text that an editor in a browser can
+/// hold, and little enough for memory.
 pub const LONGEST: usize = 64 << 20;
 
-/// How long the socket is waited for before one looks at the file and the picture: less than anybody notices.
+/// How long the socket is waited for before one looks at the file and the picture: less than
+/// anybody notices.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at once, unless it is stopped.
+/// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at
+/// once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How long the page has to answer a goodbye: less than the host waits for its conversations when it ends.
+/// How long passes between two messages of how far a picture's file is.
+const PROGRESS: Duration = Duration::from_millis(200);
+
+/// How long the page has to answer a goodbye: less than the host waits for its conversations when
+/// it ends.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Holds the conversation until the page leaves, its pass is over, or the host ends. The runtime carries the messages.
+/// Holds the conversation until the page leaves, its pass is over, or the host ends. The runtime
+/// carries the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -64,7 +72,8 @@ pub fn converse(
         known: 0,
         download: None,
     };
-    // On threads that are there for each of its pictures. Where there are none, the page connects again.
+    // On threads that are there for each of its pictures. Where there are none, the page connects
+    // again.
     let _ = threads::install(None, || {
         let Err(end) = conversation.run();
         conversation.cancel(None);
@@ -72,7 +81,8 @@ pub fn converse(
     });
 }
 
-/// The end of a conversation, with the code that the socket is closed with; none if it is closed or broken.
+/// The end of a conversation, with the code that the socket is closed with; none if it is closed or
+/// broken.
 struct End(Option<CloseCode>);
 
 struct Conversation<'a> {
@@ -91,7 +101,9 @@ struct Conversation<'a> {
 /// A picture's file that is being made.
 struct Download {
     request: Value,
-    cancel: Arc<AtomicBool>,
+    watch: Arc<Watch>,
+    /// When the page was told of it last.
+    told: Instant,
     thread: JoinHandle<Message>,
 }
 
@@ -102,11 +114,8 @@ impl Conversation<'_> {
             Notification::new("studio/session".to_owned(), params).into(),
         ])?;
         while self.server.ended().is_none() {
-            if *self.ending.borrow() {
-                return Err(End(Some(close_code::AWAY)));
-            }
-            if self.pass.is_over() {
-                return Err(End(Some(NotAdmitted::Twice as CloseCode)));
+            if let Some(code) = over(self.pass, self.ending) {
+                return Err(End(Some(code)));
             }
             self.tell_file()?;
             if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
@@ -114,6 +123,7 @@ impl Conversation<'_> {
             {
                 self.say(vec![answer])?;
             }
+            self.tell_progress()?;
             match self.read()? {
                 Some(SocketMessage::Text(text)) => self.hear(&text)?,
                 Some(SocketMessage::Binary(_)) => return Err(End(Some(close_code::UNSUPPORTED))),
@@ -128,8 +138,9 @@ impl Conversation<'_> {
         Err(End(Some(close_code::NORMAL)))
     }
 
-    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not waited for, not even as long as
-    /// the shortest time that a timer knows, which is a millisecond.
+    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not
+    /// waited for, not even as long as the shortest time that a timer knows, which is a
+    /// millisecond.
     fn read(&mut self) -> Result<Option<SocketMessage>, End> {
         let socket = &mut self.socket;
         let read = match self.server.is_busy() {
@@ -154,15 +165,25 @@ impl Conversation<'_> {
 
     fn send(&mut self, message: SocketMessage) -> Result<(), End> {
         let socket = &mut self.socket;
-        let sent = async { timeout(WRITE_TIMEOUT, socket.send(message)).await };
-        match self.runtime.block_on(sent) {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) | Err(_) => Err(End(None)),
+        let mut sent = pin!(socket.send(message));
+        let start = Instant::now();
+        loop {
+            let slice = async { timeout(WAIT, sent.as_mut()).await };
+            match self.runtime.block_on(slice) {
+                Ok(Ok(())) => return Ok(()),
+                Ok(Err(_)) => return Err(End(None)),
+                Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(End(None)),
+                Err(_) => {}
+            }
+            // A page that reads nothing keeps neither the host from ending nor a session.
+            if let Some(code) = over(self.pass, self.ending) {
+                return Err(End(Some(code)));
+            }
         }
     }
 
-    /// Closes the socket. What the page still says is read for a moment: unread, it would break the connection before the code
-    /// has arrived. The socket answers the page's own goodbye meanwhile.
+    /// Closes the socket. What the page still says is read for a moment: unread, it would break the
+    /// connection before the code has arrived. The socket answers the page's own goodbye meanwhile.
     fn close(&mut self, End(code): End) {
         if let Some(code) = code {
             let reason = "".into();
@@ -181,7 +202,8 @@ impl Conversation<'_> {
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
-    /// Tells the page about the file, if it is another than the page knows; a little later, while another page has it.
+    /// Tells the page about the file, if it is another than the page knows; a little later, while
+    /// another page has it.
     fn tell_file(&mut self) -> Result<(), End> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
@@ -204,12 +226,25 @@ impl Conversation<'_> {
             "saved": file.path().is_some(),
         });
         if let Some(draft) = draft {
-            params["draft"] = draft;
+            params["draft"] = json!(draft);
         }
         drop(file);
         self.say(vec![
             Notification::new("studio/file".to_owned(), params).into(),
         ])
+    }
+
+    /// Tells the page which part of the picture's file is made, a few times a second.
+    fn tell_progress(&mut self) -> Result<(), End> {
+        let now = Instant::now();
+        match &mut self.download {
+            Some(download) if now.duration_since(download.told) > PROGRESS => {
+                download.told = now;
+                let share = download.watch.share();
+                self.say(vec![download::progress(share)])
+            }
+            _ => Ok(()),
+        }
     }
 
     fn hear(&mut self, text: &str) -> Result<(), End> {
@@ -257,8 +292,13 @@ impl Conversation<'_> {
                 }
             }
             ("studio/draft", text) => {
-                let kept = lock(self.file).keep_draft(text, field("base"));
-                let kept = kept.map_err(Refusal::failed);
+                let newest = text.map(|text| Unsaved::new(text, field("base")));
+                let keep = |earlier: Option<Vec<Unsaved>>| {
+                    let texts = newest.into_iter().chain(earlier.into_iter().flatten());
+                    let kept = lock(self.file).keep_draft(Kept::new(texts).as_ref());
+                    kept.map_err(Refusal::failed)
+                };
+                let kept = optional(&params, "earlier").and_then(keep);
                 kept.map(|()| json!({ "ok": true }))
             }
             ("studio/alive", _) => Ok(json!({ "ok": true })),
@@ -275,14 +315,15 @@ impl Conversation<'_> {
         if self.download.is_some() {
             return self.say(failed("another picture is being made"));
         }
-        let cancel = Arc::new(AtomicBool::new(false));
-        let cancelled = Arc::clone(&cancel);
+        let watch = Arc::new(Watch::default());
+        let watched = Arc::clone(&watch);
         let thread = thread::Builder::new().name("picture".to_owned());
-        match thread.spawn(move || download::answer(request, &cancelled)) {
+        match thread.spawn(move || watched::answer(request, &watched)) {
             Ok(thread) => {
                 self.download = Some(Download {
                     request: json!(id),
-                    cancel,
+                    watch,
+                    told: Instant::now(),
                     thread,
                 });
                 Ok(())
@@ -296,12 +337,21 @@ impl Conversation<'_> {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
         {
-            download.cancel.store(true, Ordering::SeqCst);
+            download.watch.cancel.store(true, Ordering::SeqCst);
         }
     }
 }
 
-/// The code that says what is wrong with what the page has sent; none if the connection itself is broken.
+/// The code that the socket is closed with where the host ends, or what let the page in is over.
+fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
+    if *ending.borrow() {
+        return Some(close_code::AWAY);
+    }
+    pass.is_over().then_some(NotAdmitted::Twice as CloseCode)
+}
+
+/// The code that says what is wrong with what the page has sent; none if the connection itself is
+/// broken.
 fn fault(error: axum::Error) -> Option<CloseCode> {
     use tungstenite::Error;
     match *error.into_inner().downcast().ok()? {

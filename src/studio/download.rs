@@ -1,19 +1,16 @@
 //! The downloads of a page: a text's picture as a file, rendered as the scene asks for.
-
-use std::{
-    error::Error,
-    sync::atomic::{AtomicBool, Ordering},
-};
+//!
+//! The engine in the browser has one thread, and makes a file in slices ([`Sliced`]); the host on
+//! this machine has threads for it (`watched`).
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
-use lsp_server::{Message, Request};
+use lsp_server::{Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 
 use crate::{
-    area::Area,
-    film::{self, Film, Recipe},
-    lsp::{Answer, Refusal, response, unharmed},
-    render::{self, Control, RenderError},
+    film::{self, Recipe},
+    lsp::{Refusal, response, unharmed},
+    render::Slices,
     sampling::Sampling,
     scene::{self, Scene},
     source::{Source, Sources},
@@ -22,75 +19,91 @@ use crate::{
 
 /// The requests for a picture's file.
 const PNG: &str = "studio/png";
-const EXR: &str = "studio/exr";
+pub(super) const EXR: &str = "studio/exr";
 
 /// Whether a request is for a picture's file.
 pub fn is_asked_for(request: &Request) -> bool {
     [PNG, EXR].contains(&&*request.method)
 }
 
-/// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
-pub fn answer(request: Request, cancel: &AtomicBool) -> Message {
-    let Request { id, method, params } = request;
-    response(id, unharmed(|| file(&method, &params, cancel)))
+/// Tells the page which part of a picture is made.
+pub fn progress(share: f64) -> Message {
+    let params = json!({ "share": share });
+    Notification::new("studio/progress".to_owned(), params).into()
 }
 
-fn file(method: &str, params: &Value, cancel: &AtomicBool) -> Answer {
+/// The scene that a request is about.
+pub(super) fn scene(params: &Value) -> Result<(Scene, String), Refusal> {
     let text = params.get("text").and_then(Value::as_str);
     let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
     let reading = scene::read(&Sources::new(Source::from_text("scene.scn", text)));
     let scene = reading.scene;
     let scene = scene.ok_or_else(|| Refusal::failed("the scene has errors"))?;
-    let made = match method {
-        EXR => exr(&scene, cancel),
-        _ => png(&scene, text, cancel),
-    };
-    let file = made.map_err(|error| match cancel.load(Ordering::SeqCst) {
-        true => Refusal::cancelled(),
-        false => Refusal::failed(error),
-    })?;
-    let name = method.trim_start_matches("studio/");
-    Ok(json!({ name: BASE64_STANDARD.encode(file) }))
+    Ok((scene, text.to_owned()))
 }
 
-type Made = Result<Vec<u8>, Box<dyn Error>>;
+pub(super) fn sampling(scene: &Scene) -> Sampling {
+    Sampling::new(&scene.sampler, scene.image.width, scene.image.height)
+}
 
-fn png(scene: &Scene, text: &str, cancel: &AtomicBool) -> Made {
-    let film: Film<[u8; 3]> = rendered(scene, cancel)?;
-    let recipe = Recipe {
-        scene: text.to_owned(),
+pub(super) fn recipe(scene: String) -> Recipe {
+    Recipe {
+        scene,
         overrides: Vec::new(),
         crop: None,
-    };
-    let mut file = Vec::new();
-    film::write_png(&film, Some(&recipe), &mut file)?;
-    Ok(file)
+    }
 }
 
-/// For the host on this machine alone: the tables of the format's compressions are a quarter of what a browser would have to load.
-#[cfg(feature = "studio")]
-fn exr(scene: &Scene, cancel: &AtomicBool) -> Made {
-    let film: Film<[f32; 3]> = rendered(scene, cancel)?;
-    let whole = Area::whole(film.width(), film.height());
-    let mut file = std::io::Cursor::new(Vec::new());
-    film::write_exr(&film, whole, whole, &mut file)?;
-    Ok(file.into_inner())
+/// A picture's file that is made in slices.
+#[derive(Debug)]
+pub struct Sliced {
+    /// Who asked for it.
+    pub request: RequestId,
+    text: String,
+    world: World,
+    slices: Slices<[u8; 3]>,
 }
 
-#[cfg(not(feature = "studio"))]
-fn exr(_: &Scene, _: &AtomicBool) -> Made {
-    Err("no EXR is written here".into())
-}
+impl Sliced {
+    /// Begins with the file that a request asks for. It is no EXR: the tables of that format's
+    /// compressions are a quarter of what a browser would have to load.
+    ///
+    /// # Errors
+    ///
+    /// Why there will be no file.
+    pub fn new(request: &Request) -> Result<Self, Refusal> {
+        unharmed(|| {
+            if request.method == EXR {
+                return Err(Refusal::failed("no EXR is written here"));
+            }
+            let (scene, text) = scene(&request.params)?;
+            let size = [scene.image.width, scene.image.height];
+            Ok(Self {
+                request: request.id.clone(),
+                text,
+                world: World::new(&scene),
+                slices: Slices::new(sampling(&scene), size).map_err(Refusal::failed)?,
+            })
+        })
+    }
 
-fn rendered<P: film::Pixel>(scene: &Scene, cancel: &AtomicBool) -> Result<Film<P>, RenderError> {
-    let world = World::new_unless(scene, cancel)?;
-    let (width, height) = (scene.image.width, scene.image.height);
-    let sampling = Sampling::new(&scene.sampler, width, height);
-    let whole = Area::whole(width, height);
-    let control = Control {
-        cancel,
-        ..Control::default()
-    };
-    let rendered = render::render_as_asked(&world, &sampling, whole, &control)?;
-    Ok(rendered.into_film())
+    /// Makes a slice. Returns what is to be said of it, and whether that is the answer.
+    pub fn advance(&mut self) -> (Message, bool) {
+        match unharmed(|| self.slice()) {
+            Ok(None) => (progress(self.slices.share()), false),
+            Ok(Some(file)) => (response(self.request.clone(), Ok(file)), true),
+            Err(refusal) => (response(self.request.clone(), Err(refusal)), true),
+        }
+    }
+
+    fn slice(&mut self) -> Result<Option<Value>, Refusal> {
+        if !self.slices.advance(&self.world).map_err(Refusal::failed)? {
+            return Ok(None);
+        }
+        let mut file = Vec::new();
+        let recipe = recipe(self.text.clone());
+        let written = film::write_png(self.slices.film(), Some(&recipe), &mut file);
+        written.map_err(Refusal::failed)?;
+        Ok(Some(json!({ "png": BASE64_STANDARD.encode(file) })))
+    }
 }

@@ -6,16 +6,16 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
-use super::draft::{Draft, Read};
-use serde_json::Value;
-
+use super::draft::{Draft, Kept, Read};
 use crate::{
     files::{self, Original, Purpose},
     preview::{self, Content, Latest},
     scene::SMALLEST,
+    source::Source,
 };
 
-/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it cannot be read as a text.
+/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it
+/// cannot be read as a text.
 pub type Held = Result<Option<String>, String>;
 
 /// A scene's file, or a new scene that has none yet.
@@ -50,8 +50,7 @@ pub enum NotSaved {
 
 /// Why a file could not be written, and what could be done.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
-    let folder = path.parent().filter(|it| *it != Path::new(""));
-    let is_gone = folder.is_some_and(|folder| !folder.exists());
+    let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
         io::ErrorKind::NotFound if is_gone => {
             return NotSaved::Refused(format!(
@@ -119,29 +118,24 @@ impl SceneFile {
         &self.held
     }
 
-    /// What was written and not saved, if it is kept and differs from what is there.
-    pub fn draft(&self) -> Option<Value> {
-        let draft = self.draft.kept(self.read)?;
+    /// What was written and not saved, if any is kept that differs from what is there.
+    pub fn draft(&self) -> Option<Kept> {
         let held = self.held.as_ref().ok().and_then(Option::as_deref);
-        (draft["text"].as_str() != held).then_some(draft)
+        let texts = self.draft.kept(self.read)?.texts();
+        Kept::new(texts.filter(|it| Some(&*it.text) != held))
     }
 
-    /// Keeps what is written and not saved; nothing any more if there is no text.
+    /// Keeps what is written and not saved in the place of what was kept; nothing for none.
     ///
     /// # Errors
     ///
     /// Why it is not kept, in words.
-    pub fn keep_draft(&self, text: Option<&str>, base: Option<&str>) -> Result<(), String> {
-        match text {
-            Some(text) => self.draft.keep(text, base),
-            None => {
-                self.draft.forget();
-                Ok(())
-            }
-        }
+    pub fn keep_draft(&self, kept: Option<&Kept>) -> Result<(), String> {
+        self.draft.keep(kept)
     }
 
-    /// Looks at what is there now if the file has changed: what a watch has read may be older than what a page has saved since. Returns the version.
+    /// Looks at what is there now if the file has changed: what a watch has read may be older than
+    /// what a page has saved since. Returns the version.
     pub fn look(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -165,7 +159,8 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a name that no file has. Returns the version that it is.
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a
+    /// name that no file has. Returns the version that it is.
     ///
     /// # Errors
     ///
@@ -176,6 +171,7 @@ impl SceneFile {
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
+        let kept = self.draft.kept(self.read);
         match &self.path {
             Some(path) => {
                 let own = self.name();
@@ -211,21 +207,28 @@ impl SceneFile {
                 let path = self.folder.join(name);
                 write(&path, new, Purpose::New).map_err(|error| refused(name, &path, &error))?;
                 self.watch = preview::watch(&path, self.read).ok();
-                self.draft.forget();
+                let _ = self.draft.keep(None);
                 self.draft = Draft::of(&path);
                 self.path = Some(path);
                 self.version += 1;
             }
         }
-        self.draft.forget();
+        // What this page has written is saved; what earlier ones have is still to be offered.
+        let earlier = kept.into_iter().flat_map(Kept::texts).skip(1);
+        let _ = self.draft.keep(Kept::new(earlier).as_ref());
         self.hold(Ok(Some(new.to_owned())));
         Ok(self.version)
     }
 }
 
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
-    let no_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is not a text in UTF-8");
-    String::from_utf8(bytes?).map_err(no_text)
+    let bytes = bytes?;
+    let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
+    // Half of the bytes of such a text are zero.
+    if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
+        return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
+    }
+    String::from_utf8(bytes).map_err(|_| no_text("it is not a text in UTF-8"))
 }
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.

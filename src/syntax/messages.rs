@@ -84,7 +84,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
 /// What is said besides of programs whose z points away from the viewer.
 pub const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Files of other programs: how they are called, how they start, what marks them and how often at least, and what they have not.
+/// Files of other programs: how they are called, how they start, what marks them and how often at
+/// least, and what they have not.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
     ("XML", "<?xml", "<", 1, ""),
     ("XML", "<", "</", 1, ""),
@@ -92,4 +93,8 @@ pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str)] = &[
     ("a scene of POV-Ray", "", "light_source|#declare|#version|#include|pigment|global_settings|location <|look_at <", 3, ""),
     ("a scene of pbrt", "", "LookAt |WorldBegin|Shape \"|Film \"|Integrator \"|Sampler \"|AttributeBegin|Camera \"", 2, ""),
     ("YAML", "", ":\n|: ", 3, "{="),
+    ("a program in JavaScript", "const impor var let", "new THREE.|new Vector3(|require('|require(\"|=> {|console.|document.|scene.add(", 3, ""),
+    ("a program in Python", "", "import |def |np.|self.|__name__|bpy.|print(|math.", 3, "{"),
+    ("a program in C#", "using publi names", "using |public |class |new Vector3(|void ", 3, ""),
+    ("a mesh of Wavefront", "", "\nv |\nvn |\nf |\nmtllib |\nusemtl ", 3, "{="),
 ];

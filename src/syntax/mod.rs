@@ -1,9 +1,9 @@
 //! Text → tree.
 //!
-//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest reads the items that are
-//! right (`parser`); an item that is not is read token by token (`tokens`, `recovery`), which makes one problem
-//! of each slip and nodes of what can be understood. Names are looked up only to choose between
-//! explanations of a mistake.
+//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest
+//! reads the items that are right (`parser`); an item that is not is read token by token (`tokens`,
+//! `recovery`), which makes one problem of each slip and nodes of what can be understood. Names are
+//! looked up only to choose between explanations of a mistake.
 
 #![cfg_attr(
     not(test),

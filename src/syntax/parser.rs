@@ -1,11 +1,12 @@
 //! The parser: from a text to the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few kilobytes at a time, and
-//! the functions here make nodes of its pairs; they carry the names of the grammar's rules. Where pest stops, or where
-//! words show that something else was meant (a field that its block does not know), `recovery` reads that one item.
+//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few
+//! kilobytes at a time, and the functions here make nodes of its pairs; they carry the names of the
+//! grammar's rules. Where pest stops, or where words show that something else was meant (a field
+//! that its block does not know), `recovery` reads that one item.
 //!
-//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a right text can be taken
-//! apart.
+//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a
+//! right text can be taken apart.
 
 use std::{
     ops::Range,
@@ -15,7 +16,7 @@ use std::{
 
 use pest::{
     Parser as _,
-    iterators::{Pair, Pairs},
+    iterators::Pair,
     pratt_parser::{Assoc, Op, PrattParser},
 };
 
@@ -25,8 +26,8 @@ use super::{
     scan::Scan,
     tokens::{Lexer, TokenKind},
     tree::{
-        Block, Call, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad,
-        chain, negation, number,
+        Block, Definition, Element, Field, Item, Name, Operator, Value, ValueKind, bad, call,
+        chain, group, negation, number,
     },
     vocabulary::Vocabulary,
 };
@@ -49,13 +50,16 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each of 256 levels of nesting.
+/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each
+/// of 256 levels of nesting.
 pub const STACK: usize = 64 << 20;
 
-/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte: most values are short, and there is one for each default.
+/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte:
+/// most values are short, and there is one for each default.
 const SHALLOW: usize = 32;
 
-/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its pairs of a whole file would take much memory.
+/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its
+/// pairs of a whole file would take much memory.
 pub const CHUNK: usize = 4096;
 
 /// Parses a file.
@@ -94,17 +98,14 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
                 break;
             }
             // What cannot start an item goes on with the definition before it.
-            let start = match recovery.items.last() {
-                Some(Item::Definition(last))
-                    if last.span.start >= recovery.read_to
-                        && goes_on(text, last.span.end, next_token.start) =>
-                {
-                    let start = last.span.start;
-                    recovery.items.pop();
-                    start
-                }
-                _ => next_token.start,
-            };
+            let mut start = next_token.start;
+            if let Some(Item::Definition(last)) = recovery.items.last()
+                && last.span.start >= recovery.read_to
+                && goes_on(text, last.span.end, start)
+            {
+                start = last.span.start;
+                recovery.items.pop();
+            }
             at = recovery.item(start);
         }
         recovery.finish(scan)
@@ -140,14 +141,13 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     }
 }
 
-/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and on every thread.
+/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and
+/// on every thread.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK);
-        match builder
-            .spawn_scoped(scope, &work)
-            .map(|handle| handle.join())
-        {
+        let handle = builder.spawn_scoped(scope, &work);
+        match handle.map(|handle| handle.join()) {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
             // No thread to be had: the caller's stack holds the limit in an optimized build.
@@ -163,7 +163,8 @@ pub struct TreeBuilder<'w, 's> {
     words: &'w Vocabulary<'s>,
     /// Where the slice that pest reads starts: its offsets count from there.
     base: usize,
-    /// Whether the item follows the grammar, but holds a field or a function that is not known, so that recovery should try it.
+    /// Whether the item follows the grammar, but holds a field or a function that is not known, so
+    /// that recovery should try it.
     doubtful: bool,
 }
 
@@ -179,7 +180,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items as far as they are right. Answers where they end, and whether that is where pest stopped.
+    /// Reads items as far as they are right. Answers where they end, and whether that is where pest
+    /// stopped.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -210,7 +212,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         (end, true)
     }
 
-    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the name the kind.
+    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the
+    /// name the kind.
     fn is_rest_of_value(&self, block: &Block<'_>, end: usize) -> bool {
         let (Some(kind), Some(name)) = (block.kind, block.name) else {
             return false;
@@ -255,10 +258,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::name => block.name = Some(self.name(&part)),
                 Rule::open => block.open = Some(self.span(&part)),
                 Rule::close => block.close = Some(self.span(&part)),
-                Rule::field => {
-                    let field = self.field(part);
-                    block.fields.push(field);
-                }
+                Rule::field => block.fields.push(self.field(part)),
                 _ => {}
             }
         }
@@ -266,40 +266,31 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             block.span = block.span.to(close);
         }
         let kind = block.kind.map_or("", |kind| kind.text);
-        let words = self.words;
-        self.doubtful |= block
-            .fields
-            .iter()
-            .any(|field| words.is_doubtful(kind, field));
+        let is_doubtful = |field: &Field<'_>| self.words.is_doubtful(kind, field);
+        self.doubtful |= block.fields.iter().any(is_doubtful);
         block
     }
 
     fn field(&mut self, pair: Pair<'_, Rule>) -> Field<'s> {
-        let whole = self.span(&pair);
-        let (mut name, mut value) = (
-            Name {
-                text: "",
-                span: whole,
-            },
-            bad(whole),
-        );
+        let span = self.span(&pair);
+        let mut name = Name { text: "", span };
+        let mut value = bad(span);
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::name => name = self.name(&part),
                 _ => value = self.value(part),
             }
         }
-        Field {
-            name,
-            span: name.span.to(value.span),
-            value,
-        }
+        let span = name.span.to(value.span);
+        Field { name, value, span }
     }
 
     fn value(&mut self, pair: Pair<'_, Rule>) -> Value<'s> {
-        let parts = pair.into_inner();
-        if parts.len() == 1 {
-            return self.operands(parts);
+        let mut parts = pair.into_inner();
+        if parts.len() == 1
+            && let Some(operand) = parts.next()
+        {
+            return self.operand(operand);
         }
         // Both make nodes of pairs, one at a time.
         let this = std::cell::RefCell::new(self);
@@ -319,26 +310,13 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             .parse(parts)
     }
 
-    fn operands(&mut self, mut parts: Pairs<'_, Rule>) -> Value<'s> {
-        match parts.next() {
-            Some(pair) => self.operand(pair),
-            None => bad(Span::new(self.id, self.base, self.base)),
-        }
-    }
-
     fn operand(&mut self, pair: Pair<'_, Rule>) -> Value<'s> {
         let span = self.span(&pair);
         let kind = match pair.as_rule() {
             Rule::number => number(self.written(span)),
             Rule::reference => return self.reference(pair),
             Rule::color => ValueKind::ColorCode(self.written(span)),
-            _ => {
-                let elements = self.elements(pair);
-                match <[Element<'s>; 1]>::try_from(elements) {
-                    Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
-                    Err(elements) => ValueKind::Tuple(elements),
-                }
-            }
+            _ => group(self.elements(pair)),
         };
         Value { kind, span }
     }
@@ -350,22 +328,11 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             None => return bad(Span::new(self.id, self.base, self.base)),
         };
         let Some(arguments) = parts.next() else {
-            return Value {
-                kind: ValueKind::Name(function.text),
-                span: function.span,
-            };
+            return Value::new(ValueKind::Name(function.text), function.span);
         };
         self.doubtful |= self.words.is_foreign_function(function.text);
         let parentheses = self.span(&arguments);
-        let arguments = self.elements(arguments);
-        Value {
-            kind: ValueKind::Call(Box::new(Call {
-                function,
-                arguments,
-                parentheses,
-            })),
-            span: function.span.to(parentheses),
-        }
+        call(function, self.elements(arguments), parentheses)
     }
 
     fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
@@ -373,17 +340,11 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         // A comma between two values.
         let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         for part in parts {
-            match part.as_rule() {
-                Rule::comma => {
-                    let comma = self.span(&part);
-                    if let Some(last) = elements.last_mut() {
-                        last.comma = Some(comma);
-                    }
-                }
-                _ => elements.push(Element {
-                    value: self.value(part),
-                    comma: None,
-                }),
+            if part.as_rule() != Rule::comma {
+                let value = self.value(part);
+                elements.push(Element { value, comma: None });
+            } else if let Some(last) = elements.last_mut() {
+                last.comma = Some(self.span(&part));
             }
         }
         elements
@@ -391,10 +352,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     fn name(&self, pair: &Pair<'_, Rule>) -> Name<'s> {
         let span = self.span(pair);
-        Name {
-            text: self.written(span),
-            span,
-        }
+        let text = self.written(span);
+        Name { text, span }
     }
 
     fn span(&self, pair: &Pair<'_, Rule>) -> Span {

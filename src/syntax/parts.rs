@@ -22,12 +22,14 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse: one thread lowers what they parse, and more would wait for it.
+/// Maximum number of threads that parse: one thread lowers what they parse, and more would wait for
+/// it.
 const MOST_THREADS: usize = 4;
 
-/// Parses a file in parts of at least so many bytes, and hands over the items of each in their order, so that there is never a tree
-/// of the whole. Answers whether all went well; otherwise the file has mistakes, is short, `each` wanted no more, or it was
-/// cancelled, and what was handed over does not count.
+/// Parses a file in parts of at least so many bytes, and hands over the items of each in their
+/// order, so that there is never a tree of the whole. Answers whether all went well; otherwise the
+/// file has mistakes, is short, `each` wanted no more, or it was cancelled, and what was handed
+/// over does not count.
 pub fn parse_in_parts<'s>(
     source: &'s Source,
     id: SourceId,
@@ -61,7 +63,8 @@ pub fn parse_in_parts<'s>(
                         }
                     }
                 };
-                // Without the thread nothing is received from it, and the file is parsed as a whole.
+                // Without the thread nothing is received from it, and the file is parsed as a
+                // whole.
                 let builder = thread::Builder::new().stack_size(STACK);
                 let _ = builder.spawn_scoped(scope, work);
                 results

@@ -16,7 +16,8 @@ pub struct Message {
 }
 
 impl Message {
-    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where there is no fix.
+    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where
+    /// there is no fix.
     pub const fn new(
         code: &'static str,
         message: &'static str,
@@ -48,7 +49,8 @@ impl Message {
         self.code.starts_with("needless") || self.code == "plus_sign"
     }
 
-    /// The problem at a place; the words go where the message names something. A fix says what to do.
+    /// The problem at a place; the words go where the message names something. A fix says what to
+    /// do.
     pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
         let filled = |text: &str| {
             let mut parts = text.split('{');

@@ -1,7 +1,7 @@
 //! What must be known of a text before it is parsed.
 //!
-//! In: a text. Out: its comments, where it can be taken apart, the characters that cannot be seen, and where it may nest too deep for pest.
-//! One walk of the lexer, without recursion.
+//! In: a text. Out: its comments, where it can be taken apart, the characters that cannot be seen,
+//! and where it may nest too deep for pest. One walk of the lexer, without recursion.
 
 use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
 
@@ -27,8 +27,8 @@ pub struct Scan {
     comments: Vec<Range<usize>>,
     /// Where the comment starts that has no `*/`.
     open_comment: Option<usize>,
-    /// Where more parentheses and minuses are open than a value may have. A minus between two values counts, too: recovery,
-    /// which reads these items, counts exactly.
+    /// Where more parentheses and minuses are open than a value may have. A minus between two
+    /// values counts, too: recovery, which reads these items, counts exactly.
     pub deep: Vec<usize>,
     /// Where a right text can be taken apart: behind a `}` or before a `let`, at most one place in
     /// [`SPACING`] bytes.
@@ -119,7 +119,8 @@ impl Scan {
         }
     }
 
-    /// Whether the text has no comment that is never closed, no value that nests too deep and no odd white space.
+    /// Whether the text has no comment that is never closed, no value that nests too deep and no
+    /// odd white space.
     pub fn is_plain(&self) -> bool {
         self.open_comment.is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }

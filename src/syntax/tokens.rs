@@ -1,15 +1,17 @@
 //! The lexer: from a text to its tokens.
 //!
-//! In: a text and an offset. Out: one token after the other, comments among them; what lies between two tokens is white
-//! space. It knows nothing of the grammar, so it reads any text: a character that starts no token is one by itself. The
-//! scan for comments, recovery and the editor read with it; the formatter walks the tree.
+//! In: a text and an offset. Out: one token after the other, comments among them; what lies between
+//! two tokens is white space. It knows nothing of the grammar, so it reads any text: a character
+//! that starts no token is one by itself. The scan for comments, recovery and the editor read with
+//! it; the formatter walks the tree.
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind {
     /// A word of ASCII letters, digits and `_` that does not start with a digit; `let` is one.
     Name,
-    /// What starts with a digit, or with a `.` and a digit, up to the end of the word: `2`, `1e-3`, `30deg`, `0x10`.
+    /// What starts with a digit, or with a `.` and a digit, up to the end of the word: `2`, `1e-3`,
+    /// `30deg`, `0x10`.
     Number,
     /// `#` and the word right behind it.
     Color,
@@ -68,9 +70,13 @@ impl<'s> Lexer<'s> {
 
     /// The first token at an offset or behind it that is no comment and can be seen.
     pub fn past_comments(text: &'s str, at: usize) -> Token {
-        let mut lexer = Self::new(text, at);
+        Self::new(text, at).seen_token()
+    }
+
+    /// The next token that is no comment and can be seen.
+    pub fn seen_token(&mut self) -> Token {
         loop {
-            let token = lexer.token();
+            let token = self.token();
             if !matches!(
                 token.kind,
                 TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace
@@ -140,9 +146,9 @@ impl<'s> Lexer<'s> {
             let is_digit = bytes.get(end + 1).is_some_and(u8::is_ascii_digit);
             let is_exponent = matches!(before, Some(b'e' | b'E')) && end > start && is_digit;
             match byte {
-                b'.' | b'_' => {}
+                b'.' => {}
                 b'+' | b'-' if is_exponent => {}
-                _ if byte.is_ascii_alphanumeric() => {}
+                _ if is_name_char(byte) => {}
                 _ => break,
             }
             end += 1;
@@ -150,8 +156,8 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Up to the mark that closes it in its line; where there is none, the word behind the mark. A comment may start within:
-    /// to the grammar these are no quotation marks.
+    /// Up to the mark that closes it in its line; where there is none, the word behind the mark. A
+    /// comment may start within: to the grammar these are no quotation marks.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);
@@ -202,14 +208,11 @@ pub fn is_color_code(digits: &str) -> bool {
 
 /// Whether a character cannot be seen and is no white space of the language.
 fn is_odd_space(c: char) -> bool {
-    let other = c.is_whitespace() && !matches!(c, ' ' | '\t' | '\r' | '\n');
-    let control = c.is_ascii_control() && !c.is_whitespace();
-    other
-        || control
-        || matches!(
-            c,
-            '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}' | '\u{AD}'
-        )
+    match c {
+        ' ' | '\t' | '\r' | '\n' => false,
+        '\u{200B}'..='\u{200F}' | '\u{2060}' | '\u{FEFF}' | '\u{AD}' => true,
+        _ => c.is_whitespace() || c.is_ascii_control(),
+    }
 }
 
 /// The digits at the start of a number, up to its unit or whatever else follows them.

@@ -1,8 +1,8 @@
 //! The syntax tree.
 //!
-//! It says what was written and where, and nothing of what it means. Every token of a right file has its place in a node's
-//! span, so that a formatter can put the text together again from the tree and the comments. What could not be understood
-//! is `Bad`, and a problem was reported for it.
+//! It says what was written and where, and nothing of what it means. Every token of a right file
+//! has its place in a node's span, so that a formatter can put the text together again from the
+//! tree and the comments. What could not be understood is `Bad`, and a problem was reported for it.
 
 use crate::{math::Angle, source::Span};
 
@@ -136,6 +136,10 @@ pub struct Value<'s> {
 }
 
 impl<'s> Value<'s> {
+    pub(super) fn new(kind: ValueKind<'s>, span: Span) -> Self {
+        Self { kind, span }
+    }
+
     /// The values that it is made of, in order.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
@@ -186,16 +190,16 @@ pub enum ValueKind<'s> {
         /// What follows it.
         operand: Box<Value<'s>>,
     },
-    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from left to right. A chain
-    /// rather than a tree, so that a long sum is no deeper than a short one.
+    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from
+    /// left to right. A chain rather than a tree, so that a long sum is no deeper than a short one.
     Chain {
         /// The first value.
         first: Box<Value<'s>>,
         /// What is done to it, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A field's name without a value after it. It is for the next stage to report, which knows the fields' names and so
-    /// whether the value is missing or the name of a field.
+    /// A field's name without a value after it. It is for the next stage to report, which knows the
+    /// fields' names and so whether the value is missing or the name of a field.
     Missing,
     /// Something that was reported.
     Bad,
@@ -301,18 +305,37 @@ pub(super) fn number(written: &str) -> ValueKind<'_> {
 
 /// `-VALUE`
 pub(super) fn negation(sign: Span, operand: Value<'_>) -> Value<'_> {
-    Value {
-        span: sign.to(operand.span),
-        kind: ValueKind::Negation {
-            sign,
-            operand: Box::new(operand),
-        },
+    let span = sign.to(operand.span);
+    let operand = Box::new(operand);
+    Value::new(ValueKind::Negation { sign, operand }, span)
+}
+
+/// `FUNCTION(ARGUMENT, …)`
+pub(super) fn call<'s>(
+    function: Name<'s>,
+    arguments: Vec<Element<'s>>,
+    parentheses: Span,
+) -> Value<'s> {
+    let span = function.span.to(parentheses);
+    let call = Call {
+        function,
+        arguments,
+        parentheses,
+    };
+    Value::new(ValueKind::Call(Box::new(call)), span)
+}
+
+/// `(VALUE)`, or `(VALUE, VALUE, …)`
+pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
+    match <[Element<'_>; 1]>::try_from(elements) {
+        Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
+        Err(elements) => ValueKind::Tuple(elements),
     }
 }
 
 /// `VALUE OPERATOR VALUE`; operators of one precedence make one chain.
 pub(super) fn chain<'s>(
-    left: Value<'s>,
+    mut left: Value<'s>,
     operator: Operator,
     sign: Span,
     operand: Value<'s>,
@@ -323,30 +346,19 @@ pub(super) fn chain<'s>(
         sign,
         operand,
     };
-    let kind = match left.kind {
-        ValueKind::Chain { first, mut rest }
-            if rest
-                .last()
-                .is_some_and(|last| last.operator.is_of_product() == operator.is_of_product()) =>
-        {
-            rest.push(step);
-            ValueKind::Chain { first, rest }
-        }
-        kind => ValueKind::Chain {
-            first: Box::new(Value {
-                kind,
-                span: left.span,
-            }),
-            rest: vec![step],
-        },
-    };
-    Value { kind, span }
+    let is_like = |last: &Step<'_>| last.operator.is_of_product() == operator.is_of_product();
+    if let ValueKind::Chain { rest, .. } = &mut left.kind
+        && rest.last().is_some_and(is_like)
+    {
+        rest.push(step);
+        left.span = span;
+        return left;
+    }
+    let (first, rest) = (Box::new(left), vec![step]);
+    Value::new(ValueKind::Chain { first, rest }, span)
 }
 
 /// A value that cannot be told.
 pub(super) fn bad<'s>(span: Span) -> Value<'s> {
-    Value {
-        kind: ValueKind::Bad,
-        span,
-    }
+    Value::new(ValueKind::Bad, span)
 }

@@ -1,8 +1,8 @@
 //! The known words by which recovery tells what was meant.
 //!
-//! The grammar takes any name for a field, a kind or a value. What a text says that does not follow it can only be told by
-//! which of them are known: in `radius color olive` a value is missing. They are looked up in the schema
-//! and among the names that the text defines.
+//! The grammar takes any name for a field, a kind or a value. What a text says that does not follow
+//! it can only be told by which of them are known: in `radius color olive` a value is missing. They
+//! are looked up in the schema and among the names that the text defines.
 
 use std::{collections::HashMap, sync::OnceLock};
 
@@ -107,8 +107,8 @@ impl<'s> Vocabulary<'s> {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
-    /// Whether a field that follows the grammar may have been meant otherwise: its block does not know it, its value is the
-    /// name of a field, or it takes a word and has something else.
+    /// Whether a field that follows the grammar may have been meant otherwise: its block does not
+    /// know it, its value is the name of a field, or it takes a word and has something else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let Some(row) = schema::block(kind) else {
             return self.takes(kind, field.name.text).is_none();

@@ -1,5 +1,5 @@
-//! The documents say what happens: their commands are run and the outputs compared, their scenes are checked, and their links
-//! lead to files.
+//! The documents say what happens: their commands are run and the outputs compared, their scenes
+//! are checked, and their links lead to files.
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
 
@@ -14,10 +14,11 @@ use crate::{
 };
 
 /// The documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 4] = [
+const DOCUMENTS: [&str; 5] = [
     "README.md",
     "docs/accuracy.md",
     "docs/speed.md",
+    "docs/teaching.md",
     "examples/README.md",
 ];
 

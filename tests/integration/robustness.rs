@@ -1,6 +1,8 @@
-//! Whatever the text, reading it ends soon, says something if there is no scene, and points into the text.
+//! Whatever the text, reading it ends soon, says something if there is no scene, and points into
+//! the text.
 //!
-//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the tests tries a sample, of shorter texts.
+//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the
+//! tests tries a sample, of shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -15,6 +17,7 @@ use pinhole::{
     diagnostic::{self, Diagnostic, Drawing, Edit, MOST_PROBLEMS, Report, Style},
     format::format,
     scene,
+    schema::BLOCKS,
     source::{Source, Sources, Span},
 };
 
@@ -42,7 +45,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests are, up to four seconds.
+    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests
+    // are, up to four seconds.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -107,6 +111,14 @@ fn one_thing_many_times(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
+    // Each field, misspelt, in a block that lacks it.
+    for block in BLOCKS {
+        for field in block.field_names() {
+            let piece = format!("x{field} 1\n");
+            let within = piece.repeat(4 * length / piece.len());
+            read(format!("{CAMERA} {} {{ {within} }}", block.name));
+        }
+    }
 }
 
 /// Of very many mistakes the first ten thousand are reported, and that there are others, however

@@ -36,7 +36,7 @@ fn what_acts_on_a_terminal_is_shown_as_its_code() {
             "red \u{202e}der\u{202c} \u{2067}",
             "red \\u{202e}der\\u{202c} \\u{2067}",
         ),
-        ("é 🎱 e\u{301} \u{200d}", "é 🎱 e\u{301} \u{200d}"),
+        ("é 🎱 e\u{301} \u{200d}", "é 🎱 e\u{301} \\u{200d}"),
     ] {
         assert_eq!(visible(text), shown);
     }

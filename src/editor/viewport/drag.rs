@@ -1,7 +1,11 @@
 //! A handle is moved: what has to change in the text.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are written to one decimal after another, until the text means
-//! something that is seen within half a pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a condition of the language.
+//! The object or the camera is moved first, in real numbers. Then the fields that differ are
+//! written to one decimal after another, until the text means something that is seen within half a
+//! pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a
+//! condition of the language.
+
+use std::iter;
 
 use glam::{DVec2, DVec3};
 
@@ -38,7 +42,8 @@ pub struct Drag<'a> {
     pub along: Option<Along>,
 }
 
-/// What has to change in the text, and what becomes of the fields that do; nothing at all where nobody would see it.
+/// What has to change in the text, and what becomes of the fields that do; nothing at all where
+/// nobody would see it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
     /// The changes.
@@ -49,12 +54,38 @@ pub struct Dragged {
     pub also: Vec<String>,
 }
 
-/// What has to change in a text that means a scene where a handle is moved.
+/// The text of a scene with spaces in the place of all objects but one, so that what is left stands
+/// where it stood and is read quickly.
+pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
+    let source = &sources.file;
+    let mut text = String::with_capacity(source.text().len());
+    let objects = scene.objects.iter().enumerate();
+    for (_, other) in objects.filter(|(index, _)| Some(*index) != object) {
+        text.push_str(source.slice(text.len()..other.span.start));
+        for letter in source.slice(other.span.range()).chars() {
+            match letter {
+                '\n' => text.push('\n'),
+                _ => text.extend(iter::repeat_n(' ', letter.len_utf8())),
+            }
+        }
+    }
+    text.push_str(source.slice(text.len()..source.text().len()));
+    Sources::new(Source::from_text(source.name(), text))
+}
+
+/// What has to change in a text that means a scene where a handle is moved; `alone` is that text
+/// with the moved object [`alone`].
 ///
 /// # Errors
 ///
 /// Why it cannot be done, in a sentence.
-pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<Dragged, String> {
+pub fn drag(
+    sources: &Sources,
+    alone: &Sources,
+    scene: &Scene,
+    drag: &Drag<'_>,
+) -> Result<Dragged, String> {
+    let analysis = &Analysis::new(alone);
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
@@ -96,7 +127,6 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
     if view.agree(ideal, current) {
         return Ok(Dragged::default());
     }
-    // A text is read quickly without the other objects.
     let objects = scene.objects.iter().enumerate();
     let others = objects.filter(|(index, _)| Some(*index) != drag.object);
     let without_others: Vec<Edit> = others.map(|(_, it)| Edit::new(it.span, "")).collect();
@@ -109,8 +139,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
             continue;
         };
-        let alone = read(analysis, [&edits, &without_others]);
-        match alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
+        let read_alone = read(analysis.source(), [&edits, &without_others]);
+        match read_alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
             Ok(Some(found)) if view.agree(ideal, found) => {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
@@ -120,8 +150,8 @@ pub fn drag(analysis: &Analysis<'_>, scene: &Scene, drag: &Drag<'_>) -> Result<D
                 let also = match edits.iter().all(is_own) {
                     true => Vec::new(),
                     false => {
-                        let whole = read(analysis, [&edits, &[]])?;
-                        others_changed(analysis, drag.object, [scene, &whole])
+                        let whole = read(&sources.file, [&edits, &[]])?;
+                        others_changed(&Analysis::new(sources), drag.object, [scene, &whole])
                     }
                 };
                 let value = |change: &Change| {
@@ -223,8 +253,7 @@ fn others_changed(
 }
 
 /// The scene that a text means after some edits.
-fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
-    let source = analysis.source();
+fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
     let reading = scene::read(&Sources::new(Source::from_text(source.name(), text)));
@@ -236,8 +265,8 @@ fn read(analysis: &Analysis<'_>, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Points that a camera sees in the middle and in the corners of its picture, before and behind what it is moved about; none where numbers have too few digits
-/// for them.
+/// Points that a camera sees in the middle and in the corners of its picture, before and behind
+/// what it is moved about; none where numbers have too few digits for them.
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -261,7 +290,8 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Whether everything in the picture or near to it, and what is held, is seen within half a pixel of where it should be.
+    /// Whether everything in the picture or near to it, and what is held, is seen within half a
+    /// pixel of where it should be.
     fn agree(&self, ideal: Part, found: Part) -> bool {
         let size = self.projection.size;
         let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
@@ -275,7 +305,8 @@ impl View<'_> {
         })
     }
 
-    /// Where that is seen which tells a camera or an object from others, and whether it is what is held.
+    /// Where that is seen which tells a camera or an object from others, and whether it is what is
+    /// held.
     fn marks(&self, part: Part) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match part {
@@ -283,7 +314,8 @@ impl View<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board stays where the view axis meets it: what moves is the point that it holds now.
+            // The handle of a board stays where the view axis meets it: what moves is the point
+            // that it holds now.
             Part::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()

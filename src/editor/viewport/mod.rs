@@ -1,10 +1,13 @@
-//! What an interactive view of the picture needs: what is seen at a point, what to draw over it, and what moving a handle does to the text.
+//! What an interactive view of the picture needs: what is seen at a point, what to draw over it,
+//! and what moving a handle does to the text.
 //!
-//! In: a text and its scene, and points of the picture in pixels from its top left corner. Out: points, and edits of the text. Nothing here is told to anybody
-//! before it was computed from the scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
+//! In: a text and its scene, and points of the picture in pixels from its top left corner. Out:
+//! points, and edits of the text. Nothing here is told to anybody before it was computed from the
+//! scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
 //!
-//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are and how one moves the object, `camera`
-//! how the pointer moves the camera; `edits` writes the fields that change into the text. `drag` is all of that together.
+//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are
+//! and how one moves the object, `camera` how the pointer moves the camera; `edits` writes the
+//! fields that change into the text. `drag` is all of that together.
 
 mod camera;
 mod drag;
@@ -20,7 +23,7 @@ use crate::{
     source::Span,
 };
 
-pub use drag::{Drag, Dragged, drag};
+pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
 pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};

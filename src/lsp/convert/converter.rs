@@ -1,4 +1,5 @@
-//! Converts answers about a document into those of the protocol, and the places and changes of the protocol into ours.
+//! Converts answers about a document into those of the protocol, and the places and changes of the
+//! protocol into ours.
 
 use line_index::WideEncoding;
 use serde_json::{Value, json};
@@ -65,7 +66,8 @@ impl Converter<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    /// A diagnostic: the help stands below the message, the labels but the first are its other places.
+    /// A diagnostic: the help stands below the message, the labels but the first are its other
+    /// places.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
         let place = labels.next().map(|label| self.range(label.span));
@@ -254,8 +256,8 @@ impl Converter<'_> {
     }
 }
 
-/// The changes of a text: each of a range, or of the whole text if there is none. A range that is null is neither, and taken
-/// for the whole text it would put a piece in the place of everything.
+/// The changes of a text: each of a range, or of the whole text if there is none. A range that is
+/// null is neither, and taken for the whole text it would put a piece in the place of everything.
 pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {

@@ -109,7 +109,8 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// What is wrong with a number in the place of an angle. Only units with which it fits are offered.
+    /// What is wrong with a number in the place of an angle. Only units with which it fits are
+    /// offered.
     pub fn bare_angle(
         &self,
         what: &str,

@@ -226,7 +226,8 @@ fn allowed(row: &Field, condition: Condition, value: Value) -> (String, Applicab
     (allowed, Applicability::Placeholder)
 }
 
-/// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to 255.
+/// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to
+/// 255.
 fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;

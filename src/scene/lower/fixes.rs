@@ -56,8 +56,8 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is all that it needs, and nothing else stands
-    /// between the fields that go.
+    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is
+    /// all that it needs, and nothing else stands between the fields that go.
     pub(super) fn one_of(
         &self,
         block: &Block<'_>,

@@ -12,7 +12,7 @@ use crate::{
         overrides,
         semantic_model::{Parts, SemanticModel},
     },
-    source::{Source, SourceId, Sources, Span},
+    source::{SourceId, Sources, Span},
     syntax::{self, tree::Item},
 };
 
@@ -31,13 +31,14 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree takes little memory, and that soon
-/// none is read when nobody wants it.
+/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree
+/// takes little memory, and that soon none is read when nobody wants it.
 const PART: usize = 1 << 16;
 
-/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made sense of one after the other, so
-/// that there is never a tree of the whole. The result does not depend on the parts: a file with mistakes is read again as a
-/// whole, for a report may tell of what stands elsewhere.
+/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made
+/// sense of one after the other, so that there is never a tree of the whole. The result does not
+/// depend on the parts: a file with mistakes is read again as a whole, for a report may tell of
+/// what stands elsewhere.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }
@@ -74,7 +75,8 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     lowering.is_right().then(|| lowering.reading())
 }
 
-/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite of errors.
+/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite
+/// of errors.
 pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let (parts, diagnostics, names) = whole(sources, &parsed, &cancel::NEVER).finish();
@@ -164,10 +166,11 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
         && place.is_some_and(|place| place.start <= label.span.start)
 }
 
-/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they are in.
+/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they
+/// are in.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
-    if is_utf16(&sources.file) {
+    if sources.file.is_utf16() {
         diagnostics.clear();
         diagnostics.push(syntax::utf16(Span::new(SourceId::File, 0, 2)));
         return;
@@ -182,25 +185,4 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let span = Span::new(SourceId::File, first, first + 1);
     diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
-}
-
-/// Whether a file is UTF-16, with its mark or without: what people write is mostly ASCII, of which
-/// every second byte is zero, and no other one.
-fn is_utf16(file: &Source) -> bool {
-    const LOOKED_AT: usize = 256;
-    let bytes = file.text().as_bytes();
-    let has_mark = file.invalid_utf8().starts_with(&[0, 1]);
-    let first = if has_mark { 2 } else { 0 };
-    let end = bytes.len().min(first + LOOKED_AT);
-    let start = bytes.get(first..end).unwrap_or_default();
-    let zeros = |first| {
-        start
-            .iter()
-            .skip(first)
-            .step_by(2)
-            .filter(|&&byte| byte == 0)
-            .count()
-    };
-    let (even, odd) = (zeros(0), zeros(1));
-    start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
 }

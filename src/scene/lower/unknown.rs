@@ -1,7 +1,8 @@
-//! Fields that a block does not have: what was probably meant, and the field with its value as it should be.
+//! Fields that a block does not have: what was probably meant, and the field with its value as it
+//! should be.
 //!
-//! A field is renamed only where its value will do: in the block there is a place for it, and the value is of the type that it takes,
-//! or can be made to be.
+//! A field is renamed only where its value will do: in the block there is a place for it, and the
+//! value is of the type that it takes, or can be made to be.
 
 use super::{
     block::{Block, Given},
@@ -41,8 +42,15 @@ impl<'s> Lowering<'s> {
         if field.value.span.source == SourceId::File {
             self.unknown.push(field.value.span);
         }
+        if self.problems.is_full() {
+            return;
+        }
         let meant = self.unknown(block, &field.name, &field.value);
-        block.meant.extend(meant);
+        for field in meant {
+            if !block.meant.contains(&field) {
+                block.meant.push(field);
+            }
+        }
     }
 
     /// Reports it, also of a `--set` argument, and tells what was probably meant.

@@ -1,6 +1,6 @@
 //! The fields of a block.
 
-use super::{Recovery, Within, example, foreign::Place};
+use super::{Recovery, Within, foreign::Place};
 use crate::{
     diagnostic::{Edit, Fix, Label},
     source::Span,
@@ -25,33 +25,26 @@ impl<'s> Recovery<'_, 's> {
         let told = self.problems.len();
         // Braces within are reported, and so it is doubtful which one is missing.
         let (mut braces, mut had_braces) = (0_usize, false);
-        loop {
+        block.close = loop {
             self.comments(Place::Start);
             if self.kind(0) == TokenKind::End || self.is_after_block(block) {
                 block.span.end = self.last_end.max(block.span.end);
                 if !had_braces {
                     self.unclosed_block(block);
                 }
-                break;
+                break None;
             }
             match self.word(0) {
                 "}" if braces > 0 => {
                     braces -= 1;
                     self.bump();
                 }
-                word if word == "}" || word == close => {
-                    let close = self.bump();
-                    block.close = Some(close);
-                    block.span = block.span.to(close);
-                    break;
-                }
+                word if word == "}" || word == close => break Some(self.bump()),
                 sign @ (")" | "]") if self.is_end_of_block() => {
                     let close = self.bump();
                     let fix = Fix::write(close, "}");
-                    self.report(&say::STRAY_CLOSING.safe_if(true), close, &[sign], fix);
-                    block.close = Some(close);
-                    block.span = block.span.to(close);
-                    break;
+                    self.report(&say::STRAY_CLOSING, close, &[sign], fix);
+                    break Some(close);
                 }
                 "let" => self.misplaced_let(),
                 "," | ";" => self.separator(),
@@ -69,13 +62,14 @@ impl<'s> Recovery<'_, 's> {
                 _ if self.is_name(0) => self.field(block),
                 _ => self.no_field(block),
             }
-        }
+        };
+        block.span = block.span.to(block.close.unwrap_or(block.span));
         self.report_slips(told);
         self.within = outside;
     }
 
-    /// Whether something starts here that shows that the block's `}` was forgotten: an item at the start of a line that is
-    /// indented no more than the block.
+    /// Whether something starts here that shows that the block's `}` was forgotten: an item at the
+    /// start of a line that is indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block())
@@ -92,8 +86,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn indent(&self, at: usize) -> usize {
-        let before = self.text.get(..at).unwrap_or_default();
-        let line = before.rsplit('\n').next().unwrap_or_default();
+        let line = self.line_before(at);
         line.len() - line.trim_start().len()
     }
 
@@ -177,11 +170,8 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(value.span);
         }
         self.settle(told);
-        block.fields.push(Field {
-            name,
-            span: name.span.to(value.span),
-            value,
-        });
+        let span = name.span.to(value.span);
+        block.fields.push(Field { name, value, span });
     }
 
     /// The name of a field: one word, but people write `look at` and `view height`.
@@ -197,12 +187,8 @@ impl<'s> Recovery<'_, 's> {
             return first;
         };
         let span = first.span.to(self.bump());
-        self.report(
-            &say::TWO_WORDS,
-            span,
-            &[&self.short(span)],
-            replace(span, text),
-        );
+        let fix = replace(span, text);
+        self.report(&say::TWO_WORDS, span, &[&self.short(span)], fix);
         Name { text, span }
     }
 
@@ -236,14 +222,12 @@ impl<'s> Recovery<'_, 's> {
         let edit = Edit::insert(self.id, at.start, " ");
         let fix = Fix::new(format!("write `{field} {rest}`"), [edit]);
         self.report(&say::MISSING_SPACE, span.to(at), &[field, rest], fix);
-        Some(Field {
-            name: Name {
-                text: field,
-                span: Span::new(self.id, span.start, at.start),
-            },
-            span: span.to(at),
-            value: bad(at),
-        })
+        let name = Name {
+            text: field,
+            span: Span::new(self.id, span.start, at.start),
+        };
+        let (value, span) = (bad(at), span.to(at));
+        Some(Field { name, value, span })
     }
 
     fn value_of_field(&mut self, name: Span) -> Value<'s> {
@@ -265,16 +249,7 @@ impl<'s> Recovery<'_, 's> {
         let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
         let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();
         if is_field || is_comma || is_end {
-            return Value {
-                kind: ValueKind::Missing,
-                span: after,
-            };
-        }
-        if matches!(word, "," | ")" | "]") && word != self.within.close {
-            self.unexpected("a value", example(self.within.takes));
-            self.bump();
-            self.resync();
-            return bad(after.to(self.behind()));
+            return Value::new(ValueKind::Missing, after);
         }
         self.value()
     }
@@ -338,10 +313,9 @@ impl<'s> Recovery<'_, 's> {
         let said = say::MISSING_FIELD_NAME.safe_if(is_sure);
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
-        block.fields.extend(fields.map(|(text, value)| Field {
-            name: Name { text, span },
-            value,
-            span,
+        block.fields.extend(fields.map(|(text, value)| {
+            let name = Name { text, span };
+            Field { name, value, span }
         }));
     }
 }

@@ -1,4 +1,7 @@
-//! What other languages write and this one has not: statements, comments by `#` and `--`, and whole files.
+//! What other languages write and this one has not: statements, comments by `#` and `--`, and whole
+//! files.
+
+use memchr::memmem;
 
 use super::Recovery;
 use crate::{
@@ -23,7 +26,8 @@ pub(super) enum Place {
 }
 
 impl Recovery<'_, '_> {
-    /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands in braces behind it.
+    /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands
+    /// in braces behind it.
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
         self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
@@ -38,14 +42,13 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Passes over comments of other languages. They end with their line, or before the `}` of a block that was opened in it.
+    /// Passes over comments of other languages. They end with their line, or before the `}` of a
+    /// block that was opened in it.
     pub(super) fn comments(&mut self, place: Place) {
         while self.starts_comment(place) {
             let start = self.here().start;
-            let line = self.text.get(start..line_end(self.text, start));
-            let line = line.unwrap_or_default();
-            let before = self.text.get(..start).unwrap_or_default();
-            let before = before.rsplit('\n').next().unwrap_or_default();
+            let line = self.written(Span::new(self.id, start, line_end(self.text, start)));
+            let before = self.line_before(start);
             let kept = match before.matches('{').count() > before.matches('}').count() {
                 true => line.trim_end_matches([' ', '\t', '}']),
                 false => line,
@@ -54,12 +57,11 @@ impl Recovery<'_, '_> {
             let sign = if line.starts_with('#') { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
             // A comment with the right sign would take the brace, too.
-            match kept.len() < line.len() {
-                true => {
-                    let written = self.written(place);
-                    self.report(&say::COMMENT_SIGN, place, &[written, ""], None);
-                }
-                false => self.slip(place),
+            if kept.len() < line.len() {
+                let words = [self.written(place), ""];
+                self.report(&say::COMMENT_SIGN, place, &words, None);
+            } else {
+                self.slip(place);
             }
             self.seek(end);
         }
@@ -87,7 +89,8 @@ impl Recovery<'_, '_> {
             && (place == Place::Start || (place == Place::Operator && is_remark))
     }
 
-    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the name of a colour.
+    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the
+    /// name of a colour.
     fn is_remark(&mut self) -> bool {
         let word = self.word(1);
         let is_lone_color = self.words.is_color(word) && !self.is_on_new_line(2);
@@ -123,26 +126,20 @@ impl Recovery<'_, '_> {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');
-        let ink: String = text
-            .chars()
-            .filter(|c| !c.is_whitespace())
-            .take(5)
-            .collect();
-        let count = |marks: &str| {
-            marks
-                .split('|')
-                .map(|mark| text.matches(mark).count())
-                .sum::<usize>()
-        };
+        let first = Lexer::past_comments(self.text, 0);
+        let ink = self.text.get(first.start..).unwrap_or_default();
+        let ink = ink.chars().filter(|c| !c.is_whitespace());
+        let ink: String = ink.take(5).collect();
+        let times = |mark: &str| memmem::find_iter(text.as_bytes(), mark).count();
+        let count = |marks: &str| marks.split('|').map(times).sum::<usize>();
         let is_it = |row: &&(&str, &str, &str, usize, &str)| {
             row.1.split(' ').any(|start| ink.starts_with(start))
-                && count(row.2) >= row.3
                 && !row.4.chars().any(|other| text.contains(other))
+                && count(row.2) >= row.3
         };
         let Some((what, ..)) = FOREIGN_FILES.iter().find(is_it) else {
             return false;
         };
-        let first = Lexer::past_comments(self.text, 0);
         let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
         let is_left_handed = matches!(*what, "a scene of POV-Ray" | "a scene of pbrt");

@@ -10,7 +10,7 @@ use crate::{
         messages::{self as say, statement},
         problem::shorten,
         tokens::TokenKind,
-        tree::{Block, Definition, Item, Name, bad},
+        tree::{Block, Definition, Item, Name, Value, bad},
     },
 };
 
@@ -62,8 +62,7 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
             return self.named_block(keyword, name);
         }
-        let has_sign = !self.is_end_of_definition() && matches!(self.word(0), "=" | ":");
-        definition.equals = has_sign.then(|| self.bump());
+        definition.equals = matches!(self.word(0), "=" | ":").then(|| self.bump());
         // `:=`
         if self.written(definition.equals.unwrap_or(keyword)) == ":"
             && self.is(0, "=")
@@ -71,7 +70,7 @@ impl<'s> Recovery<'_, 's> {
         {
             definition.equals = definition.equals.map(|colon| colon.to(self.bump()));
         }
-        self.value_of_definition(&mut definition);
+        definition.value = self.value_of_definition(definition.name, definition.equals);
         self.settle(told);
         definition.span = keyword.to(definition.value.span);
         while self.problems.len() == told && matches!(self.word(0), ";" | ",") {
@@ -89,36 +88,33 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Definition(definition));
     }
 
-    fn value_of_definition(&mut self, definition: &mut Definition<'s>) {
-        let (start, sign) = (self.here(), definition.equals);
-        let is_end = self.is_end_of_definition();
-        let Some(name) = definition.name else {
-            let told = self.problems.len();
-            let end = if is_end {
-                self.behind()
-            } else {
-                self.value().span
-            };
+    fn value_of_definition(&mut self, name: Option<Name<'s>>, sign: Option<Span>) -> Value<'s> {
+        let (start, told) = (self.here(), self.problems.len());
+        let value = self.value_if_any();
+        let Some(name) = name else {
             self.problems.truncate(told);
-            definition.value = bad(end);
-            return;
+            return bad(value.map_or(self.behind(), |value| value.span));
         };
         let text = shorten(name.text);
-        if is_end {
+        let Some(value) = value else {
             let span = name.span.to(sign.unwrap_or(name.span));
             self.report(&say::LET_WITHOUT_VALUE, span, &[&text], None);
-            definition.value = bad(self.behind());
-            return;
-        }
-        definition.value = self.value();
+            return bad(self.behind());
+        };
         let edit = match sign {
-            Some(sign) if self.written(sign) == "=" => return,
+            Some(sign) if self.written(sign) == "=" => return value,
             Some(sign) => Edit::new(Span::new(self.id, name.span.end, sign.end), " ="),
             None => Edit::insert(self.id, start.start, "= "),
         };
-        let title = format!("write `let {text} = {}`", self.short(definition.value.span));
+        let title = format!("write `let {text} = {}`", self.short(value.span));
         let fix = Fix::new(title, [edit]);
         self.report(&say::MISSING_EQUALS, sign.unwrap_or(start), &[&text], fix);
+        value
+    }
+
+    /// The value of a definition, unless it ends without one.
+    fn value_if_any(&mut self) -> Option<Value<'s>> {
+        (!self.is_end_of_definition()).then(|| self.value())
     }
 
     /// Reads the name behind `let`: up to the `=`, and what is no name in it is the mistake.
@@ -216,7 +212,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// A line that starts with a name, as a rule: a block, whatever stands in its head, or something else.
+    /// A line that starts with a name, as a rule: a block, whatever stands in its head, or
+    /// something else.
     fn block_or_line(&mut self) {
         if self.is_head(0) {
             return self.block();
@@ -241,11 +238,9 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(self.word(0)) && !self.words.is_kind(first.text) && count <= 3 {
             let kind = self.name();
             let before = Span::new(self.id, first.span.start, kind.span.start);
-            let fix = Fix::new(
-                format!("take `{}` away", shorten(first.text)),
-                [Edit::new(before, "")],
-            );
-            self.report(&say::BAD_HEAD, first.span, &[kind.text], fix);
+            let title = format!("take `{}` away", shorten(first.text));
+            let fix = Fix::new(title, [Edit::new(before, "")]);
+            self.report(&say::BAD_HEAD.safe_if(false), first.span, &[kind.text], fix);
             block = Block::empty(kind.span);
             block.kind = Some(kind);
             block.name = (!self.is(0, "{")).then(|| self.name());
@@ -291,7 +286,8 @@ impl<'s> Recovery<'_, 's> {
         self.open_block(block);
     }
 
-    /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere Ball` and then fields.
+    /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere
+    /// Ball` and then fields.
     fn unopened_block(&mut self) -> bool {
         let Some(row) = schema::block(self.word(0)) else {
             return false;
@@ -321,8 +317,9 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if is_field(self) {
             self.body(&mut block, close);
-            // Where nothing closes it, it is not known where it ends.
-            fix = block.close.map(|close| {
+            // Where nothing closes it, or braces stand within, it is not known where it ends.
+            let is_flat = !self.written(block.span).contains('{');
+            fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));
                 Fix::new(title, [Edit::new(open, " {"), Edit::new(close, "}")])
             });
@@ -360,17 +357,13 @@ impl<'s> Recovery<'_, 's> {
         definition.name = Some(name);
         definition.equals = Some(self.bump());
         let told = self.problems.len();
-        let is_end = self.is_end_of_definition();
-        let value = if is_end {
-            bad(self.behind())
-        } else {
-            self.value()
-        };
+        let value = self.value_if_any();
+        let is_end = value.is_none();
+        let value = value.unwrap_or_else(|| bad(self.behind()));
         let text = shorten(name.text);
         let written = self.written(value.span);
-        let is_used = written
-            .split(|c: char| !c.is_alphanumeric())
-            .any(|w| w == word);
+        let mut used = written.split(|c: char| !c.is_alphanumeric());
+        let is_used = used.any(|used| used == word);
         if is_plain && (self.words.is_let(word) || is_used) {
             let what = "assignments: a name keeps its value";
             let help = "give the new value a name of its own with `let NAME = VALUE`";
@@ -408,9 +401,9 @@ impl<'s> Recovery<'_, 's> {
             let name = self.short(start);
             self.report(&say::OUTSIDE_BLOCK, start, &[&name], None);
         } else {
-            let help =
-                "a file holds `let NAME = VALUE` and blocks such as `sphere { center (0, 1, 0) }`";
-            self.unexpected("`let` or a block", help);
+            let blocks = "blocks such as `sphere { center (0, 1, 0) }`";
+            let help = format!("a file holds `let NAME = VALUE` and {blocks}");
+            self.unexpected("`let` or a block", &help);
         }
         self.bump();
         self.skip_lines();
@@ -444,18 +437,12 @@ impl<'s> Recovery<'_, 's> {
     pub(super) fn stray_parenthesis(&mut self) {
         let sign = self.word(0);
         let span = self.bump();
-        let fix = self.remove(format!("remove this `{sign}`"), span);
         // What opened it may be in something else that is wrong in its line.
-        let line = self.text.get(..span.start).unwrap_or_default();
-        let line = line.rsplit('\n').next().unwrap_or_default();
+        let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();
-        self.report(
-            &say::STRAY_CLOSING,
-            span,
-            &[sign],
-            (!is_opened).then_some(fix),
-        );
+        let fix = (!is_opened).then(|| self.remove(format!("remove this `{sign}`"), span));
+        self.report(&say::STRAY_CLOSING, span, &[sign], fix);
     }
 
     /// `}` that was never opened, and others right behind it.
@@ -466,7 +453,10 @@ impl<'s> Recovery<'_, 's> {
             all = all.to(self.bump());
         }
         // Before anything but an item it may stand for another sign.
-        let is_sure = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
+        let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
+        // It may close a block that lacks its `{`.
+        let mut last = self.problems.iter().rev().take(8);
+        let is_sure = is_before_item && last.all(|found| found.code != "pinhole::unopened_block");
         let fix = is_sure.then(|| self.remove("remove this `}`", all));
         self.report(&say::STRAY_CLOSING, first, &["}"], fix);
     }

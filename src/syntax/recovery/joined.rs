@@ -1,5 +1,5 @@
-//! Several values where one should stand: the parts of a list without parentheses, a product without its sign, a number with
-//! commas, or the value of a field without a name.
+//! Several values where one should stand: the parts of a list without parentheses, a product
+//! without its sign, a number with commas, or the value of a field without a name.
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
@@ -18,11 +18,8 @@ use crate::{
 impl<'s> Recovery<'_, 's> {
     /// The parts of a list, for a text.
     pub(super) fn list_of(&self, values: &[Value<'s>]) -> String {
-        let texts: Vec<&str> = values
-            .iter()
-            .map(|value| self.written(value.span))
-            .collect();
-        texts.join(", ")
+        let texts = values.iter().map(|value| self.written(value.span));
+        texts.collect::<Vec<_>>().join(", ")
     }
 
     /// One value of several that were written behind each other.
@@ -119,15 +116,14 @@ impl<'s> Recovery<'_, 's> {
     fn comma_in_number(&mut self, span: Span) -> bool {
         let parts: Vec<&str> = self.written(span).split(',').collect();
         let is_digits = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
-        let Some((head, rest)) = parts
-            .split_first()
-            .filter(|(_, rest)| rest.iter().all(is_digits))
-        else {
+        let Some((head, rest)) = parts.split_first() else {
             return false;
         };
         let is_whole = self.words.is_whole(self.within.kind, self.within.field);
         let are_thousands = rest.iter().all(|part| part.len() == 3);
-        let (message, right) = if are_thousands && (rest.len() > 1 || is_whole) {
+        let (message, right) = if !rest.iter().all(is_digits) {
+            return false;
+        } else if are_thousands && (rest.len() > 1 || is_whole) {
             ("no commas stand in a number", parts.join("_"))
         } else if rest.len() == 1 && numeric_part(head) == *head && !head.contains('.') {
             ("a decimal point is written `.`, not `,`", parts.join("."))
@@ -142,7 +138,6 @@ impl<'s> Recovery<'_, 's> {
 }
 
 pub(super) fn are_names(values: &[Value<'_>]) -> bool {
-    values
-        .iter()
-        .all(|value| matches!(value.kind, ValueKind::Name(_)))
+    let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(_));
+    values.iter().all(is_name)
 }

@@ -12,7 +12,7 @@ use crate::{
         NESTING_LIMIT, messages as say,
         problem::{replace, shorten},
         tokens::TokenKind,
-        tree::{Element, Name, Value, ValueKind, bad},
+        tree::{Element, Name, Value, ValueKind, bad, call, group},
     },
 };
 
@@ -61,11 +61,7 @@ impl<'s> Recovery<'_, 's> {
         let Some(elements) = self.checked(list, &count) else {
             return bad(span);
         };
-        let kind = match <[Element<'s>; 1]>::try_from(elements) {
-            Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
-            Err(elements) => ValueKind::Tuple(elements),
-        };
-        Value { kind, span }
+        Value::new(group(elements), span)
     }
 
     /// The call of a function whose name was read.
@@ -84,7 +80,7 @@ impl<'s> Recovery<'_, 's> {
             return self.foreign_function(function, list);
         }
         match self.checked(list, &count) {
-            Some(elements) => self.call_of(function, elements, parentheses),
+            Some(elements) => call(function, elements, parentheses),
             None => bad(function.span.to(parentheses)),
         }
     }
@@ -207,13 +203,8 @@ impl<'s> Recovery<'_, 's> {
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
-            let fix = Fix::new("write commas", commas);
-            self.report(
-                &say::UNEXPECTED.safe_if(true),
-                first,
-                &["`,`", ";"],
-                is_plain.then_some(fix),
-            );
+            let fix = is_plain.then(|| Fix::new("write commas", commas));
+            self.report(&say::UNEXPECTED.safe(), first, &["`,`", ";"], fix);
         }
     }
 
@@ -223,15 +214,12 @@ impl<'s> Recovery<'_, 's> {
         let Some(&first) = labels.first() else {
             return;
         };
-        let names: String = labels
-            .iter()
-            .map(|label| &self.written(*label)[..1])
-            .collect();
+        let name = |label: &Span| &self.written(*label)[..1];
+        let names: String = labels.iter().map(name).collect();
         let is_usual = matches!(names.as_str(), "xyz" | "rgb");
         let fix = (is_usual && is_plain).then(|| {
-            let edits = labels
-                .iter()
-                .map(|label| Edit::remove_in(*label, self.text));
+            let edits = labels.iter();
+            let edits = edits.map(|label| Edit::remove_in(*label, self.text));
             Fix::new("take the names away", edits)
         });
         let help = "write the values alone, in the order x, y, z";
@@ -278,10 +266,7 @@ impl<'s> Recovery<'_, 's> {
             return Some(elements);
         };
         let (left, right) = (&elements.get(first - 1)?.value, &elements.get(first)?.value);
-        if elements
-            .iter()
-            .any(|element| element.value.kind == ValueKind::Bad)
-        {
+        if elements.iter().any(|e| e.value.kind == ValueKind::Bad) {
             return None;
         }
         if !fits && is_plain_number(left) && self.is_factor(right) {

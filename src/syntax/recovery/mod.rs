@@ -1,12 +1,14 @@
 //! Reads an item that does not follow the grammar.
 //!
-//! In: the text from the item's start. Out: nodes of what can be understood, and one problem for each slip. A reader by
-//! recursive descent over the lexer's tokens: items stand in `items`, fields in `fields`, values in `values`, `joined` and `lists`,
-//! numbers in `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it. Three rules:
+//! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
+//! each slip. A reader by recursive descent over the lexer's tokens: items stand in `items`, fields
+//! in `fields`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
+//! languages write in `foreign`. A right item is read as pest reads it. Three rules:
 //!
-//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace (`resync`).
-//! - A fix is offered where it is plain. A value with a slip is bad, as a rule, whether there is a fix or not, and nothing
-//!   that uses it is reported.
+//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
+//!   (`resync`).
+//! - A fix is offered where it is plain. A value with a slip is bad, as a rule, whether there is a
+//!   fix or not, and nothing that uses it is reported.
 //! - Where different slips are found in one value, none of their fixes is sure (`settle`).
 
 mod fields;
@@ -118,13 +120,11 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Reads one item, or what stands in the place of one; answers where it ends.
     pub fn item(&mut self, start: usize) -> usize {
-        if !self.is_ours {
-            self.is_ours = !self.foreign_file();
-            if !self.is_ours {
-                self.read_to = self.text.len();
-                return self.read_to;
-            }
+        if !self.is_ours && self.foreign_file() {
+            self.read_to = self.text.len();
+            return self.read_to;
         }
+        self.is_ours = true;
         self.seek(start);
         self.any_item();
         if self.last_end == start {
@@ -137,8 +137,9 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it ends, if that is a better
-    /// explanation: by fields that the block has, or by a comment or a function of another language.
+    /// Reads an item that follows the grammar, but may have been meant otherwise; answers where it
+    /// ends, if that is a better explanation: by fields that the block has, or by a comment or a
+    /// function of another language.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.within.slips.values().map(Vec::len).sum::<usize>();
@@ -152,6 +153,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
+                // What is right already is not read once more.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -206,14 +208,7 @@ impl<'w, 's> Recovery<'w, 's> {
     /// The token that is so many behind the next one.
     fn peek(&mut self, ahead: usize) -> Token {
         while self.tokens.len() <= self.next + ahead {
-            let token = self.lexer.token();
-            let is_seen = !matches!(
-                token.kind,
-                TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace
-            );
-            if is_seen {
-                self.tokens.push(token);
-            }
+            self.tokens.push(self.lexer.seen_token());
         }
         let end = self.text.len();
         let token = self.tokens.get(self.next + ahead).copied();
@@ -237,6 +232,12 @@ impl<'w, 's> Recovery<'w, 's> {
 
     fn is(&mut self, ahead: usize, word: &str) -> bool {
         self.word(ahead) == word
+    }
+
+    /// The text of what lies before a place, in the line of the place.
+    fn line_before(&self, at: usize) -> &'s str {
+        let before = self.text.get(..at).unwrap_or_default();
+        before.rsplit('\n').next().unwrap_or_default()
     }
 
     fn is_name(&mut self, ahead: usize) -> bool {
@@ -327,7 +328,8 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Going on.
 
-    /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a line.
+    /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a
+    /// line.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -358,14 +360,8 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Problems.
 
-    fn report(
-        &mut self,
-        message: &Message,
-        span: Span,
-        words: &[&str],
-        fix: impl Into<Option<Fix>>,
-    ) {
-        self.problems.push(message.at(span, words, fix));
+    fn report(&mut self, said: &Message, at: Span, words: &[&str], fix: impl Into<Option<Fix>>) {
+        self.problems.push(said.at(at, words, fix));
     }
 
     fn unexpected(&mut self, expected: &str, help: &str) {
@@ -386,18 +382,14 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Where different slips are found since so many, none of their fixes is sure.
     fn settle(&mut self, told: usize) {
         let problems = self.problems.get_mut(told..).unwrap_or_default();
-        let is_same = problems.windows(2).all(|pair| match pair {
-            [first, second] => first.code == second.code,
-            _ => true,
-        });
-        if !is_same {
-            problems
-                .iter_mut()
-                .for_each(|problem| problem.fixes.clear());
+        if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
+            let fixes = problems.iter_mut().map(|problem| &mut problem.fixes);
+            fixes.for_each(Vec::clear);
         }
     }
 
-    // Signs that are not needed, and those of comments in other languages: one report in a block for all of a kind.
+    // Signs that are not needed, and those of comments in other languages: one report in a block
+    // for all of a kind.
 
     /// Takes a `,` or `;` between fields or items. Before a value it may stand for something else.
     fn separator(&mut self) {

@@ -12,7 +12,8 @@ use crate::{
     },
 };
 
-/// What people write for a unit, how much of the right one it is, and that one: nothing for a length, which is in metres.
+/// What people write for a unit, how much of the right one it is, and that one: nothing for a
+/// length, which is in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -71,16 +72,15 @@ impl<'s> Recovery<'_, 's> {
     /// A number with a unit that is none, or stands apart from it.
     fn with_unit(
         &mut self,
-        digits: &'s str,
+        number: &'s str,
         (factor, right): (f64, &str),
         whole: Span,
         behind: Span,
     ) -> Value<'s> {
         let unit = self.written(behind);
-        let wanted = if right.is_empty() {
-            Type::Number
-        } else {
-            Type::Angle
+        let wanted = match right {
+            "" => Type::Number,
+            _ => Type::Angle,
         };
         let fits = self.within.takes.is_none_or(|takes| takes == wanted);
         let label = match wanted {
@@ -88,32 +88,25 @@ impl<'s> Recovery<'_, 's> {
             Type::Number => "all lengths are in metres",
             _ => "the units are `deg` and `rad`",
         };
-        let text = scaled(digits, factor).filter(|_| fits);
-        // What is told about an angle, or a number, that stays the same number is not told only once this is mended.
+        let text = scaled(number, factor).filter(|_| fits);
+        let angle = |unit| ValueKind::Angle { number, unit };
+        // What is told about an angle, or a number, that stays the same number is not told only
+        // once this is mended.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
-            (true, "deg") => ValueKind::Angle {
-                number: digits,
-                unit: Unit::Degrees,
-            },
-            (true, "rad") => ValueKind::Angle {
-                number: digits,
-                unit: Unit::Radians,
-            },
-            (true, _) => ValueKind::Number(digits),
+            (true, "deg") => angle(Unit::Degrees),
+            (true, "rad") => angle(Unit::Radians),
+            (true, _) => ValueKind::Number(number),
         };
-        let fix = text.map(|number| replace(whole, format!("{number}{right}")));
-        let is_apart = behind.start > whole.start + digits.len() && unit != "°";
+        let fix = text.map(|text| replace(whole, text + right));
+        let is_apart = behind.start > whole.start + number.len() && unit != "°";
         if is_apart && wanted == Type::Angle {
             self.report(&say::SPACED_UNIT, whole, &[label], fix);
         } else {
-            let written = shorten(&format!("{digits}{unit}"));
+            let written = shorten(&format!("{number}{unit}"));
             self.report(&say::BAD_NUMBER, whole, &[&written, label], fix);
         }
-        Value {
-            kind: meant,
-            span: whole,
-        }
+        Value::new(meant, whole)
     }
 
     /// What starts as a number does and is none.

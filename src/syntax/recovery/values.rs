@@ -9,7 +9,7 @@ use crate::{
         NESTING_LIMIT, messages as say,
         problem::{replace, shorten},
         tokens::{TokenKind, is_color_code},
-        tree::{Call, Element, Name, Operator, Value, ValueKind, bad, chain, negation},
+        tree::{Name, Operator, Value, ValueKind, bad, chain, negation},
     },
 };
 
@@ -146,7 +146,8 @@ impl<'s> Recovery<'_, 's> {
         loop {
             self.comments(Place::Operator);
             let written = self.word(0);
-            // An operator without a value before it may have been passed over: then its product goes on.
+            // An operator without a value before it may have been passed over: then its product
+            // goes on.
             let is_rest = left.kind == ValueKind::Bad && PRODUCT.contains(&written);
             if self.too_deep || !(is_rest || signs.contains(&written)) {
                 return left;
@@ -330,12 +331,8 @@ impl<'s> Recovery<'_, 's> {
             let span = name.span.to(self.bump());
             let help =
                 "give the value a name with `let NAME = VALUE`, and use the name in both places";
-            self.report(
-                &say::NOT_IN_LANGUAGE,
-                span,
-                &["reading of fields", help],
-                None,
-            );
+            let words = ["reading of fields", help];
+            self.report(&say::NOT_IN_LANGUAGE, span, &words, None);
             return bad(span);
         }
         if self.is(0, "(") {
@@ -346,10 +343,7 @@ impl<'s> Recovery<'_, 's> {
         if is_argument && schema::function(name.text).is_some() {
             return self.call_without_parentheses(name);
         }
-        Value {
-            kind: ValueKind::Name(name.text),
-            span: name.span,
-        }
+        Value::new(ValueKind::Name(name.text), name.span)
     }
 
     /// `sin 30deg`, `rgb 255 0 0`
@@ -375,22 +369,6 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    pub(super) fn call_of(
-        &self,
-        function: Name<'s>,
-        arguments: Vec<Element<'s>>,
-        parentheses: Span,
-    ) -> Value<'s> {
-        Value {
-            span: function.span.to(parentheses),
-            kind: ValueKind::Call(Box::new(Call {
-                function,
-                arguments,
-                parentheses,
-            })),
-        }
-    }
-
     fn color(&mut self) -> Value<'s> {
         let sign = self.word(0);
         let mut span = self.bump();
@@ -401,29 +379,20 @@ impl<'s> Recovery<'_, 's> {
         }
         let next = self.word(0);
         let is_named = self.words.is_color(next);
-        let takes_color = matches!(self.within.takes, None | Some(Type::Color | Type::Colors));
-        let is_apart = takes_color && digits.is_empty() && !self.is_on_new_line(0);
+        let is_apart = digits.is_empty() && !self.is_on_new_line(0);
         let (label, fix) = if is_apart && (is_named || is_color_code(next)) {
             span = span.to(self.bump());
-            let right = if is_named {
-                next.to_owned()
-            } else {
-                format!("#{next}")
-            };
+            let mark = if is_named { "" } else { "#" };
             let label = "a `#` stands right before digits, and before no name".to_owned();
-            (label, Some(replace(span, right)))
+            (label, Some(replace(span, format!("{mark}{next}"))))
         } else {
             match digits.chars().find(|digit| !digit.is_ascii_hexdigit()) {
                 Some(other) => (format!("`{other}` is no hexadecimal digit"), None),
                 None => (format!("{} digits", digits.len()), None),
             }
         };
-        self.report(
-            &say::BAD_COLOR_CODE,
-            span,
-            &[&self.short(span), &label],
-            fix,
-        );
+        let words = [&*self.short(span), &label];
+        self.report(&say::BAD_COLOR_CODE, span, &words, fix);
         bad(span)
     }
 

@@ -1,6 +1,7 @@
 //! The cache of objects in a higher precision.
 //!
-//! In: an object's index, and how it is prepared. Out: the object, prepared now or kept since it was last asked for.
+//! In: an object's index, and how it is prepared. Out: the object, prepared now or kept since it
+//! was last asked for.
 
 use std::{
     ops::Deref,
@@ -13,10 +14,12 @@ use crate::{math::Real, tracer::object::Object};
 /// in rows, whose indices often are a power of two or of ten apart, do not take each other's.
 pub const KEPT: usize = 4093;
 
-/// Objects in one precision, each prepared when it is first asked for and kept, of many until another takes its place.
+/// Objects in one precision, each prepared when it is first asked for and kept, of many until
+/// another takes its place.
 ///
-/// To prepare an object takes far longer than to ask it; but where one sample point is in doubt, those beside it often are, about the same
-/// objects. However many a scene has, only so many take memory.
+/// To prepare an object takes far longer than to ask it; but where one sample point is in doubt,
+/// those beside it often are, about the same objects. However many a scene has, only so many take
+/// memory.
 #[derive(Debug)]
 pub struct Kept<T: Real>(Vec<Mutex<Option<Arc<Prepared<T>>>>>);
 
@@ -28,7 +31,8 @@ pub struct Prepared<T: Real> {
     object: Object<T>,
 }
 
-/// An object that stays where it is, or one that was prepared and is kept for as long as it is held.
+/// An object that stays where it is, or one that was prepared and is kept for as long as it is
+/// held.
 #[derive(Debug)]
 pub enum Held<'a, T: Real> {
     Always(&'a Object<T>),
@@ -62,7 +66,8 @@ impl<T: Real> Kept<T> {
         {
             return Held::Shared(kept);
         }
-        // Not while others wait for the place; two threads that want the same object may both prepare it.
+        // Not while others wait for the place; two threads that want the same object may both
+        // prepare it.
         let object = prepare();
         let prepared = Arc::new(Prepared { index, object });
         *lock(place) = Some(prepared.clone());

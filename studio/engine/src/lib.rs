@@ -1,15 +1,15 @@
-//! The engine in the browser: the conversation that `docs/protocol.md` describes, as texts that a web worker passes to and from the page.
-
-use std::sync::atomic::AtomicBool;
+//! The engine in the browser: the conversation that `docs/protocol.md` describes, as texts that a
+//! web worker passes to and from the page.
 
 use lsp_server::{Message, Notification};
 use pinhole::{
     lsp::{
-        Server,
+        Refusal, Server,
         messages::{self, Malformed},
+        response,
     },
     scene::SMALLEST,
-    studio::download,
+    studio::download::{self, Sliced},
 };
 use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -18,6 +18,8 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[wasm_bindgen]
 pub struct Engine {
     server: Server,
+    /// The picture's file that is being made.
+    download: Option<Sliced>,
 }
 
 #[wasm_bindgen]
@@ -27,6 +29,7 @@ impl Engine {
     pub fn new() -> Self {
         Self {
             server: Server::new(|_| {}),
+            download: None,
         }
     }
 
@@ -40,9 +43,23 @@ impl Engine {
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if download::is_asked_for(&request) => {
-                texts(vec![download::answer(request, &AtomicBool::new(false))])
+                let begun = match self.download {
+                    Some(_) => Err(Refusal::failed("another picture is being made")),
+                    None => Sliced::new(&request),
+                };
+                match begun {
+                    Ok(download) => {
+                        self.download = Some(download);
+                        Vec::new()
+                    }
+                    Err(refusal) => texts(vec![response(request.id, Err(refusal))]),
+                }
             }
-            Ok(message) => texts(self.server.handle(message)),
+            Ok(message) => {
+                let mut said = Vec::from_iter(self.cancelled(&message));
+                said.extend(self.server.handle(message));
+                texts(said)
+            }
             Err(Malformed::Answered(response)) => vec![response.to_string()],
             Err(Malformed::Unanswered(_)) => Vec::new(),
         }
@@ -50,13 +67,34 @@ impl Engine {
 
     /// Does a slice of the work that is left, and returns what is to be said of it.
     pub fn advance(&mut self) -> Vec<String> {
-        texts(self.server.advance())
+        match &mut self.download {
+            Some(download) if !self.server.is_busy() => {
+                let (said, is_done) = download.advance();
+                self.download.take_if(|_| is_done);
+                texts(vec![said])
+            }
+            _ => texts(self.server.advance()),
+        }
     }
 
     /// Whether there is work left.
     #[wasm_bindgen(js_name = isBusy)]
     pub fn is_busy(&self) -> bool {
-        self.server.is_busy()
+        self.server.is_busy() || self.download.is_some()
+    }
+}
+
+impl Engine {
+    /// Gives the picture's file up that is not wanted any more, and answers who asked for it.
+    fn cancelled(&mut self, message: &Message) -> Option<Message> {
+        let Message::Notification(Notification { method, params }) = message else {
+            return None;
+        };
+        let is_meant = |download: &mut Sliced| {
+            method == "$/cancelRequest" && params["id"] == json!(download.request)
+        };
+        let download = self.download.take_if(is_meant)?;
+        Some(response(download.request, Err(Refusal::cancelled())))
     }
 }
 

@@ -32,14 +32,15 @@ const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
 /** After so much silence the server is asked whether it lives, and has so long to answer, in ms. */
 const QUIET = 700;
 const HANGING = 1200;
+
+/** What the numbers of the page's own requests begin with. */
+const OWN = "page-";
 const ALIVE = "studio/alive";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
-/** The codes with which the host closes a web socket. */
-const ENDED = 1001;
+/** What the codes say with which the host closes a web socket. */
+const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
-const LATE = 4002;
-const TWICE = 4003;
 
 export class Connection implements Transport {
   state: ConnectionState = "connecting";
@@ -111,16 +112,22 @@ export class Connection implements Transport {
   subscribe(handler: (text: string) => void): void { this.handlers.add(handler); }
   unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
 
-  /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost. */
-  async request<Result>(method: string, params: unknown): Promise<Result> {
+  /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost, or
+   *  what was asked is not wanted any more. */
+  async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);
     await this.ready();
-    const id = `page-${++this.requests}`;
+    const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve: resolve as (result: unknown) => void, reject });
       try {
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+        wanted?.addEventListener("abort", () => {
+          const cancel = { jsonrpc: "2.0", method: "$/cancelRequest", params: { id } };
+          if (this.waiting.delete(id)) this.send(JSON.stringify(cancel));
+          reject(wanted.reason as Error);
+        });
       } catch (error) {
         this.waiting.delete(id);
         reject(error as Error);
@@ -136,12 +143,12 @@ export class Connection implements Transport {
     if (this.hangs) this.onHang((this.hangs = false));
     const message = JSON.parse(text);
     if (message.id === ALIVE) return;
-    const waiting = "method" in message ? undefined : this.waiting.get(message.id);
-    if (waiting !== undefined) {
+    if (!("method" in message) && String(message.id).startsWith(OWN)) {
+      const waiting = this.waiting.get(message.id);
       this.waiting.delete(message.id);
       const { error } = message;
-      if (error) waiting.reject(new Refusal(error.code, error.message));
-      else waiting.resolve(message.result);
+      if (error) waiting?.reject(new Refusal(error.code, error.message));
+      else waiting?.resolve(message.result);
       return;
     }
     if (!("id" in message) && /^(studio|pinhole)\//.test(message.method)) {
@@ -190,11 +197,8 @@ export function webSocket(path: string): Connector {
       session.keep(JSON.parse(String(event.data)).params.token);
       opened(socket);
     });
-    socket.addEventListener("close", ({ code }) => {
-      if (code === UNKNOWN) closed(session.isFresh ? "unknown" : "restarted");
-      else closed(code === LATE ? "late" : code === TWICE ? "twice" : code === ENDED ? "ended"
-        : "lost");
-    });
+    socket.addEventListener("close", ({ code }) => closed(code === UNKNOWN
+      ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
   };
 }
 

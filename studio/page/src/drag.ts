@@ -32,9 +32,10 @@ export interface Workbench {
 class Note {
   private readonly element = byId("drag-note");
   private timer = 0;
+  private staying = new AbortController();
 
   say(text: string, tone: "plain" | "warning", [x, y]: Point): void {
-    clearTimeout(this.timer);
+    this.clear();
     this.element.hidden = text === "";
     this.element.dataset["tone"] = tone;
     setText(this.element, text);
@@ -46,14 +47,20 @@ class Note {
     this.element.style.transform = `translate(${left}px, ${top}px)`;
   }
 
+  /** A refusal stays until something else is done, or for a while. */
   end(): void {
-    const isWarning = !this.element.hidden && this.element.dataset["tone"] === "warning";
-    clearTimeout(this.timer);
-    if (isWarning) this.timer = setTimeout(() => this.clear(), REFUSAL_STAYS);
-    else this.clear();
+    if (this.element.hidden || this.element.dataset["tone"] !== "warning") return this.clear();
+    const { signal } = this.staying;
+    for (const type of ["pointerdown", "keydown"]) {
+      addEventListener(type, () => this.clear(), { capture: true, signal });
+    }
+    this.timer = setTimeout(() => this.clear(), REFUSAL_STAYS);
   }
 
   private clear(): void {
+    clearTimeout(this.timer);
+    this.staying.abort();
+    this.staying = new AbortController();
     this.element.hidden = true;
     setText(this.element, "");
   }

@@ -1,6 +1,7 @@
 // Where the scene is kept: the host's file, which other editors may change at the same time, or a
 // file of this computer that the browser opens and saves.
 
+import { diffArrays } from "diff";
 import example from "../../../examples/figure_9_9.scn";
 import type { Connection } from "./connection";
 import { byId, create, createButton, download } from "./dom";
@@ -30,15 +31,16 @@ const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 
-/** More lines than these are not compared: the table has two bytes for each pair, 18 MB here. */
-const MOST_LINES = 3000;
+/** Of texts with more changed lines than these it is not said which ones stay. */
+const MOST_CHANGES = 3000;
 
 /** The host's file as the page last saw it; a static page has local files alone. */
 export class Files {
   name = "scene.scn";
   onSaved: () => void = () => {};
-  /** What the file held when it was last seen; null where there was none. */
-  seen: string | null = null;
+  /** What the page's text was made from: Save asks if the file holds something else. */
+  base: string | null = null;
+  private held: string | null = null;
   /** Whether the file has gone since. */
   private isGone = false;
   private handle: FileHandle | null = null;
@@ -66,12 +68,16 @@ export class Files {
       && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
   }
 
+  /** What the file held when it was last seen; null where there was none. */
+  get seen(): string | null { return this.held; }
+  private set seen(text: string | null) { this.held = this.base = text; }
+
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
 
-  /** Puts a draft in place. Save asks if the file is not what the draft was made from any more. */
+  /** Puts a draft in place. */
   restore(draft: Draft): void {
-    if (this.isServed && this.seen !== null) this.seen = draft.base;
+    if (this.seen !== null) this.base = draft.base;
     this.editor.replace(draft.text);
     this.show();
   }
@@ -158,7 +164,7 @@ export class Files {
   private async saveAs(name: string): Promise<void> {
     if (this.connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const about = { text, base: this.isGone ? null : this.seen, ...(this.isNew ? { name } : {}) };
+    const about = { text, base: this.isGone ? null : this.base, ...(this.isNew ? { name } : {}) };
     const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
     try {
       const answer = await this.connection.request<Saved>("studio/save", about);
@@ -309,34 +315,8 @@ export function difference(one: string, other: string): DifferenceLine[] {
 
 /** The lines of two texts: those of the first alone by -, those of the second alone by +. */
 function compared(a: string[], b: string[]): DifferenceLine[] {
-  let [start, end] = [0, 0];
-  while (start < a.length && start < b.length && a[start] === b[start]) start++;
-  while (end < a.length - start && end < b.length - start
-    && a.at(-1 - end) === b.at(-1 - end)) end++;
-  const kept = (lines: string[]): DifferenceLine[] => lines.map(text => ({ sign: " ", text }));
-  const middle = changedLines(a.slice(start, a.length - end), b.slice(start, b.length - end));
-  return [...kept(a.slice(0, start)), ...middle, ...kept(a.slice(a.length - end))];
-}
-
-/** The same of what is between them (longest common subsequence). */
-function changedLines(a: string[], b: string[]): DifferenceLine[] {
-  const lines: DifferenceLine[] = [];
-  const [n, m] = [a.length, b.length];
-  // lengths[i * (m + 1) + j]: of the longest common subsequence of a from i on and b from j on.
-  const isLong = n > MOST_LINES || m > MOST_LINES;
-  const lengths = isLong ? new Uint16Array(0) : new Uint16Array((n + 1) * (m + 1));
-  const at = (i: number, j: number) => lengths[i * (m + 1) + j] ?? 0;
-  const rows = isLong ? 0 : n;
-  for (let i = rows - 1; i >= 0; i--) for (let j = m - 1; j >= 0; j--) lengths[i * (m + 1) + j] =
-    a[i] === b[j] ? at(i + 1, j + 1) + 1 : Math.max(at(i + 1, j), at(i, j + 1));
-  let [i, j] = [0, 0];
-  while (i < n || j < m) {
-    if (!isLong && i < n && j < m && a[i] === b[j]) {
-      lines.push({ sign: " ", text: a[i++] ?? "" });
-      j++;
-    } else if (i < n && (j >= m || at(i + 1, j) >= at(i, j + 1))) lines.push(
-      { sign: "-", text: a[i++] ?? "" });
-    else lines.push({ sign: "+", text: b[j++] ?? "" });
-  }
-  return lines;
+  const parts = diffArrays(a, b, { maxEditLength: MOST_CHANGES })
+    ?? [{ value: a, removed: true, added: false }, { value: b, removed: false, added: true }];
+  return parts.flatMap(({ value, added, removed }) =>
+    value.map((text): DifferenceLine => ({ sign: added ? "+" : removed ? "-" : " ", text })));
 }

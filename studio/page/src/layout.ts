@@ -19,8 +19,7 @@ export function layOut(picture: Picture): void {
     divider.setAttribute("aria-valuenow", String(bounded));
     remember("text-share", String(bounded));
   };
-  const orient = () => divider.setAttribute("aria-orientation", isNarrow.matches ? "horizontal"
-    : "vertical");
+  const orient = () => (divider.ariaOrientation = isNarrow.matches ? "horizontal" : "vertical");
   isNarrow.addEventListener("change", orient);
   orient();
   share(Number(remembered("text-share") ?? 42));
@@ -39,6 +38,15 @@ export function layOut(picture: Picture): void {
     event.preventDefault();
     share(Number(divider.getAttribute("aria-valuenow")) + 2 * direction);
   });
+
+  // A phone has room for one of the two.
+  const tabs = document.querySelectorAll<HTMLButtonElement>("#tabs button");
+  const show = (tab: string) => {
+    panes.dataset["tab"] = tab;
+    for (const it of tabs) it.setAttribute("aria-pressed", String(it.dataset["tab"] === tab));
+  };
+  for (const it of tabs) it.addEventListener("click", () => show(it.dataset["tab"] ?? ""));
+  byId("problems").addEventListener("click", () => show("text"));
 
   byId("zoom-in").addEventListener("click", () => picture.zoomBy(2));
   byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));

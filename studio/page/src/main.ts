@@ -22,7 +22,7 @@ import { Picture } from "./picture";
 import { Pointers } from "./pointers";
 import type { HostedFile, Limits } from "./protocol";
 import { Selection } from "./selection";
-import { offerSharing, sceneInAddress } from "./share";
+import { offerSharing, sceneInAddress, showProgress } from "./share";
 import { Status } from "./status";
 import { followTheme, themeExtension } from "./theme";
 import { Tools } from "./tools";
@@ -80,7 +80,7 @@ const hover = new Hover(editor, picture, overlays, status);
 outlines.onRest = () => hover.again();
 const files = new Files(editor, connection, status, isServed);
 const drafts = new Drafts(editor, connection, files, isServed);
-files.onSaved = () => drafts.changed();
+files.onSaved = () => void drafts.keep();
 
 function changed(): void {
   if (editor.uri === "") return;
@@ -122,6 +122,7 @@ connection.onState = state => {
 
 const linked = sceneInAddress(status);
 connection.onNotification = async (method, params) => {
+  if (method === "studio/progress") showProgress((params as { share: number }).share);
   if (method !== "studio/file") return;
   const text = await linked;
   const first = editor.uri === "";

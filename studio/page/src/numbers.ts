@@ -4,8 +4,8 @@
 import { syntaxTree } from "@codemirror/language";
 import { Facet, StateEffect, StateField, type EditorState,
   type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip, type TooltipView, type
-  ViewUpdate } from "@codemirror/view";
+import { EditorView, keymap, showTooltip, type Command, type Tooltip,
+  type TooltipView } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
@@ -164,11 +164,7 @@ function createSlider(view: EditorView): TooltipView {
     if (found !== null) scrub(event, view, found);
   });
   dom.append(less, range, more, grip);
-  return {
-    dom,
-    mount: adapt,
-    update: (update: ViewUpdate) => { if (update.docChanged) adapt(); },
-  };
+  return { dom, mount: adapt, update: ({ docChanged }) => { if (docChanged) adapt(); } };
 }
 
 /** Turns a number by the way of the pointer to the side, until it is let go. */
@@ -232,14 +228,11 @@ export function numberControls(limits: (at: number) => Promise<Limits | null>): 
       { key: "Alt-ArrowUp", run: turnBy(1) },
       { key: "Alt-ArrowDown", run: turnBy(-1) },
       { key: "Alt-Enter", run: openAtCursor },
-      {
-        key: "Escape",
-        run: view => {
-          if (view.state.field(sliderField) === null) return false;
-          view.dispatch({ effects: openSlider.of(null) });
-          return true;
-        },
-      },
+      { key: "Escape", run: view => {
+        if (view.state.field(sliderField) === null) return false;
+        view.dispatch({ effects: openSlider.of(null) });
+        return true;
+      } },
     ]),
   ];
 }

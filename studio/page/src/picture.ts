@@ -25,14 +25,10 @@ export class Picture {
     if (context === null) throw new Error("this browser has no canvas");
     this.context = context;
     new ResizeObserver(() => (this.fitted ? this.fit() : this.place())).observe(stage);
-    stage.addEventListener(
-      "wheel",
-      event => {
-        event.preventDefault();
-        this.zoomBy(2 ** (-event.deltaY / (event.deltaMode === 0 ? 300 : 10)), this.local(event));
-      },
-      { passive: false },
-    );
+    stage.addEventListener("wheel", event => {
+      event.preventDefault();
+      this.zoomBy(2 ** (-event.deltaY / (event.deltaMode === 0 ? 300 : 10)), this.local(event));
+    }, { passive: false });
   }
 
   show({ bitmap, size, fineness, version }: Shown): void {

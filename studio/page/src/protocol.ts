@@ -11,20 +11,10 @@ export type Point = readonly [number, number];
 /** A line through points. */
 export type Polyline = readonly Point[];
 
-export interface Frame {
-  version: number;
-  width: number;
-  height: number;
-  size: [number, number];
-  png: string;
-}
+export interface Frame { version: number; size: [number, number]; png: string }
 
 export interface SceneObject {
-  index: number;
-  kind: string;
-  name: string | null;
-  range: Range;
-  selection: Range;
+  index: number; kind: string; name: string | null; range: Range; selection: Range;
 }
 
 export interface Handle { handle: string; at: Point | null; label: string }
@@ -35,8 +25,7 @@ export interface Overlays {
   axis: Point;
   horizon: Polyline | null;
   vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
-  near: Polyline[];
-  far: Polyline[];
+  near: Polyline[]; far: Polyline[];
   objects: DrawnObject[];
 }
 
@@ -44,7 +33,6 @@ export interface Pick {
   object: SceneObject | null;
   point: [number, number, number] | null;
   distance: number | null;
-  depth: number | null;
   /** Null outside of the picture. */
   color: string | null;
 }
@@ -74,8 +62,9 @@ export interface HostedFile {
   draft?: Draft | null;
 }
 
-/** A text that was not saved: what it was made from, and when, in seconds since 1970. */
-export interface Draft { text: string; base: string | null; time: number }
+/** A text that was not saved: what it was made from, and when, in seconds since 1970; with those
+ *  before it that nobody has restored or forgotten. */
+export interface Draft { text: string; base: string | null; time: number; earlier?: Draft[] }
 
 /** Whether the file was saved; if not, what is in it now. */
 export type Saved = { ok: true } | { ok: false; text: string | null };

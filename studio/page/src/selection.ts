@@ -10,7 +10,7 @@ import type { Picture } from "./picture";
 import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
 
 /** The least distance of two targets, in screen pixels, to the side or in height. */
-const APART = 25;
+const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
 
 /** Where a handle goes, from where it is, if that place is taken: the nearest first. */
 const ASIDE: Point[] = [];

@@ -7,6 +7,7 @@ import type { Connection } from "./connection";
 import type { SceneEditor } from "./editor";
 import type { Files } from "./files";
 import type { Status } from "./status";
+import { setText } from "./visible";
 
 /** A scene in a link may have so many characters unpacked. */
 const LONGEST = 1_000_000;
@@ -50,20 +51,35 @@ export async function sceneInAddress(status: Status): Promise<string | null> {
   }
 }
 
+/** Shows which part of a picture's file is made. */
+export function showProgress(share: number): void {
+  byId<HTMLProgressElement>("progress").value = share;
+  setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);
+}
+
 export function offerSharing(editor: SceneEditor, connection: Connection, status: Status,
   files: Files): void {
   const stem = () => files.name.replace(/\.scn$/, "");
+  const rendering = byId("rendering");
   const picture = async (kind: "png" | "exr", type: string) => {
-    status.say(`Rendering ${stem()}.${kind}…`);
+    if (!rendering.hidden) return status.say("Another picture is being made.", "warning");
+    const name = `${stem()}.${kind}`;
+    status.say(`Rendering ${name}…`);
+    const wanted = new AbortController();
+    byId("cancel").onclick = () => wanted.abort(new Error(`${name} was cancelled.`));
+    showProgress(0);
+    rendering.hidden = false;
     try {
       const answer = await connection.request<Partial<Record<string, string>> | null>(
-        `studio/${kind}`, { text: editor.text });
+        `studio/${kind}`, { text: editor.text }, wanted.signal);
       const bytes = answer?.[kind];
       if (bytes === undefined) return status.say("The text has errors: it has no picture.",
         "warning");
-      download(`${stem()}.${kind}`, fromBase64(bytes), type);
-      status.say(`${stem()}.${kind} is downloaded.`);
-    } catch (error) { status.say((error as Error).message, "warning"); }
+      download(name, fromBase64(bytes), type);
+      status.say(`${name} is downloaded.`);
+    } catch (error) {
+      status.say((error as Error).message, "warning");
+    } finally { rendering.hidden = true; }
   };
   byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
   byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));

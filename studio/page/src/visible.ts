@@ -2,9 +2,9 @@
 // line (src/diagnostic/visible.rs): what is not seen, or has other text shown in another order than
 // it is written, stands there as its code.
 
-/** Control characters, and those that control bidirectional text (Unicode Standard Annex #9,
- *  table 4); line feeds and tabs stay. */
-const INVISIBLE = /(?![\n\t])[\p{Cc}\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/gu;
+/** Control characters, those that Unicode says to show nothing of, among them the controls of
+ *  bidirectional text, and the marks of annotations; line feeds and tabs stay. */
+const INVISIBLE = /(?![\n\t])[\p{Cc}\p{Default_Ignorable_Code_Point}\ufff9-\ufffb]/gu;
 const BREAKS = /[\n\t\u2028\u2029]/g;
 const code = (character: string): string => `\\u{${character.codePointAt(0)?.toString(16)}}`;
 

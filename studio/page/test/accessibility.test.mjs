@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { test } from "node:test";
-import { andFinished, FIGURE, host, launch, open, rested, type } from "./helpers.mjs";
+import { andFinished, FIGURE, host, launch, open, rested, tab, type } from "./helpers.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
@@ -23,8 +23,11 @@ for (const colorScheme of ["dark", "light"]) {
       const page = await open(await launch(t), await host(t), { colorScheme, viewport: { width, height: 760 }, reducedMotion: "reduce" });
       // The policy of the page keeps scripts of others out: this one comes by the debugger.
       await page.evaluate(axe);
+      await tab(page, "text");
       await page.waitForSelector(".hint");
-      await audit(page, "at first");
+      await audit(page, "with the text");
+      await tab(page, "picture");
+      await audit(page, "with the picture");
       assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the page");
       for (const label of ["Sail (triangle)", "Crate (box)", "checkerboard (19)", "Ball (sphere)"]) {
         await page.selectOption("#objects", { label });
@@ -43,6 +46,7 @@ for (const colorScheme of ["dark", "light"]) {
         await page.click("#keys-dialog >> text=Close");
       }
       await type(page, FIGURE.replace("radius 1", "radios 1"));
+      await tab(page, "picture");
       await page.waitForSelector("#stale:not([hidden])");
       await page.click("#problems");
       await page.waitForSelector("#problem-list li");
@@ -109,6 +113,7 @@ for (const [width, height, least] of [[640, 400, 0.4], [390, 844, 0.9], [844, 39
     const shown = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
     assert.ok(shown >= least * width, `${shown}`);
     await type(page, FIGURE.replace("radius 1", "radios 1"));
+    await tab(page, "picture");
     await page.waitForSelector("#stale:not([hidden])");
     const [note, stage] = await page.evaluate(() => ["#stale", "#stage"].map(it => document.querySelector(it).getBoundingClientRect().height));
     assert.ok(note <= 0.26 * stage + 2, `${note} of ${stage}`);

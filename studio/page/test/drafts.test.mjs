@@ -47,6 +47,54 @@ test("a host that is killed and another one at another port: the draft is offere
   assert.ok(await other.isHidden("#draft-bar"));
 });
 
+test("what is written while an offer stands unanswered is kept beside it, and so is what was there when one is restored", async t => {
+  const started = await host(t);
+  const browser = await launch(t);
+  const SMALLER = FIGURE.replace("radius 1", "radius 0.5");
+  const offers = page => page.locator("#draft-choices li").allTextContents();
+  let page = await open(browser, started);
+  await andFinished(page, () => type(page, LARGER));
+  await kept(page);
+  await started.stop("SIGKILL");
+  await leave(page);
+  // Not answered, and written on.
+  const second = await serve(started.file);
+  page = await open(browser, second);
+  await offered(page);
+  await andFinished(page, () => type(page, SMALLER));
+  await kept(page);
+  assert.equal((await offers(page)).length, 1);
+  await second.stop("SIGKILL");
+  await leave(page);
+  const third = await serve(started.file);
+  t.after(() => third.stop());
+  page = await open(browser, third);
+  await offered(page);
+  assert.equal((await offers(page)).length, 2);
+  assert.match(await page.textContent("#draft"), /2 texts were not saved/);
+  // Another one is written before one is restored.
+  await andFinished(page, () => type(page, NEARER));
+  await andFinished(page, () => choose(page, "Restore"));
+  assert.equal(await text(page), SMALLER);
+  assert.equal((await offers(page)).length, 2);
+  await andFinished(page, () => choose(page, "Restore"));
+  assert.equal(await text(page), NEARER);
+  // Saving is no answer to those that are left.
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  await page.reload();
+  await finished(page);
+  await offered(page);
+  const left = [];
+  for (let i = 0; i < 2; i++) {
+    await andFinished(page, () => choose(page, "Restore"));
+    left.push(await text(page));
+    await andFinished(page, () => page.keyboard.press("Control+z"));
+  }
+  assert.deepEqual(left.sort(), [SMALLER, LARGER].sort());
+  assert.ok(await page.isHidden("#draft-bar"));
+});
+
 test("reloading offers the draft; Forget forgets it, and Undo back to the file does", async t => {
   const page = await open(await launch(t), await host(t));
   page.on("dialog", dialog => dialog.accept());
@@ -81,7 +129,7 @@ test("a draft is not written over a file that is newer without a question", asyn
   await new Promise(resolve => setTimeout(resolve, 300));
   const other = await open(browser, started);
   await offered(other);
-  assert.match(await other.textContent("#draft"), /file has changed since/);
+  assert.match(await other.textContent("#draft-choices"), /file has changed since/);
   await andFinished(other, () => choose(other, "Restore"));
   await other.keyboard.press("Control+s");
   await other.waitForSelector("#conflict-dialog[open]");

@@ -165,6 +165,12 @@ test("a vertex that is brought onto another one is refused, and says why", async
   await rested(page);
   const [, x, y] = /v2 \((\S+), (\S+), 0\)/.exec(await text(page));
   for (const number of [x, y]) assert.ok(number.length < 9, number);
+  // It can be read until something else is done.
+  await page.waitForTimeout(300);
+  assert.ok(await page.isVisible("#drag-note"));
+  await page.click("#undo");
+  assert.ok(await page.isHidden("#drag-note"));
+  assert.equal(await page.textContent("#drag-note"), "");
 });
 
 test("a hand that is quicker than the answers moves things, too", async t => {

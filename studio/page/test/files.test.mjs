@@ -219,3 +219,36 @@ for (const [choice, onDisk, onPage] of [
     }
   });
 }
+
+test("a picture that takes long tells how far it is, and Cancel ends it at once", async t => {
+  const slow = FIGURE.replace(/image\s*{[^}]*}/, "").replace(/sampler\s*{[^}]*}/, "") + "\nimage { width 4096  height 4096 }\nsampler { method regular  per_pixel 65536 }\n";
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await type(page, slow);
+  await page.waitForTimeout(500);
+  const choose = async () => {
+    await page.click("summary:has-text('Download')");
+    await page.click("#download-png");
+  };
+  for (let i = 0; i < 2; i++) {
+    await choose();
+    await page.waitForSelector("#rendering:not([hidden])");
+    await page.waitForFunction(() => parseFloat(document.querySelector("#percent").textContent) > 0, null, { timeout: 120_000 });
+    // The page still answers, and another picture is refused.
+    await choose();
+    assert.match(await page.textContent("#said"), /Another picture is being made/);
+    const took = await page.evaluate(async () => {
+      const begin = performance.now();
+      document.querySelector("#cancel").click();
+      while (!document.querySelector("#rendering").hidden) await new Promise(requestAnimationFrame);
+      return performance.now() - begin;
+    });
+    assert.ok(took < 100, `${took} ms`);
+    assert.match(await page.textContent("#said"), /scene\.png was cancelled/);
+  }
+  // Nothing is left that would be in the way of the next one.
+  await type(page, FIGURE);
+  const download = page.waitForEvent("download");
+  await choose();
+  assert.equal((await download).suggestedFilename(), "scene.png");
+});

@@ -192,3 +192,23 @@ test("a finger drags, and two fingers zoom without a change of the text", async 
   await finished(page);
   assert.ok(vector(await text(page), "let ball =")[0] > -1.4);
 });
+
+test("a phone has tabs for picture and text, and targets of 44 pixels", async t => {
+  const page = await open(await launch(t), await host(t), { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  assert.ok(await page.isVisible("#stage") && await page.isHidden("#editor"));
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  await page.waitForSelector(".handle");
+  const targets = "header button, header summary, #tabs button, .tools select, .tools button, .tools summary, .tools label span, footer button, .handle";
+  const measured = await page.locator(targets).evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect()]).filter(([, { width }]) => width > 0));
+  assert.ok(measured.length > 20);
+  for (const [name, { width, height }] of measured) assert.ok(width >= 43.9 && height >= 43.9, `${name}: ${width} × ${height}`);
+  const handles = await page.locator(".handle").evaluateAll(all => all.map(it => it.getBoundingClientRect()));
+  for (const [i, a] of handles.entries()) for (const b of handles.slice(0, i)) assert.ok(Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) >= 43.9);
+  await page.tap("#tabs [data-tab=text]");
+  assert.ok(await page.isHidden("#stage") && await page.isVisible("#editor"));
+  await page.tap("#tabs [data-tab=picture]");
+  assert.ok(await page.isVisible("#stage"));
+  // Problems stand with the text.
+  await page.tap("#problems");
+  assert.ok(await page.isVisible("#editor"));
+});

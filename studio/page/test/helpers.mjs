@@ -146,8 +146,15 @@ export async function link(page) {
   return page.inputValue("#share-link");
 }
 
+/** Shows the picture or the text, where a phone has room for one of them. */
+export async function tab(page, name) {
+  const button = page.locator(`#tabs [data-tab=${name}]`);
+  if (await button.isVisible()) await button.click();
+}
+
 /** Puts another text into the editor, as pasting does. */
 export async function type(page, text) {
+  await tab(page, "text");
   await page.click(".cm-content");
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(text);

@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, drag, FIGURE, launch, link, open, pixels, rendered, site, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, drag, FIGURE, finished, launch, link, open, pixels, rendered, site, text, type } from "./helpers.mjs";
 
 const skip = process.env.SITE === undefined ? "SITE names no folder" : false;
 
@@ -81,16 +81,26 @@ test("the static page keeps what is written in the browser, and offers it after 
   await page.reload();
   await page.waitForSelector("#draft-bar:not([hidden])");
   assert.equal(await text(page), FIGURE);
-  await page.click("#draft-choices >> text=Restore");
+  await andFinished(page, () => page.click("#draft-choices >> text=Restore"));
   assert.equal(await text(page), scene);
   // It goes on as the one draft that it is.
   await page.waitForTimeout(900);
   await page.reload();
   await page.waitForSelector("#draft-bar:not([hidden])");
-  await page.click("#draft-choices >> text=Forget");
-  assert.ok(await page.isHidden("#draft-bar"));
-  await page.waitForTimeout(300);
+  // What is written before that is answered is kept beside it.
+  const other = FIGURE.replace("radius 1", "radius 0.5");
+  await andFinished(page, () => type(page, other));
+  await page.waitForTimeout(900);
   await page.reload();
+  await finished(page);
+  for (const kept of [other, scene]) {
+    await andFinished(page, () => page.click("#draft-choices >> text=Restore"));
+    assert.equal(await text(page), kept);
+    await andFinished(page, () => page.keyboard.press("Control+z"));
+  }
+  assert.ok(await page.isHidden("#draft-bar"));
+  await page.reload();
+  await page.waitForTimeout(900);
   await page.waitForTimeout(900);
   assert.ok(await page.isHidden("#draft-bar"));
 });

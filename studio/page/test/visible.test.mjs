@@ -7,7 +7,7 @@ import path from "node:path";
 import { test } from "node:test";
 import { FIGURE, launch, open, serve, type } from "./helpers.mjs";
 
-const ALL = ["\u202e", "\u2066", "\u200f", "\u061c", "\u0085", "\u001b", "\n", "\t", "\u2028"];
+const ALL = ["\u202e", "\u2066", "\u200f", "\u061c", "\u0085", "\u001b", "\u200b", "\u00ad", "\ufeff", "\u{e0041}", "\n", "\t", "\u2028"];
 const code = character => `\\u{${character.codePointAt(0).toString(16)}}`;
 
 test("a name is shown with its codes in all places", async t => {
@@ -44,7 +44,7 @@ test("no message shows what cannot be seen as it is", async t => {
   t.after(() => (started.stop(), rmSync(folder, { recursive: true, force: true })));
   const page = await open(await launch(t), started);
   await page.click("#problems");
-  for (const character of ALL.slice(0, 6)) {
+  for (const character of ALL.slice(0, 10)) {
     // Where it cannot stand, within what a message quotes, and in what a fix writes.
     for (const wrong of [`${character} camera`, `sphere { radius "a${character}b" }`, `let a = (1, 2, "${character}`, `sphere { center [1, 2, /*${character}*/ 3] }`]) {
       const before = await page.textContent("#problem-list");

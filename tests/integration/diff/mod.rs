@@ -174,7 +174,7 @@ fn sizes_that_differ_are_named() {
     compare(
         &folder,
         r"
-        b.png a.scn -> 2 -> error: b.png has 48 × 32 pixels, and the scene's picture 60 × 40: --set image.width=48 --set image.height=32 makes the scene's as large\n
+        b.png a.scn -> 2 -> error: b.png has 48 × 32 pixels, and the scene's picture 60 × 40: `--set image.width=48 --set image.height=32` compares
         b.png a.png -o heat.png -> 1 -> …A         48 x 32 pixels\nB         60 x 40 pixels\n
         b.png a.png -o heat.png -> 1 -> …pictures of different sizes have no heat map
         c.png a.scn -> 2 -> …which does not lie within the scene's 60 × 40 pixels

@@ -8,7 +8,7 @@ use pinhole::{
         Analysis, Completion, Piece, Symbol, completions, definition, fixes, folds, formatting,
         hints, hover, occurrences, presentations, renamable, rename, semantic_tokens, signature,
         swatches, symbols,
-        viewport::{Along, Drag, drag},
+        viewport::{Along, Drag, alone, drag},
     },
     source::{SourceId, Span},
 };
@@ -49,7 +49,8 @@ pub fn inserted(text: &str, completion: &Completion) -> String {
     text
 }
 
-/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or why it has no other name.
+/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or
+/// why it has no other name.
 fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     let mut text = analysis.text().to_owned();
     let found = occurrences(analysis, at);
@@ -91,12 +92,14 @@ fn outline(symbols: &[Symbol]) -> String {
 
 /// The text after a handle was moved; or why it cannot be.
 pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
-    let sources = sources(text);
-    let dragged = drag(&Analysis::new(&sources), &read(text), moved)?;
+    let (sources, scene) = (sources(text), read(text));
+    let alone = alone(&sources, &scene, moved.object);
+    let dragged = drag(&sources, &alone, &scene, moved)?;
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// The text behind a start of it, of which a handle was dragged as the words say: its name, the points, and along what.
+/// The text behind a start of it, of which a handle was dragged as the words say: its name, the
+/// points, and along what.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());

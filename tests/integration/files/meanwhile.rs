@@ -9,7 +9,7 @@ use std::{
     },
     process::{Child, Stdio},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crate::program::{Folder, Said};
@@ -48,13 +48,17 @@ fn a_save_of_another_program_is_never_lost() {
     }
 }
 
+/// A user who is not root.
+const USER: u32 = 65534;
+
+fn is_root() -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
+}
+
 #[test]
 fn a_file_that_cannot_be_replaced_is_written_in_place() {
-    const USER: u32 = 65534;
-    let is_root = fs::metadata("/proc/self").is_ok_and(|found| {
-        use std::os::unix::fs::MetadataExt as _;
-        found.uid() == 0
-    });
+    let is_root = is_root();
     for (home, is_writable) in [("home", true), ("none", false)] {
         let folder = Folder::with([("closed/a.scn", "sphere  {}\n"), ("home/x", "")]);
         let open = |name: &str, mode| {
@@ -90,6 +94,8 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
                 assert_eq!(text, "sphere {}\n");
                 let state = folder.path("home/.local/state/pinhole");
                 assert!(crate::program::names(&state).is_empty());
+                let mode = fs::metadata(&state).unwrap().permissions().mode();
+                assert_eq!(mode & 0o777, 0o700);
             }
             // Nowhere is room for the copy.
             false => {
@@ -105,14 +111,148 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
 
 #[test]
 fn a_new_file_is_never_empty_whenever_the_process_is_killed() {
+    let whole = {
+        let start = Instant::now();
+        Folder::with([]).done("new a.scn");
+        start.elapsed()
+    };
+    let (mut absent, mut present) = (0, 0);
     for delay in 0..60 {
         let folder = Folder::with([]);
         let mut child = spawned(&folder, "new a.scn");
-        thread::sleep(Duration::from_micros(100 * delay));
+        thread::sleep(whole * delay / 40);
         child.kill().unwrap();
         child.wait().unwrap();
-        if let Ok(text) = fs::read_to_string(folder.path("a.scn")) {
-            assert_eq!(text, pinhole::scene::SMALLEST, "{delay}");
+        match fs::read_to_string(folder.path("a.scn")) {
+            Ok(text) => {
+                assert_eq!(text, pinhole::scene::SMALLEST, "{delay}");
+                present += 1;
+            }
+            Err(_) => absent += 1,
         }
+    }
+    assert!(absent > 0 && present > 0, "{absent} {present}");
+}
+
+/// The process is killed at all times from before it writes until it has answered.
+#[cfg(feature = "studio")]
+#[test]
+fn the_first_save_of_a_new_scene_is_whole_or_not_there() {
+    use crate::studio::client::Studio;
+    use serde_json::json;
+
+    let text = "// a scene\n".repeat(1 << 16);
+    let (mut absent, mut present) = (0, 0);
+    for delay in 0..24 {
+        let folder = Folder::with([]);
+        let mut studio = Studio::start(folder.command("studio --no-open"));
+        let (mut page, _) = studio.page();
+        let params = json!({ "text": text, "base": pinhole::scene::SMALLEST, "name": "a.scn" });
+        page.request("studio/save", params);
+        thread::sleep(Duration::from_millis(4 * delay));
+        studio.child.kill().unwrap();
+        studio.child.wait().unwrap();
+        match fs::read_to_string(folder.path("a.scn")) {
+            Ok(found) => {
+                assert!(found == text, "{delay}");
+                present += 1;
+            }
+            Err(_) => absent += 1,
+        }
+    }
+    assert!(absent > 0 && present > 0, "{absent} {present}");
+}
+
+#[test]
+fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_whole() {
+    if !is_root() {
+        return;
+    }
+    let (old, new) = (
+        "sphere  {}\n".repeat(1 << 16),
+        "sphere {}\n".repeat(1 << 16),
+    );
+    let mut left = 0;
+    for delay in 0..20 {
+        let folder = Folder::with([
+            ("closed/a.scn", &*old),
+            ("other/a.scn", &*new),
+            ("home/x", ""),
+        ]);
+        for (name, mode) in [
+            ("", 0o755),
+            ("home", 0o755),
+            ("closed/a.scn", 0o644),
+            ("closed", 0o555),
+        ] {
+            chown(folder.path(name), Some(USER), Some(USER)).unwrap();
+            fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode)).unwrap();
+        }
+        let fmt = |line: &str| {
+            let mut command = folder.command(line);
+            command.env_remove("XDG_STATE_HOME");
+            command.env("HOME", folder.path("home")).uid(USER).gid(USER);
+            command
+        };
+        let state = folder.path("home/.local/state/pinhole");
+        let copies = || match state.exists() {
+            true => crate::program::names(&state),
+            false => Vec::new(),
+        };
+        let mut child = fmt("fmt closed/a.scn").spawn().unwrap();
+        while copies().is_empty() && child.try_wait().unwrap().is_none() {
+            thread::yield_now();
+        }
+        thread::sleep(Duration::from_micros(500 * delay));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let text = folder.text("closed/a.scn");
+        let copies = copies();
+        let is_copied = |name: &String| fs::read(state.join(name)).unwrap() == new.as_bytes();
+        let is_whole = text == old || text == new || copies.iter().any(is_copied);
+        assert!(is_whole, "{delay}");
+        left += copies.len();
+        // The next run names it, but not one for a file of this name elsewhere.
+        for (line, is_named) in [
+            ("fmt closed/a.scn", true),
+            ("fmt --check other/a.scn", false),
+        ] {
+            let said = Said::from(fmt(line).output().unwrap());
+            for copy in &copies {
+                assert_eq!(said.errors.contains(&**copy), is_named, "{}", said.errors);
+            }
+        }
+    }
+    assert!(left > 0, "no try was in time");
+}
+
+/// Who may write to a file, and may not give it back to its group, leaves that group's rights to
+/// nobody else.
+#[test]
+fn another_group_gets_no_rights() {
+    use std::os::unix::fs::MetadataExt;
+
+    if !is_root() {
+        return;
+    }
+    // The user's supplementary group may be given a file, and one that the user has left may not.
+    for (owner, groups, after) in [
+        (1234, "--groups=1235", (USER, 1235, 0o660)),
+        (USER, "--clear-groups", (USER, USER, 0o600)),
+    ] {
+        let folder = Folder::with([("a.scn", "sphere  {}\n")]);
+        fs::set_permissions(folder.path(""), fs::Permissions::from_mode(0o777)).unwrap();
+        chown(folder.path("a.scn"), Some(owner), Some(1235)).unwrap();
+        fs::set_permissions(folder.path("a.scn"), fs::Permissions::from_mode(0o660)).unwrap();
+        let said = folder.shell(&format!(
+            "setpriv --reuid={USER} --regid={USER} {groups} pinhole fmt a.scn"
+        ));
+        if said.status == 127 {
+            return;
+        }
+        assert_eq!((said.status, &*said.errors), (0, ""));
+        let found = fs::metadata(folder.path("a.scn")).unwrap();
+        let found = (found.uid(), found.gid(), found.mode() & 0o777);
+        assert_eq!(found, after, "{groups}");
     }
 }

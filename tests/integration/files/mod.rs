@@ -2,6 +2,8 @@
 //! not waited for.
 
 #[cfg(unix)]
+mod forged;
+#[cfg(unix)]
 mod hostile;
 #[cfg(unix)]
 mod meanwhile;
@@ -141,15 +143,84 @@ fn what_somebody_else_has_saved_meanwhile_is_left_alone() {
             Some(_) => Original::read(&path, |path| files::read(path, 9)).unwrap(),
             None => Original::missing(),
         };
-        let purpose = Purpose::Change(&original);
-        let changed = || {
-            files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                meanwhile();
-                out.write_all(b"ours")
-            })
+        let within = &folder.path("");
+        let again = Purpose::Again {
+            within,
+            original: &original,
         };
-        assert!(files::is_changed(&changed().unwrap_err()), "{before:?}");
-        assert_eq!(fs::read_to_string(&path).ok().as_deref(), after);
-        assert!(folder.names().iter().all(|name| name == "a.scn"));
+        for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
+            let changed = || {
+                files::write(&path, purpose, &AtomicBool::new(false), |out| {
+                    // It has happened already where the second one is tried.
+                    if number == 0 {
+                        meanwhile();
+                    }
+                    out.write_all(b"ours")
+                })
+            };
+            assert!(files::is_changed(&changed().unwrap_err()), "{before:?}");
+            assert_eq!(fs::read_to_string(&path).ok().as_deref(), after);
+            assert!(folder.names().iter().all(|name| name == "a.scn"));
+        }
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_becomes_a_link_outwards_meanwhile_is_not_followed() {
+    for is_there in [false, true] {
+        for number in 0..3 {
+            let outside = Folder::with([]);
+            let folder = Folder::with([("out/b/other", "")]);
+            let (within, path) = (&folder.path("out"), folder.path("out/b/a"));
+            if is_there {
+                fs::write(&path, "old").unwrap();
+            }
+            let original = match is_there {
+                true => Original::read(&path, |path| files::read(path, 9)).unwrap(),
+                false => Original::missing(),
+            };
+            let again = Purpose::Again {
+                within,
+                original: &original,
+            };
+            let purpose = [Purpose::Within(within), Purpose::Private(within), again][number];
+            // The file that is being written moves, too.
+            let (inner, moved) = (folder.path("out/b"), outside.path("b"));
+            let written = files::write(&path, purpose, &AtomicBool::new(false), |out| {
+                fs::rename(&inner, &moved)?;
+                std::os::unix::fs::symlink(&moved, &inner)?;
+                out.write_all(b"new")
+            });
+            let error = written.unwrap_err().to_string();
+            assert_eq!(error, "a link leads out of its folder from there");
+            let found = fs::read_to_string(moved.join("a")).ok();
+            assert_eq!(found.as_deref(), is_there.then_some("old"));
+        }
+    }
+}
+
+#[cfg(all(unix, feature = "studio"))]
+#[test]
+fn what_is_kept_of_a_user_is_for_the_user_alone() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = Folder::with([]);
+    let mode = |name| {
+        let found = fs::metadata(folder.path(name)).unwrap();
+        found.permissions().mode() & 0o777
+    };
+    let set = |name, mode| {
+        fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode)).unwrap();
+    };
+    let path = folder.path("state/drafts/a.json");
+    files::keep(&path, "old").unwrap();
+    let modes = || ["state", "state/drafts", "state/drafts/a.json"].map(mode);
+    assert_eq!(modes(), [0o700, 0o700, 0o600]);
+    // Also in folders, and in the place of a file, that everybody can read.
+    set("state/drafts", 0o755);
+    set("state/drafts/a.json", 0o644);
+    files::keep(&path, "new").unwrap();
+    assert_eq!(mode("state/drafts/a.json"), 0o600);
+    assert_eq!(folder.text("state/drafts/a.json"), "new");
 }

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use pinhole::files::OutputFolder;
+
 use crate::program::{Folder, names};
 
 const SCENE: &str = "image { width 6 height 4 }
@@ -82,6 +84,41 @@ fn what_somebody_else_made_or_changed_is_refused_before_anything_is_written() {
             assert_eq!(fs::read(folder.path("out/.pinhole")).unwrap(), before);
         }
     }
+}
+
+#[test]
+fn runs_at_the_same_time_list_what_each_of_them_made() {
+    let folder = Folder::with([]);
+    let path = folder.path("out");
+    let open = |name| OutputFolder::open(&path, [name]).unwrap();
+    let mut runs = ["a", "b/c"].map(|name| (name, open(name)));
+    for (name, run) in &mut runs {
+        let file = (name.to_string(), format!("made as {name}"));
+        run.write(&[file]).unwrap();
+    }
+    let list = folder.text("out/.pinhole");
+    assert!(list.contains("  a\n") && list.contains("  b/c\n"), "{list}");
+}
+
+/// What is written again as it was has one hash, so nothing in the list changes, and it stays.
+#[cfg(unix)]
+#[test]
+fn a_list_to_which_nothing_is_added_is_not_written() {
+    use std::os::unix::fs::MetadataExt;
+
+    let folder = Folder::with([]);
+    let path = folder.path("out");
+    let inode = || fs::metadata(folder.path("out/.pinhole")).unwrap().ino();
+    let write = || {
+        let mut out = OutputFolder::open(&path, ["a"]).unwrap();
+        out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
+    };
+    write();
+    // So that no later file gets its number.
+    fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
+    let before = inode();
+    write();
+    assert_eq!(inode(), before);
 }
 
 #[test]

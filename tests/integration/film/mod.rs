@@ -1,6 +1,7 @@
 //! Picture files: what is in them, and that they are whole.
 
 mod compare;
+mod foreign;
 mod light;
 
 use std::{io::Cursor, iter};
@@ -157,7 +158,8 @@ fn what_is_damaged_is_told_from_what_is_whole() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // Whatever bit is wrong, it is no panic; of the header it is found by its checksum; and nothing behind the scene is looked at.
+    // Whatever bit is wrong, it is no panic; of the header it is found by its checksum; and nothing
+    // behind the scene is looked at.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -228,8 +230,8 @@ fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
     }
 }
 
-/// What is not read, an opacity or another layer, says nothing of how the colours are rounded: the one file has an opacity of 16 bits, the other a
-/// green channel.
+/// What is not read, an opacity or another layer, says nothing of how the colours are rounded: the
+/// one file has an opacity of 16 bits, the other a green channel.
 #[test]
 fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
     for (file, rounding) in [

@@ -31,7 +31,8 @@ struct Words {
 }
 
 impl Words {
-    fn of(text: &str) -> Self {
+    /// A field's name with its value right behind it, as in `radius2`, is two words or one.
+    fn of(text: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         let mut rest = text;
         let mut is_number_before = false;
@@ -58,7 +59,8 @@ impl Words {
                     rest = &rest[1..];
                     continue;
                 }
-                let length = glued(&rest[..length], text).unwrap_or(length);
+                let field = glued(&rest[..length], text).filter(|_| is_two);
+                let length = field.unwrap_or(length);
                 let word = &rest[..length];
                 rest = &rest[length..];
                 let is_it = |row: &&(&str, f64)| {
@@ -71,7 +73,7 @@ impl Words {
             } else {
                 rest = &rest[first.len_utf8()..];
             }
-            is_number_before &= first == ' ';
+            is_number_before &= first.is_whitespace() && first != '\n';
         }
         words
     }
@@ -86,7 +88,10 @@ fn glued(word: &str, text: &str) -> Option<usize> {
     let is_value = |rest: &str| {
         rest.starts_with(|c: char| c.is_ascii_digit())
             || schema::css::color(rest).is_some()
-            || text.contains(&format!("let {rest} "))
+            || ["deg", "rad", "rgb"].contains(&rest)
+            || text
+                .split(|c: char| !is_letter(c) && !c.is_ascii_digit())
+                .any(|other| other == rest)
     };
     let mut fields = BLOCKS.iter().flat_map(|block| block.field_names());
     let found = fields.find(|field| word.strip_prefix(field).is_some_and(is_value));
@@ -150,7 +155,7 @@ fn is_known_for(new: &str, old: &str) -> bool {
 pub fn fixed(text: &str) -> (String, Vec<String>) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let fixed = scene::fix_all(&sources, Applicability::Safe);
-    let (before, after) = (Words::of(text), Words::of(&fixed.text));
+    let (before, after) = (Words::of(text, true), Words::of(&fixed.text, true));
     let removed = fixed.done.iter().filter(|done| {
         done.title.starts_with("remove this `let") || done.title.starts_with("keep the first")
     });
@@ -174,13 +179,18 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // Whether two words were joined, or one replaced, may be read in two ways.
-    let ways = [true, false].map(|joins| of_names(&before.names, &after.names, joins));
-    let [_, (lost, new)] = match ways[0].0.is_empty() && ways[0].1.is_empty() {
-        true => [ways[1].clone(), ways[0].clone()],
-        false => ways,
-    };
-    let is_listed = has_removed && lost.iter().all(|name| after.names.contains(name));
+    // Whether two words were joined, one was taken apart, or one replaced, may be read in several
+    // ways.
+    let read = |text| [true, false].map(|is_two| Words::of(text, is_two).names);
+    let (before, after) = (read(text), read(&fixed.text));
+    let pairs = before
+        .iter()
+        .flat_map(|before| after.iter().map(move |after| (before, after)));
+    let ways =
+        pairs.flat_map(|(before, after)| [true, false].map(|joins| of_names(before, after, joins)));
+    let least = ways.min_by_key(|(lost, new)| lost.len() + new.len());
+    let (lost, new) = least.unwrap();
+    let is_listed = has_removed && lost.iter().all(|name| after[0].contains(name));
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("names are lost: {lost:?}"));
     }

@@ -3,8 +3,12 @@
 
 use std::{fs, path::Path};
 
-use super::kept;
-use crate::{diagnostics::fixtures, program::names, scenes::examples};
+use super::{Trial, kept};
+use crate::{
+    diagnostics::fixtures,
+    program::names,
+    scenes::{examples, sources},
+};
 
 /// Files of other programs and languages.
 fn foreign() -> Vec<String> {
@@ -36,6 +40,18 @@ fn files_of_other_languages_keep_their_numbers_and_names() {
         complaints.extend(kept::fixed(&text).1);
     }
     assert_none(&complaints);
+}
+
+/// What a fix shows that another mistake hid may be new, but it never outweighs the fix.
+#[test]
+fn every_fix_of_a_file_of_another_language_leaves_fewer_errors() {
+    let mut trial = Trial::default();
+    for text in foreign() {
+        trial.type_in(&sources(&text), |_, _| true);
+    }
+    let is_broken = |complaint: &String| complaint.contains("leaves as many errors");
+    trial.complaints.retain(is_broken);
+    trial.ends_with_more_than(30);
 }
 
 /// `PINHOLE_SLIPS=100000 cargo test` tries as many.

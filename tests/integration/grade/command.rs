@@ -13,7 +13,8 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// A file, how it is rendered, its verdict, and the id of its mistake. A third of the pixels of `scatter.png` has no sample.
+/// A file, how it is rendered, its verdict, and the id of its mistake. A third of the pixels of
+/// `scatter.png` has no sample.
 const PICTURES: &str = "
     crop.png -> --set sampler.method=exact --crop 8,4,40,30 -> right ->
     exact.exr -> --set sampler.method=exact -> right ->
@@ -65,19 +66,31 @@ fn each_picture_has_a_line_in_every_form() {
     let csv = read("grade.csv");
     let rows: Vec<_> = csv.lines().collect();
     assert_eq!(rows.len(), 1 + pictures.len());
-    assert_eq!(
-        rows[0],
-        "file,verdict,rmse,samples_per_pixel,line,set,rest,limited,explains,help"
-    );
+    let head = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,\
+        guesses,rest,limited,not_compared,equal_to,score";
+    assert_eq!(rows[0], head);
     assert!(
         rows[5].starts_with("\"class/size.png\",wrong,0.")
-            && rows[5]
-                .contains("\"Ball.radius=1.5\",,false,\"1.000\",\"the scene says Ball.radius=1\""),
+            && rows[5].contains(",\"Ball.radius=1.5\",\"size.png\",\"\",\"radius\","),
         "{}",
         rows[5]
     );
+    // Every line has as many cells.
+    let mut table = csv::Reader::from_reader(csv.as_bytes());
+    assert_eq!(
+        table.records().filter(Result::is_ok).count(),
+        pictures.len()
+    );
     let page = read("index.html");
     assert_eq!(page.matches("<td class=\"picture\">").count(), 6);
+    let whole = ["1", "1-difference", "1-exact", "6", "exact"];
+    for name in whole.map(|name| format!("pictures/{name}.png")) {
+        assert!(
+            name == "pictures/exact.png" || page.contains(&name),
+            "{name}"
+        );
+        image::load_from_memory(&folder.read(&format!("graded/{name}"))).unwrap();
+    }
     assert_eq!(page.matches("data:image/png;base64,").count(), 12);
     assert!(
         page.contains("<code>--set image.background='#ff0000'</code>"),
@@ -91,7 +104,7 @@ fn each_picture_has_a_line_in_every_form() {
 
     let table = folder.told("grade a.scn class", 1);
     let words = [
-        "picture",
+        "student",
         "right: equal to the exact picture (rendered by Pinhole)",
         "right: equal to the exact picture",
         "right but for sampling noise",
@@ -107,6 +120,11 @@ fn each_picture_has_a_line_in_every_form() {
         "grade a.scn class/exact.exr class/random.png --threads 1",
         0,
     );
+    // What is named is a picture, whatever it is called.
+    folder.write("picture", folder.read("class/exact.exr"));
+    folder.told("grade a.scn picture --picture x.png", 0);
+    let read = folder.run_reading("grade a.scn -", folder.read("class/exact.exr"));
+    assert_eq!((read.status, read.text()), (0, ""));
 }
 
 #[test]
@@ -124,18 +142,22 @@ fn a_picture_that_cannot_be_compared_is_a_line_of_its_own() {
     );
     let said = folder
         .run("grade a.scn broken.png small.png none.png class/exact.exr --format json -o graded");
+    // One that is named is not there.
     assert_eq!(said.status, 2);
     let graded = lines(said.text());
     assert_eq!(graded.len(), 4);
     for (line, [name, words]) in graded.iter().zip(cases) {
         assert_eq!(line["file"], name);
-        assert_eq!(line.as_object().unwrap().len(), 2);
+        assert_eq!(line["student"], name);
+        assert_eq!(line.as_object().unwrap().len(), 3);
         assert!(line["error"].as_str().unwrap().contains(words), "{line}");
     }
     assert_eq!(graded[3]["verdict"], "right");
     let page = folder.text("graded/index.html");
-    assert_eq!(page.matches("<tr class=\"error\">").count(), 3);
-    let table = folder.told("grade a.scn class/exact.exr broken.png", 2);
+    assert_eq!(page.matches("<tr class=\"error\"").count(), 3);
+    // Somebody has no picture that can be compared, or nobody has.
+    folder.told("grade a.scn broken.png", 2);
+    let table = folder.told("grade a.scn class/exact.exr broken.png", 1);
     assert!(table.contains("not compared: it is no picture"), "{table}");
 }
 

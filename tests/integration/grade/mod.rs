@@ -1,7 +1,9 @@
 //! Grading: pictures of a tracer of its own judged by the library, and the command `grade`.
 
 mod case;
+mod classes;
 mod command;
+mod forms;
 mod mistakes;
 mod textbook;
 
@@ -25,7 +27,8 @@ use crate::{
     images,
 };
 
-/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a class makes.
+/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a
+/// class makes.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);

@@ -86,7 +86,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// A page that shows a token, and the token that it gets; or the code with which it is turned away.
+    /// A page that shows a token, and the token that it gets; or the code with which it is turned
+    /// away.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();

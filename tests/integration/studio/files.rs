@@ -1,6 +1,6 @@
 //! The scene's file: read, saved, changed by others, and no other file.
 
-use std::{fs, net::TcpListener};
+use std::{fs, iter, net::TcpListener};
 
 use pinhole::scene::SMALLEST as SCENE;
 use serde_json::{Value, json};
@@ -96,6 +96,41 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
+/// Each way of protecting a file that this system and user have: whoever is root has the last
+/// alone.
+#[cfg(unix)]
+#[test]
+fn a_save_that_is_not_allowed_names_the_file_and_a_way_out() {
+    use std::process::Command;
+
+    let way_out = "allow it to be changed, or download the scene";
+    let permissions = "its permissions, or those of its folder, do not allow that";
+    let system = "the system protects it from being changed";
+    for (protect, release, why) in [
+        ("chmod 444", "chmod 644", permissions),
+        ("chattr +i", "chattr -i", system),
+    ] {
+        let (folder, studio) = studio();
+        let path = folder.path("a.scn");
+        let run = |command: &str| {
+            let mut words = command.split(' ');
+            let mut program = Command::new(words.next().unwrap_or_default());
+            let status = program.args(words).arg(&path).output();
+            status.is_ok_and(|output| output.status.success())
+        };
+        let is_protected = run(protect) && fs::File::options().write(true).open(&path).is_err();
+        let (mut page, _) = studio.page();
+        let answer = is_protected.then(|| save(&mut page, "// mine", Some(SCENE)));
+        run(release);
+        let Some(mut answer) = answer else { continue };
+        let message = format!("a.scn is not saved: {why}; {way_out}");
+        assert_eq!(answer["error"]["message"].take(), message, "{protect}");
+        assert_eq!(folder.text("a.scn"), SCENE);
+        // Once it is allowed, it is saved.
+        assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], saved());
+    }
+}
+
 #[test]
 fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let outer = Folder::with([("inner/there.scn", "// there")]);
@@ -180,6 +215,12 @@ fn a_scene_that_becomes_a_pipe_is_told_and_holds_nothing_up() {
 fn what_cannot_be_edited_is_told_at_once() {
     let folder = Folder::with([("a.scn", SCENE)]);
     folder.write("bytes.scn", b"\xff");
+    let wide = |mark: &str, text: &str| -> Vec<u8> {
+        let units = mark.encode_utf16().chain(text.encode_utf16());
+        units.flat_map(u16::to_le_bytes).collect()
+    };
+    folder.write("marked.scn", wide("\u{feff}", SCENE));
+    folder.write("wide.scn", wide("", SCENE));
     assert_eq!(folder.run("render a.scn --crop 0,0,1,1").status, 0);
     let taken = TcpListener::bind(("127.0.0.1", 0)).unwrap();
     let port = taken.local_addr().unwrap().port();
@@ -191,6 +232,14 @@ fn what_cannot_be_edited_is_told_at_once() {
         (
             "bytes.scn",
             "cannot read bytes.scn: it is not a text in UTF-8",
+        ),
+        (
+            "marked.scn",
+            "cannot read marked.scn: it is UTF-16, not UTF-8: save it as UTF-8",
+        ),
+        (
+            "wide.scn",
+            "cannot read wide.scn: it is UTF-16, not UTF-8: save it as UTF-8",
         ),
         (
             &format!("a.scn --port {port}"),
@@ -206,8 +255,10 @@ fn what_cannot_be_edited_is_told_at_once() {
 #[cfg(unix)]
 #[test]
 fn a_browser_is_started_unless_it_is_not_wanted() {
+    use rustix::net::sockopt::set_socket_recv_buffer_size;
     use std::{
         env,
+        io::Read,
         os::unix::fs::PermissionsExt,
         process::Stdio,
         thread,
@@ -226,7 +277,10 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    for (arguments, is_opened) in [("studio --no-open", false), ("studio", true)] {
+    // More than the system takes for a page that does not read.
+    let long = "// a long scene\n".repeat(1 << 19);
+    folder.write("a.scn", &long);
+    for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
         let mut command = folder.command(arguments);
         command.env("PATH", &path).stdout(Stdio::null());
         let studio = Studio::start(command);
@@ -249,13 +303,25 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         // The page connects again with what it was given.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
+        // What is still on its way would come before the word that the session ends.
+        first.told("studio/file");
+        again.told("studio/file");
         let (mut other, _) = studio.page();
+        let mut silent = studio.socket();
+        set_socket_recv_buffer_size(silent.get_ref(), 1 << 16).unwrap();
+        silent.send(session.as_str().into()).unwrap();
+        silent.read().unwrap();
         // Whoever opens it a second time ends the session, and has none.
         let twice = CloseCode::from(4003);
         for token in [once, &session, once] {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
+        // Nor does one that does not read what it is sent go on with it.
+        thread::sleep(Duration::from_secs(1));
+        let mut rest = Vec::new();
+        let _ = silent.get_mut().read_to_end(&mut rest);
+        assert!(rest.len() < long.len(), "{} bytes", rest.len());
         // Pages with the printed address are not concerned.
         other.open(json!({}), SCENE);
         other.diagnostics();
@@ -304,7 +370,8 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
     }
 }
 
-/// What is not saved survives the program, and is gone when it is saved or forgotten.
+/// What is not saved survives the program, and is gone when it is saved or forgotten; what earlier
+/// pages have written stays until it is forgotten itself.
 #[test]
 fn a_draft_outlives_the_program() {
     let folder = Folder::with([("a.scn", SCENE)]);
@@ -314,25 +381,70 @@ fn a_draft_outlives_the_program() {
         command.env("LOCALAPPDATA", folder.path("state"));
         Studio::start(command)
     };
-    let draft = |text: Value| json!({ "text": text, "base": SCENE });
-    for end in ["saved", "forgotten"] {
+    let text = |text: &str, time: u64| json!({ "text": text, "base": SCENE, "time": time });
+    let offered = |studio: &Studio| {
+        let mut draft = studio.page().1["draft"].take();
+        let earlier = draft["earlier"].take();
+        let earlier = earlier.as_array().cloned().unwrap_or_default();
+        let all = iter::once(draft).chain(earlier);
+        let texts = all.map(|it| it["text"].as_str().unwrap_or_default().to_owned());
+        texts.collect::<Vec<_>>().join(" ")
+    };
+    let kept = [
+        text("// 1", 1),
+        text("// 2", 2),
+        text("// 3", 3),
+        text("// 4", 4),
+    ];
+    // What a page keeps, what a later one is offered, and what is left when that has saved.
+    let cases = [
+        (json!({ "text": "// 0", "base": SCENE }), "// 0", ""),
+        (
+            json!({ "text": "// 0", "earlier": kept[..2] }),
+            "// 0 // 1 // 2",
+            "// 1 // 2",
+        ),
+        (
+            json!({ "text": null, "earlier": kept[..2] }),
+            "// 1 // 2",
+            "// 2",
+        ),
+        (
+            json!({ "text": "// 0", "earlier": kept }),
+            "// 0 // 1 // 2 // 3",
+            "// 1 // 2 // 3",
+        ),
+        // What the file holds is not offered.
+        (
+            json!({ "text": SCENE, "earlier": kept[..1] }),
+            "// 1",
+            "// 1",
+        ),
+        (json!({ "text": SCENE }), "", ""),
+        (json!({ "text": null, "earlier": null }), "", ""),
+    ];
+    for (draft, later, left) in cases {
         let mut first = start();
         let (mut page, found) = first.page();
         assert_eq!(found.get("draft"), None);
-        assert_eq!(page.ask("studio/draft", draft(json!("// mine"))), saved());
+        assert_eq!(page.ask("studio/draft", draft.clone()), saved());
         first.child.kill().unwrap();
         let second = start();
+        assert_eq!(offered(&second), later, "{draft}");
         let (mut page, mut found) = second.page();
-        let mut kept = found["draft"].take();
-        assert!(kept["time"].take().as_u64() > Some(1_700_000_000));
-        assert_eq!([&kept["text"], &kept["base"]], ["// mine", SCENE]);
-        match end {
-            "saved" => {
-                assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
-                assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
-            }
-            _ => assert_eq!(page.ask("studio/draft", draft(Value::Null)), saved()),
-        }
-        assert_eq!(second.page().1.get("draft"), None);
+        let newest = found["draft"]["time"].take();
+        assert!(later.is_empty() || newest.as_u64() > Some(0), "{draft}");
+        assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
+        assert_eq!(offered(&second), left, "{draft}");
+        assert_eq!(page.ask("studio/draft", json!({ "text": null })), saved());
+        assert_eq!(offered(&second), "", "{draft}");
+        assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
     }
+    let studio = start();
+    let (mut page, _) = studio.page();
+    let params = json!({ "text": "// 0", "earlier": ["// 1"] });
+    assert_eq!(
+        page.respond("studio/draft", params)["error"]["code"],
+        -32602
+    );
 }

@@ -1,0 +1,178 @@
+//! Zip files as classes hand them in. They are read where they lie, and nothing of them is written
+//! anywhere: a name in one is shown and never opened.
+
+use std::{
+    fs::File,
+    io::{BufReader, Read},
+    path::Path,
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+};
+
+use zip::{DateTime, ZipArchive, result::ZipError};
+
+use crate::files;
+
+/// Maximum length of a file that is looked at, in a zip file or beside it, in bytes.
+pub const FILE_LIMIT: u64 = 256 << 20;
+
+/// Maximum number of entries.
+const MOST_ENTRIES: usize = 10_000;
+
+/// Maximum number of bytes that all zip files of a class are unpacked to.
+const WHOLE_LIMIT: u64 = 4 << 30;
+
+/// How many bytes may still be unpacked of a class's zip files, counted as they come, whatever a
+/// header says.
+#[derive(Debug)]
+pub struct Budget(AtomicU64);
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self(AtomicU64::new(WHOLE_LIMIT))
+    }
+}
+
+impl Budget {
+    fn take(&self, bytes: u64) -> Result<(), String> {
+        let less = |left: u64| left.checked_sub(bytes);
+        match self
+            .0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, less)
+        {
+            Ok(_) => Ok(()),
+            Err(_) => Err("all zip files together unpack to more than 4 GiB".to_owned()),
+        }
+    }
+}
+
+/// An open zip file.
+#[derive(Debug)]
+pub struct Archive(Mutex<ZipArchive<BufReader<File>>>);
+
+/// An entry of a zip file, which is no folder.
+#[derive(Debug)]
+pub struct Entry {
+    pub index: usize,
+    /// Its name, with `/` between folders.
+    pub name: String,
+    /// Seconds since 1970, even ones.
+    pub time: Option<i64>,
+    /// Its length, as the header says.
+    pub length: u64,
+    /// Why it is not compared, whatever is in it.
+    pub refused: Option<&'static str>,
+}
+
+impl Archive {
+    /// Opens a zip file, and lists what is in it.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be read.
+    pub fn open(path: &Path) -> Result<(Self, Vec<Entry>), String> {
+        let file = files::open_argument(path).map_err(|error| error.to_string())?;
+        let mut zip = ZipArchive::new(BufReader::new(file)).map_err(|error| in_words(&error))?;
+        if zip.len() > MOST_ENTRIES {
+            let count = zip.len();
+            return Err(format!(
+                "it has {count} entries, and at most {MOST_ENTRIES} are read"
+            ));
+        }
+        let mut entries = Vec::new();
+        for index in 0..zip.len() {
+            let entry = zip.by_index_raw(index).map_err(|error| in_words(&error))?;
+            if entry.is_dir() {
+                continue;
+            }
+            let refused = match () {
+                () if entry.encrypted() => Some("encrypted"),
+                () if entry.is_symlink() => Some("a link"),
+                () => None,
+            };
+            entries.push(Entry {
+                index,
+                name: name(entry.name_raw(), entry.name().ok().as_deref()),
+                time: entry.last_modified().map(seconds),
+                length: entry.size(),
+                refused,
+            });
+        }
+        Ok((Self(Mutex::new(zip)), entries))
+    }
+
+    /// Unpacks an entry.
+    ///
+    /// # Errors
+    ///
+    /// It is damaged or too large.
+    pub fn read(&self, index: usize, budget: &Budget) -> Result<Vec<u8>, String> {
+        /// How much is unpacked before it is counted.
+        const PIECE: u64 = 1 << 16;
+        let mut zip = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;
+        let mut bytes = Vec::new();
+        loop {
+            let read = entry.by_ref().take(PIECE).read_to_end(&mut bytes);
+            match read.map_err(|error| format!("it is damaged: {error}"))? {
+                0 => return Ok(bytes),
+                read => budget.take(read as u64)?,
+            }
+            if bytes.len() as u64 > FILE_LIMIT {
+                return Err("it unpacks to more than 256 MiB".to_owned());
+            }
+        }
+    }
+}
+
+/// An entry's name: in UTF-8 where it can be, though not all programs say so; else in code page
+/// 437.
+fn name(raw: &[u8], decoded: Option<&str>) -> String {
+    let name = match (str::from_utf8(raw), decoded) {
+        (Ok(name), _) | (_, Some(name)) => name.to_owned(),
+        _ => String::from_utf8_lossy(raw).into_owned(),
+    };
+    // Some programs for Windows write these between folders.
+    name.replace('\\', "/")
+}
+
+/// The seconds since 1970 of a time in a zip file, which has no time zone.
+fn seconds(time: DateTime) -> i64 {
+    // A year begins in March here, so that a day in February is the last one: Hinnant,
+    // "chrono-compatible low-level date algorithms", days_from_civil.
+    let month = (i64::from(time.month()) + 9) % 12;
+    let year = i64::from(time.year()) - i64::from(month >= 10);
+    let leaps = year / 4 - year / 100 + year / 400;
+    let days = 365 * year + leaps + (153 * month + 2) / 5 + i64::from(time.day()) - 1 - 719_468;
+    let minutes = (days * 24 + i64::from(time.hour())) * 60 + i64::from(time.minute());
+    60 * minutes + i64::from(time.second())
+}
+
+fn in_words(error: &ZipError) -> String {
+    match error {
+        ZipError::Io(error) => format!("it is no zip file, or damaged: {error}"),
+        ZipError::UnsupportedArchive(what) => format!("it is packed as is not read here: {what}"),
+        _ => "it is no zip file, or damaged or cut off".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_is_seconds_since_1970() {
+        for (date, expected) in [
+            ([1980, 1, 1], 315_532_800),
+            ([2000, 2, 29], 951_782_400),
+            ([2026, 11, 28], 1_795_824_000),
+            ([2028, 12, 31], 1_861_833_600),
+        ] {
+            let [year, month, day] = date;
+            let time = DateTime::from_date_and_time(year, month as u8, day as u8, 0, 0, 0);
+            assert_eq!(seconds(time.unwrap()), expected, "{date:?}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! What a mistake is about: the camera, an object, the board, colours, or where samples lie.
+
+use std::collections::BTreeSet;
+
+use super::graded::Finding;
+use crate::{
+    grading,
+    scene::{Scene, Shape},
+    schema,
+};
+
+/// What a picture is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// The camera and the window.
+    Camera,
+    /// An object, by its index.
+    Object(usize),
+    /// The squares of checkerboards.
+    Board,
+    /// Colours and their encoding.
+    Colours,
+    /// Where samples lie, and how they are averaged.
+    Sampling,
+    /// Which hits are seen, and whatever else there is.
+    Hits,
+}
+
+/// How the ids of mistakes begin that are about something else than hits.
+const BEGINNINGS: &[(&str, Criterion)] = &[
+    ("board_", Criterion::Board),
+    ("half_pixel", Criterion::Sampling),
+    ("averaged_", Criterion::Sampling),
+    ("wider_", Criterion::Sampling),
+    ("sample", Criterion::Sampling),
+    ("channels", Criterion::Colours),
+    ("gray", Criterion::Colours),
+    ("not_encoded", Criterion::Colours),
+    ("encoded_", Criterion::Colours),
+    ("gamma_", Criterion::Colours),
+    ("cut_off", Criterion::Colours),
+    ("not_decoded", Criterion::Colours),
+    ("inverted", Criterion::Colours),
+    ("not_divided", Criterion::Colours),
+    ("black", Criterion::Colours),
+    ("one_colour", Criterion::Colours),
+    ("transparent", Criterion::Colours),
+    ("alpha", Criterion::Colours),
+    ("background", Criterion::Colours),
+    ("mirrored", Criterion::Camera),
+    ("upside_down", Criterion::Camera),
+    ("turned_", Criterion::Camera),
+    ("transposed", Criterion::Camera),
+    ("squeezed", Criterion::Camera),
+    ("aspect", Criterion::Camera),
+    ("looks_back", Criterion::Camera),
+    ("w_not_normalised", Criterion::Camera),
+    ("parallel_rays", Criterion::Camera),
+    ("nothing_seen", Criterion::Camera),
+    ("eye_and_lookat", Criterion::Camera),
+];
+
+/// What a mistake is about.
+pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
+    if let Some(index) = object(finding, scene) {
+        return match scene.objects[index].shape {
+            Shape::Checkerboard(_) => Criterion::Board,
+            _ => Criterion::Object(index),
+        };
+    }
+    let mut beginnings = BEGINNINGS.iter();
+    let found = beginnings.find(|(beginning, _)| finding.id.starts_with(beginning));
+    let camera = schema::block("camera").map_or(&[][..], |block| block.fields);
+    let is_of = |field: &str| {
+        let rest = finding.id.strip_prefix(field);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+    };
+    match found {
+        Some((_, criterion)) => *criterion,
+        None if camera.iter().any(|field| is_of(field.name)) => Criterion::Camera,
+        None => Criterion::Hits,
+    }
+}
+
+/// The object that a mistake is about, which its message begins with.
+pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
+    let title = |index: usize| {
+        let object = &scene.objects[index];
+        match &object.name {
+            Some(name) => format!("the {} {name} ", object.shape.kind()),
+            None => format!("the {} with the index {index} ", object.shape.kind()),
+        }
+    };
+    (0..scene.objects.len()).find(|&index| finding.message.starts_with(&title(index)))
+}
+
+/// The ids of all mistakes: those of the table, and the fields that may have another value.
+pub fn ids() -> impl Iterator<Item = &'static str> {
+    let blocks = schema::block_names().filter(|name| *name != "sampler");
+    let fields = blocks
+        .filter_map(schema::block)
+        .flat_map(|block| block.fields);
+    let named = ["eye_and_lookat", "object_extra"].into_iter();
+    let all: BTreeSet<_> = grading::mistake_ids()
+        .chain(fields.map(|field| field.name))
+        .chain(named)
+        .collect();
+    all.into_iter()
+}
+
+/// Whether there is such a mistake.
+pub fn is_id(id: &str) -> bool {
+    ids().any(|own| own == id)
+}

@@ -1,0 +1,71 @@
+//! Patterns of file names: `*` and `?` stand for any characters but `/`, `**` for those too.
+
+/// A pattern.
+#[derive(Clone, Debug)]
+pub struct Glob(Vec<char>);
+
+impl Glob {
+    /// The pattern that a text is; capital letters are as small ones.
+    pub fn new(text: &str) -> Self {
+        Self(text.to_lowercase().chars().collect())
+    }
+
+    /// Whether it stands for a path, or, where it has no `/`, for the last name of one.
+    pub fn matches(&self, path: &str) -> bool {
+        let path = path.to_lowercase();
+        let name = path.rsplit('/').next().unwrap_or_default();
+        let text = if self.0.contains(&'/') { &path } else { name };
+        let text: Vec<char> = text.chars().collect();
+        // Which beginnings of the text the pattern stands for so far.
+        let mut ends = vec![false; text.len() + 1];
+        ends[0] = true;
+        let mut at = 0;
+        while let Some(&letter) = self.0.get(at) {
+            let is_double = letter == '*' && self.0.get(at + 1) == Some(&'*');
+            at += if is_double { 2 } else { 1 };
+            match letter {
+                '*' => {
+                    for end in 0..text.len() {
+                        ends[end + 1] |= ends[end] && (is_double || text[end] != '/');
+                    }
+                }
+                _ => {
+                    let fits = |c: char| c == letter || letter == '?' && c != '/';
+                    for end in (0..text.len()).rev() {
+                        ends[end + 1] = ends[end] && fits(text[end]);
+                    }
+                    ends[0] = false;
+                }
+            }
+        }
+        ends[text.len()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Glob;
+
+    #[test]
+    fn a_pattern_is_of_a_name_or_of_a_path() {
+        for (pattern, path, matches) in [
+            ("*.png", "a/b/Render.PNG", true),
+            ("*.png", "a/render.png.txt", false),
+            ("render?.png", "render1.png", true),
+            ("render?.png", "render.png", false),
+            ("out/*.png", "out/a.png", true),
+            ("out/*.png", "x/out/a.png", false),
+            ("out/*.png", "out/a/b.png", false),
+            ("**/final.*", "a/b/final.exr", true),
+            ("**a*b", "xx/aab", true),
+            ("a*", "b", false),
+            ("", "", true),
+        ] {
+            assert_eq!(
+                Glob::new(pattern).matches(path),
+                matches,
+                "{pattern} {path}"
+            );
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! What is said of a student's work.
+//!
+//! The verdict is kept as the JSON that programs get, from which every other form takes its words:
+//! what one says, all say.
+
+use serde_json::{Map, Value, json};
+
+use super::thumbnails::Pictures;
+use crate::cli::Status;
+
+/// A student, and what is said of his pictures.
+pub struct Graded {
+    pub name: String,
+    /// Moodle's number.
+    pub number: Option<String>,
+    /// The folder or file.
+    pub place: String,
+    /// What was compared, the best one first.
+    pub compared: Vec<Compared>,
+    /// The other files, and why they are not.
+    pub not_compared: Vec<String>,
+    /// Other students whose picture is the same in every pixel.
+    pub equal_to: Vec<String>,
+    /// The points, where they are known.
+    pub score: Option<f64>,
+}
+
+/// A picture.
+pub struct Compared {
+    /// Where it lies in the student's work.
+    pub path: String,
+    /// The same from what was named.
+    pub shown: String,
+    pub result: Result<Judged, String>,
+}
+
+/// What is known of a picture.
+pub struct Judged {
+    /// What there is for programs.
+    pub fields: Map<String, Value>,
+    /// What its format does to colours.
+    pub warning: Option<&'static str>,
+    /// Tells it from other pictures.
+    pub hash: [u8; 32],
+    /// If there will be a page.
+    pub pictures: Option<Pictures>,
+}
+
+/// A mistake, or a guess.
+pub struct Finding<'j> {
+    pub id: &'j str,
+    pub message: &'j str,
+    pub help: &'j str,
+    pub set: Vec<&'j str>,
+    /// The share of the squared difference beyond noise that it explains.
+    pub explains: f64,
+}
+
+impl Judged {
+    fn text(&self, key: &str) -> &str {
+        self.fields
+            .get(key)
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+    }
+
+    /// The word for its verdict.
+    pub fn word(&self) -> &str {
+        self.text("verdict")
+    }
+
+    /// The verdict in a line.
+    pub fn line(&self) -> &str {
+        self.text("line")
+    }
+
+    /// Whether nothing but noise is wrong.
+    pub fn is_right(&self) -> bool {
+        matches!(self.word(), "right" | "noise")
+    }
+
+    pub fn rmse(&self) -> f64 {
+        let rmse = self.fields.get("rmse").and_then(Value::as_f64);
+        rmse.unwrap_or_default()
+    }
+
+    pub fn samples(&self) -> Option<f64> {
+        self.fields.get("samples_per_pixel")?.as_f64()
+    }
+
+    /// The share of the difference that the findings leave.
+    pub fn rest(&self) -> Option<f64> {
+        self.fields.get("rest")?.as_f64()
+    }
+
+    /// Whether it carries the text that Pinhole writes into its pictures.
+    pub fn is_ours(&self) -> bool {
+        self.fields.get("rendered_by_pinhole") == Some(&Value::Bool(true))
+    }
+
+    /// Whether the search for mistakes was ended by its bound.
+    pub fn is_limited(&self) -> bool {
+        self.fields.get("limited") == Some(&Value::Bool(true))
+    }
+
+    pub fn mistakes(&self) -> Vec<Finding<'_>> {
+        self.findings("mistakes")
+    }
+
+    pub fn guesses(&self) -> Vec<Finding<'_>> {
+        self.findings("guesses")
+    }
+
+    fn findings(&self, key: &str) -> Vec<Finding<'_>> {
+        let findings = self.fields.get(key).and_then(Value::as_array);
+        findings.into_iter().flatten().map(finding).collect()
+    }
+}
+
+fn finding(one: &Value) -> Finding<'_> {
+    let text = |key| one.get(key).and_then(Value::as_str).unwrap_or_default();
+    let set = one.get("set").and_then(Value::as_array);
+    Finding {
+        id: text("id"),
+        message: text("message"),
+        help: text("help"),
+        set: set
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect(),
+        explains: one
+            .get("explains")
+            .and_then(Value::as_f64)
+            .unwrap_or_default(),
+    }
+}
+
+impl Compared {
+    /// The better, the less: a student is not to be told of a worse picture than he made.
+    pub fn rank(&self) -> (u8, f64) {
+        let Ok(judged) = &self.result else {
+            return (4, 0.0);
+        };
+        let rank = match judged.word() {
+            "right" => 0,
+            "noise" => 1,
+            "wrong" => 2,
+            _ => 3,
+        };
+        (rank, judged.rmse())
+    }
+}
+
+impl Graded {
+    /// The best picture, if one was compared.
+    pub fn best(&self) -> Result<&Judged, String> {
+        match self.compared.first() {
+            Some(best) => best.result.as_ref().map_err(Clone::clone),
+            None => Err("there is no picture in what was handed in".to_owned()),
+        }
+    }
+
+    /// The file of the best picture, or the place where there is none.
+    pub fn file(&self) -> &str {
+        self.compared
+            .first()
+            .map_or(&self.place, |best| &best.shown)
+    }
+
+    /// The word for its verdict.
+    pub fn word(&self) -> &str {
+        match self.compared.first().map(|best| &best.result) {
+            Some(Ok(judged)) => judged.word(),
+            _ => "error",
+        }
+    }
+
+    /// The verdict in a line.
+    pub fn line(&self) -> String {
+        let line = match self.best() {
+            Ok(judged) => judged.line().to_owned(),
+            Err(error) => format!("not compared: {error}"),
+        };
+        line + &self.note()
+    }
+
+    /// What else there is to know of which picture it is about.
+    pub fn note(&self) -> String {
+        match &self.compared[..] {
+            [] | [_] => String::new(),
+            [best, ..] => format!(
+                " ({}, the best of {} pictures of the same time: --picture chooses)",
+                best.path,
+                self.compared.len()
+            ),
+        }
+    }
+
+    /// What it makes of the exit status.
+    pub fn status(&self) -> Status {
+        match self.best() {
+            Ok(judged) if judged.is_right() => Status::Done,
+            _ => Status::SceneErrors,
+        }
+    }
+
+    /// Its line for programs.
+    pub fn json(&self) -> Value {
+        let mut fields = Map::new();
+        let mut put = |key: &str, value: Value| {
+            fields.insert(key.to_owned(), value);
+        };
+        put("file", json!(self.file()));
+        match self.best() {
+            Err(error) => put("error", json!(error)),
+            Ok(judged) => {
+                for (key, value) in &judged.fields {
+                    put(key, value.clone());
+                }
+            }
+        }
+        put("student", json!(self.name));
+        if let Some(number) = &self.number {
+            put("number", json!(number));
+        }
+        if self.compared.len() > 1 {
+            let pictures = self.compared.iter().map(|one| match &one.result {
+                Ok(judged) => {
+                    json!({ "file": one.shown, "verdict": judged.word(), "line": judged.line() })
+                }
+                Err(error) => json!({ "file": one.shown, "error": error }),
+            });
+            put("pictures", pictures.collect());
+        }
+        if !self.not_compared.is_empty() {
+            put("not_compared", json!(self.not_compared));
+        }
+        if !self.equal_to.is_empty() {
+            put("equal_to", json!(self.equal_to));
+        }
+        if let Some(score) = self.score {
+            put("score", json!(score));
+        }
+        Value::Object(fields)
+    }
+
+    /// What a student can be told.
+    pub fn comment(&self) -> String {
+        let judged = match self.best() {
+            Ok(judged) => judged,
+            Err(error) => return format!("Your picture could not be compared: {error}."),
+        };
+        let mut text = match judged.word() {
+            "right" => "Your picture is right: it is equal to the exact one.".to_owned(),
+            "noise" => {
+                "Your picture is right; it differs from the exact one by sampling noise alone."
+                    .to_owned()
+            }
+            "wrong" => "Your picture differs from the exact one, and this explains it:".to_owned(),
+            _ => "Your picture differs from the exact one, and it is not known why.".to_owned(),
+        };
+        let listed = |finding: &Finding| format!("\n- {}\n  {}", finding.message, finding.help);
+        text.extend(judged.mistakes().iter().map(listed));
+        let guesses = judged.guesses();
+        if !guesses.is_empty() {
+            text.push_str("\nThis comes nearest, but is only a guess");
+            if let Some(rest) = judged.rest() {
+                text += &format!(
+                    ": it leaves {} of the difference unexplained",
+                    percent(rest)
+                );
+            }
+            text.push('.');
+            text.extend(guesses.iter().map(listed));
+        } else if let Some(rest) = judged.rest().filter(|_| judged.word() == "wrong") {
+            text += &format!("\n{} of the difference is something else.", percent(rest));
+        }
+        if judged.is_limited() {
+            text.push_str("\nNot all mistakes were tried.");
+        }
+        text
+    }
+}
+
+/// A share, rounded to what matters.
+pub fn percent(share: f64) -> String {
+    match 100.0 * share {
+        few if few < 1.0 => "less than 1 %".to_owned(),
+        many => format!("{many:.0} %"),
+    }
+}

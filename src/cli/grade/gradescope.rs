@@ -1,0 +1,162 @@
+//! A student's `results.json`, as Gradescope's harness reads it:
+//! <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>.
+
+use serde_json::{Value, json};
+
+use super::{
+    criteria::{Criterion, criterion},
+    graded::{Finding, Graded},
+    points::Points,
+};
+use crate::{
+    diagnostic::visible,
+    scene::{Scene, Shape},
+};
+
+/// The file. Without points each test counts one. What is not known has no score, so that nobody
+/// gets one by mistake.
+pub fn results(one: &Graded, scene: &Scene, points: Option<&Points>) -> Value {
+    let Ok(judged) = one.best() else {
+        return whole(one, None, Vec::new());
+    };
+    let is_known = judged.is_right() || judged.word() == "wrong";
+    let criteria = criteria(scene);
+    let shares = shares(&criteria, points);
+    let mut scores = shares.clone();
+    let mistakes = judged.mistakes();
+    let off = points.map(|points| points.taken_off(judged, scene));
+    for (at, mistake) in mistakes.iter().enumerate() {
+        let of = criterion(mistake, scene);
+        if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
+            // Without points a test is passed or not.
+            let off = off.as_ref().map_or(scores[test], |off| off[at]);
+            scores[test] = (scores[test] - off).max(0.0);
+        }
+    }
+    let tests = criteria.iter().enumerate().map(|(at, (of, name))| {
+        let is_about = |mistake: &&Finding| criterion(mistake, scene) == *of;
+        let about: Vec<&Finding> = mistakes.iter().filter(is_about).collect();
+        let output = about
+            .iter()
+            .map(|one| format!("{}\n{}\n", one.message, one.help));
+        let output: String = output.collect();
+        let mut test = json!({
+            "name": visible(name),
+            "max_score": shares[at],
+            "output": visible(&output),
+            "visibility": "visible",
+        });
+        if is_known {
+            test["score"] = json!(scores[at]);
+            test["status"] = json!(if about.is_empty() { "passed" } else { "failed" });
+        }
+        test
+    });
+    let tests = tests.collect();
+    let score = match points {
+        Some(points) => points.score(judged, scene),
+        None => is_known.then(|| scores.iter().sum()),
+    };
+    whole(one, score, tests)
+}
+
+fn whole(one: &Graded, score: Option<f64>, tests: Vec<Value>) -> Value {
+    let mut results = json!({
+        "output": visible(&one.comment()),
+        "output_format": "text",
+        "visibility": "visible",
+        "tests": tests,
+    });
+    if let Some(score) = score {
+        results["score"] = json!(score);
+    }
+    results
+}
+
+/// What the tests are about, and their names.
+fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
+    let objects = scene.objects.iter().enumerate();
+    let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
+    let own = objects.filter(|(_, object)| !is_board(&object.shape));
+    let own = own.map(|(index, object)| {
+        let kind = object.shape.kind();
+        let name = match &object.name {
+            Some(name) => format!("{kind} {name}"),
+            None => format!("{kind} with the index {index}"),
+        };
+        (Criterion::Object(index), name)
+    });
+    let camera = (Criterion::Camera, "camera".to_owned());
+    let mut all: Vec<_> = [camera].into_iter().chain(own).collect();
+    if scene.objects.iter().any(|object| is_board(&object.shape)) {
+        all.push((Criterion::Board, "board".to_owned()));
+    }
+    all.extend([
+        (Criterion::Colours, "colours".to_owned()),
+        (Criterion::Sampling, "sampling".to_owned()),
+        (Criterion::Hits, "hits".to_owned()),
+    ]);
+    all
+}
+
+/// What each test is worth: an object what it has in the points, and the others equal parts of what
+/// is left.
+fn shares(criteria: &[(Criterion, String)], points: Option<&Points>) -> Vec<f64> {
+    let Some(points) = points else {
+        return vec![1.0; criteria.len()];
+    };
+    let is_object = |of: &Criterion| matches!(of, Criterion::Object(_));
+    let objects = criteria.iter().filter(|(of, _)| is_object(of)).count();
+    let others = criteria.len() - objects;
+    let object = points
+        .object
+        .unwrap_or(points.total / criteria.len() as f64);
+    let object = object.min(points.total / objects.max(1) as f64);
+    let other = (points.total - object * objects as f64) / others as f64;
+    let share = |(of, _): &(Criterion, String)| if is_object(of) { object } else { other };
+    criteria.iter().map(share).collect()
+}
+
+/// Names for folders, one for each student, from their names, and different ones: no system takes
+/// these for anything else.
+pub fn folders(graded: &[Graded]) -> Vec<String> {
+    let mut taken = std::collections::BTreeSet::new();
+    let name = |one: &Graded| {
+        let plain = |c: char| {
+            if c.is_alphanumeric() || "-_.@".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        let name: String = one.name.chars().map(plain).take(60).collect();
+        let name = name.trim_matches('.');
+        // Windows has names of its own, such as `con`, whatever comes after a dot.
+        let base = match name {
+            "" => "student".to_owned(),
+            name if is_reserved(name) => format!("_{name}"),
+            name => name.to_owned(),
+        };
+        let mut numbered = (2..).map(|number| format!("{base}-{number}"));
+        let mut free = base.clone();
+        while !taken.insert(free.to_lowercase()) {
+            free = numbered.next().unwrap_or_default();
+        }
+        free
+    };
+    graded.iter().map(name).collect()
+}
+
+fn is_reserved(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_lowercase();
+    let is_numbered = |word: &str| {
+        let rest = stem.strip_prefix(word);
+        rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
+    };
+    // The page's own files have the others.
+    matches!(
+        &*stem,
+        "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"
+    ) || is_numbered("com")
+        || is_numbered("lpt")
+}

@@ -1,0 +1,415 @@
+//! `grade`: a class's work against one scene.
+//!
+//! 1. What is named becomes a `class` of students with files (`handed_in`), from folders and zip
+//!    files (`archive`); `names` are those of the systems that classes hand in by, and `glob`
+//!    chooses pictures.
+//! 2. Each student's pictures are compared and judged: that is `graded`, of which `points` make a
+//!    score by `criteria`.
+//! 3. Writers say it: `table` for people and as CSV, `page` with `thumbnails`, `junit`,
+//!    `gradescope` and `moodle`.
+
+mod archive;
+mod class;
+mod criteria;
+mod glob;
+mod graded;
+mod gradescope;
+mod handed_in;
+mod junit;
+mod moodle;
+mod names;
+mod page;
+mod points;
+mod table;
+mod thumbnails;
+
+use std::{
+    collections::BTreeMap,
+    num::NonZero,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+};
+
+use hmac_sha256::Hash;
+use rayon::{ThreadPoolBuilder, prelude::*};
+use serde_json::json;
+
+use self::{
+    class::Class,
+    glob::Glob,
+    graded::{Compared, Graded, Judged},
+    handed_in::{HandedIn, Student},
+    points::Points,
+    thumbnails::Pictures,
+};
+use super::{
+    Status, Trouble,
+    args::{GradeArgs, GradeFormat},
+    diff,
+    input::{Input, check_standard, not_written, shown},
+    interrupt::Interrupt,
+    judge, output, progress,
+};
+use crate::{
+    area::Area,
+    diagnostic::visible_line,
+    files::OutputFolder,
+    film::{self, Film, Jpeg, Rounding},
+    grading::Reference,
+    render::{Control, RenderError},
+    scene::Scene,
+};
+
+/// What a folder gets, beside pictures.
+const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
+
+/// Judges them.
+pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    let input = Input::read(&args.scene, &args.overrides)?;
+    let Some(scene) = input.scene().scene else {
+        return Ok(Status::SceneErrors);
+    };
+    let points = args.points.as_deref().map(Points::read).transpose()?;
+    let class = class(args)?;
+    let names = output_names(args, &class);
+    let folder = args.output.as_deref();
+    let folder = folder.map(|folder| OutputFolder::open(folder, names.iter().map(String::as_str)));
+    let folder = folder.transpose().map_err(not_written)?;
+    let cancel = interrupt.watch();
+    let (mut graded, exact) = match graded(args, &scene, &class, cancel) {
+        Ok(Ok(graded)) => graded,
+        Ok(Err(RenderError::Cancelled)) => return Ok(Status::Interrupted),
+        Ok(Err(error)) => return Err(Trouble(error.to_string())),
+        Err(error) => return Err(Trouble(format!("cannot start threads: {error}"))),
+    };
+    mark_equal(&mut graded);
+    for one in &mut graded {
+        let judged = one.best().ok();
+        one.score = points
+            .as_ref()
+            .and_then(|points| points.score(judged?, &scene));
+    }
+    for one in &graded {
+        if let Some(warning) = one.best().ok().and_then(|judged| judged.warning) {
+            output::warning(&format!("{}: {warning}", visible_line(one.file())));
+        }
+    }
+    let mut files = said(args, &scene, &graded, points.as_ref())?;
+    if let Some(mut folder) = folder {
+        let total = points.map(|points| points.total);
+        files.extend(page_files(args, &graded, exact, total));
+        folder.write(&files).map_err(not_written)?;
+    }
+    let has_compared = graded.iter().any(|one| one.best().is_ok());
+    if class.is_one_missing || !has_compared {
+        return Ok(Status::Trouble);
+    }
+    let status = graded.iter().map(Graded::status).max();
+    Ok(status.unwrap_or(Status::Done))
+}
+
+/// The students, without what is the teacher's own.
+fn class(args: &GradeArgs) -> Result<Class, Trouble> {
+    let own = [
+        Some(&args.scene),
+        args.output.as_ref(),
+        args.points.as_ref(),
+        args.worksheet.as_ref(),
+    ];
+    let own: Vec<&Path> = own.into_iter().flatten().map(AsRef::as_ref).collect();
+    let mut read = args.pictures.clone();
+    read.push(args.scene.clone());
+    check_standard(&read)?;
+    let class = Class::read(&args.pictures, &own)?;
+    if class.students.is_empty() {
+        return Err(class::nobody(&args.pictures));
+    }
+    let needs_one = args.format == GradeFormat::Gradescope && args.output.is_none();
+    if needs_one && class.students.len() > 1 {
+        return Err(Trouble(format!(
+            "there are {} students, and each has a results.json: say with `-o DIR` where they go",
+            class.students.len()
+        )));
+    }
+    if args.format == GradeFormat::Moodle && args.worksheet.is_none() {
+        return Err(Trouble(
+            "Moodle takes back the worksheet of grades that it gave: name it with `--worksheet FILE`"
+                .to_owned(),
+        ));
+    }
+    Ok(class)
+}
+
+/// The names of all files that a folder gets, to be looked at before the work.
+fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
+    let pictures = (0..class.students.len()).flat_map(page::names);
+    let own = FILES.map(str::to_owned).into_iter().chain(pictures);
+    own.chain([page::EXACT.to_owned()])
+        .chain(worksheet_name(args))
+        .collect()
+}
+
+fn worksheet_name(args: &GradeArgs) -> Option<String> {
+    let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
+    // Next to the page's own files.
+    Some(match FILES.contains(&&*name) {
+        true => format!("moodle-{name}"),
+        false => name.into_owned(),
+    })
+}
+
+/// Says it in the form that is asked for, and what of it goes into a folder.
+fn said(
+    args: &GradeArgs,
+    scene: &Scene,
+    graded: &[Graded],
+    points: Option<&Points>,
+) -> Result<Vec<(String, Vec<u8>)>, Trouble> {
+    match args.format {
+        GradeFormat::Human => output::answer(&table::table(graded))?,
+        GradeFormat::Json => output::to_programs(lines(graded).as_bytes())?,
+        GradeFormat::Csv => output::to_programs(table::csv(graded).as_bytes())?,
+        GradeFormat::Junit => {
+            let xml = junit::junit(&args.scene.display().to_string(), graded);
+            output::to_programs(xml.as_bytes())?;
+        }
+        GradeFormat::Gradescope => {
+            let results = |one| format!("{:#}\n", gradescope::results(one, scene, points));
+            if args.output.is_none() {
+                output::to_programs(results(&graded[0]).as_bytes())?;
+                return Ok(Vec::new());
+            }
+            let names = gradescope::folders(graded).into_iter();
+            let files = names
+                .zip(graded)
+                .map(|(name, one)| (format!("{name}/results.json"), results(one).into_bytes()));
+            return Ok(files.collect());
+        }
+        GradeFormat::Moodle => {
+            let (Some(path), Some(name)) = (&args.worksheet, worksheet_name(args)) else {
+                return Ok(Vec::new());
+            };
+            let total = points.map(|points| points.total);
+            let filled = moodle::filled(path, &args.columns, graded, total)?;
+            if args.output.is_none() {
+                output::to_programs(&filled)?;
+                return Ok(Vec::new());
+            }
+            return Ok(vec![(name, filled)]);
+        }
+    }
+    Ok(Vec::new())
+}
+
+fn lines(graded: &[Graded]) -> String {
+    graded
+        .iter()
+        .map(|one| format!("{}\n", one.json()))
+        .collect()
+}
+
+/// The page, the pictures beside it, and the two forms for programs.
+fn page_files(
+    args: &GradeArgs,
+    graded: &[Graded],
+    exact: Vec<u8>,
+    total: Option<f64>,
+) -> Vec<(String, Vec<u8>)> {
+    let html = page::page(&shown(&args.scene), graded, total);
+    let [page, table, answers] = FILES.map(str::to_owned);
+    let mut files = vec![
+        (page, html.into_bytes()),
+        (table, table::csv(graded).into_bytes()),
+        (answers, lines(graded).into_bytes()),
+        (page::EXACT.to_owned(), exact),
+    ];
+    for (index, one) in graded.iter().enumerate() {
+        let Some(pictures) = one.best().ok().and_then(|judged| judged.pictures.as_ref()) else {
+            continue;
+        };
+        let [picture, heat] = pictures.whole.clone();
+        let all = [Some(picture), Some(heat), pictures.exact.clone()];
+        let named = page::names(index).into_iter().zip(all);
+        files.extend(named.filter_map(|(name, bytes)| Some((name, bytes?))));
+    }
+    files
+}
+
+/// Tells those whose pictures are the same. That all right ones without noise are is no wonder.
+fn mark_equal(graded: &mut [Graded]) {
+    let mut same = BTreeMap::<[u8; 32], Vec<usize>>::new();
+    for (index, one) in graded.iter().enumerate() {
+        if let Ok(judged) = one.best()
+            && judged.word() != "right"
+        {
+            same.entry(judged.hash).or_default().push(index);
+        }
+    }
+    for group in same.values().filter(|group| group.len() > 1) {
+        for &own in group {
+            let others = group.iter().filter(|&&other| other != own);
+            graded[own].equal_to = others.map(|&other| graded[other].name.clone()).collect();
+        }
+    }
+}
+
+/// What is said of each student, and the exact picture's file if there will be a page.
+type Answers = (Vec<Graded>, Vec<u8>);
+
+/// Each student by himself, on as many threads as there are processors.
+fn graded(
+    args: &GradeArgs,
+    scene: &Scene,
+    class: &Class,
+    cancel: &AtomicBool,
+) -> Result<Result<Answers, RenderError>, rayon::ThreadPoolBuildError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = args.threads.count().map_or_else(processors, NonZero::get);
+    let reference = progress::watched(whole.pixels(), |done| {
+        let control = Control {
+            threads: NonZero::new(threads),
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            },
+            cancel,
+        };
+        let reference = Reference::new(scene, whole, Rounding::Byte, &control);
+        reference.map(|reference| reference.with_effort(args.effort.effort))
+    });
+    let reference = match reference {
+        Ok(reference) => reference,
+        Err(error) => return Ok(Err(error)),
+    };
+    let exact = match args.output {
+        // Writing into memory does not fail.
+        Some(_) => thumbnails::png(&reference.exact.film).unwrap_or_default(),
+        None => Vec::new(),
+    };
+    let students = &class.students;
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads.min(students.len()).max(1))
+        .build()?;
+    let chosen = args.picture.as_deref().map(Glob::new);
+    let graded = progress::watched(students.len() as u64, |done| {
+        let grade = |student: &Student| {
+            let choice = student.choice(chosen.as_ref());
+            let grade = |file: &&HandedIn| {
+                let result = grade(file, class, scene, &reference, args, cancel)?;
+                Ok(Compared {
+                    path: file.path.clone(),
+                    shown: file.shown.clone(),
+                    result,
+                })
+            };
+            let compared: Result<Vec<_>, RenderError> = choice.pictures.iter().map(grade).collect();
+            let mut compared = compared?;
+            compared.sort_by(|a, b| {
+                a.rank()
+                    .partial_cmp(&b.rank())
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            });
+            done.fetch_add(1, Ordering::Relaxed);
+            Ok(Graded {
+                name: student.name.clone(),
+                number: student.number.clone(),
+                place: student.place.clone(),
+                compared,
+                not_compared: choice.others,
+                equal_to: Vec::new(),
+                score: None,
+            })
+        };
+        pool.install(|| {
+            students
+                .par_iter()
+                .map(grade)
+                .collect::<Result<Vec<_>, _>>()
+        })
+    });
+    Ok(graded.map(|graded| (graded, exact)))
+}
+
+/// A picture judged, or why it cannot be.
+fn grade(
+    file: &HandedIn,
+    class: &Class,
+    scene: &Scene,
+    whole: &Reference,
+    args: &GradeArgs,
+    cancel: &AtomicBool,
+) -> Result<Result<Judged, String>, RenderError> {
+    let read = file.picture(&args.large, &class.budget);
+    let read = read.and_then(|bytes| Ok((judge::picture(&bytes, &args.large)?, bytes)));
+    let (picture, bytes) = match read {
+        Ok(read) => read,
+        Err(error) => return Ok(Err(error)),
+    };
+    let part = match judge::part(&picture, scene, args.crop) {
+        Ok(part) => part,
+        Err(misfit) => {
+            let place = film::place_of_part(&picture.film, &whole.exact.film);
+            let place = place.map_or_else(String::new, |place| {
+                format!("; it fits best at `--crop {place}`")
+            });
+            return Ok(Err(format!("it {misfit}{place}")));
+        }
+    };
+    let own;
+    let reference = if whole.is_for(part, picture.rounding) {
+        whole
+    } else {
+        let control = Control {
+            // Pictures are judged in parallel, each on one thread.
+            threads: NonZero::new(1),
+            progress: &|_| {},
+            cancel,
+        };
+        let made = Reference::new(scene, part, picture.rounding, &control)?;
+        own = made.with_effort(args.effort.effort);
+        &own
+    };
+    let steps = picture.rounding.steps();
+    let comparison = match reference.compare(&picture.film, steps) {
+        Ok(comparison) => comparison,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let verdict = reference.judge(&picture, Jpeg::of(&bytes), &comparison, cancel)?;
+    let pictures = args.output.is_some().then(|| {
+        let is_whole = part == whole.part;
+        let tolerance = reference.tolerance(steps);
+        Pictures::new(&picture.film, &reference.exact.film, tolerance, is_whole)
+    });
+    let pictures = match pictures.transpose() {
+        Ok(pictures) => pictures,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let mut fields = diff::json(
+        [file.shown.clone(), args.scene.display().to_string()],
+        [[part.width, part.height]; 2],
+        Some(&comparison),
+        steps,
+        Some(&verdict),
+    );
+    let is_ours = film::read_recipe(&bytes).is_ok();
+    fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
+    Ok(Ok(Judged {
+        fields,
+        warning: picture.coding.warning(),
+        hash: hash(&picture.film),
+        pictures,
+    }))
+}
+
+/// Tells pictures apart by their pixels.
+fn hash(film: &Film) -> [u8; 32] {
+    let mut hash = Hash::new();
+    hash.update(film.width().to_le_bytes());
+    for pixel in film.pixels() {
+        for light in pixel {
+            hash.update(light.to_bits().to_le_bytes());
+        }
+    }
+    hash.finalize()
+}

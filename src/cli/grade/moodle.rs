@@ -1,0 +1,190 @@
+//! Moodle's worksheet of grades, filled in.
+//!
+//! Rows are found by the number at the end of the identifier, as Moodle's importer does it
+//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings, of which it
+//! needs the identifier, the grade and the time of that. Nothing but the cells of grades and
+//! comments changes: a row in which nothing does is copied byte for byte.
+
+use std::path::Path;
+
+use csv::{ByteRecord, QuoteStyle, ReaderBuilder, Terminator, WriterBuilder};
+
+use super::graded::Graded;
+use crate::{
+    cli::{
+        Trouble,
+        input::{shown, unreadable},
+        output,
+    },
+    diagnostic::visible,
+    files,
+    numbers::short,
+    suggest::choice,
+};
+
+/// Maximum length of a worksheet, in bytes.
+const LIMIT: u64 = 64 << 20;
+
+/// The headings in English, which `--columns` may replace; the last two are not needed.
+const HEADINGS: [&str; 5] = [
+    "Identifier",
+    "Grade",
+    "Feedback comments",
+    "Maximum Grade",
+    "Grade can be changed",
+];
+
+/// Fills in a worksheet.
+///
+/// # Errors
+///
+/// It cannot be read, or has no such columns, or grades only up to less than the points.
+pub fn filled(
+    path: &Path,
+    columns: &[String],
+    graded: &[Graded],
+    total: Option<f64>,
+) -> Result<Vec<u8>, Trouble> {
+    let failed = |why: &dyn std::fmt::Display| unreadable(path, why);
+    let columns = columns.iter().map(|column| renamed(column));
+    let columns = columns.collect::<Result<Vec<_>, _>>()?;
+    let bytes = files::read(path, LIMIT).map_err(|error| failed(&error))?;
+    let mark = if bytes.starts_with(b"\xef\xbb\xbf") {
+        3
+    } else {
+        0
+    };
+    let text = &bytes[mark..];
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(text);
+    let mut rows = Vec::new();
+    let mut row = ByteRecord::new();
+    while reader
+        .read_byte_record(&mut row)
+        .map_err(|error| failed(&error))?
+    {
+        rows.push(row.clone());
+    }
+    // A record is said to begin before the second byte of the line end before it.
+    let start = |row: &ByteRecord| {
+        let at = row.position().map_or(0, |at| at.byte() as usize);
+        at + usize::from(at > 0 && text.get(at) == Some(&b'\n'))
+    };
+    let starts: Vec<usize> = rows.iter().map(start).chain([text.len()]).collect();
+    let head = rows.first().ok_or_else(|| failed(&"it is empty"))?;
+    let find = |english: &str| {
+        let own = columns.iter().find(|(name, _)| *name == english);
+        let heading = own.map_or(english, |(_, heading)| *heading);
+        let is = |cell: &[u8]| cell.trim_ascii().eq_ignore_ascii_case(heading.as_bytes());
+        head.iter().position(is)
+    };
+    let needed = |english: &str| {
+        find(english).ok_or_else(|| {
+            let all: Vec<_> = head.iter().map(String::from_utf8_lossy).collect();
+            let hint = format!(
+                "it has no column `{english}` among {}: `--columns '{english}=HEADING'` says how it is called there",
+                all.join(", ")
+            );
+            failed(&hint)
+        })
+    };
+    let [identifier, grade, feedback] = [
+        needed(HEADINGS[0])?,
+        needed(HEADINGS[1])?,
+        needed(HEADINGS[2])?,
+    ];
+    let [maximum, changeable] = [find(HEADINGS[3]), find(HEADINGS[4])];
+    let ends_in_cr = text[..starts[1]].ends_with(b"\r\n");
+    let mut out = bytes[..mark].to_vec();
+    let mut found = vec![false; graded.len()];
+    for (index, row) in rows.iter().enumerate() {
+        let raw = &text[starts[index]..starts[index + 1]];
+        let number = row.get(identifier).map(number_at_end).filter(|_| index > 0);
+        let is_his = |one: &Graded| one.number.is_some() && one.number.as_deref() == number;
+        let at = graded.iter().position(is_his);
+        let may_change = changeable.and_then(|at| row.get(at)) != Some(b"No");
+        let Some((at, one)) = at.map(|at| (at, &graded[at])) else {
+            out.extend(raw);
+            continue;
+        };
+        found[at] = true;
+        if !may_change {
+            out.extend(raw);
+            continue;
+        }
+        let most = maximum.and_then(|at| row.get(at)).and_then(decimal);
+        if let (Some(total), Some(most)) = (total, most)
+            && total > most
+        {
+            return Err(failed(&format!(
+                "its grades go up to {}, and the points to {}",
+                short(most),
+                short(total)
+            )));
+        }
+        let cells = row.iter().enumerate().map(|(at, cell)| match at {
+            // Without points there are no grades to change.
+            _ if at == grade && total.is_some() => {
+                one.score.map_or_else(String::new, short).into_bytes()
+            }
+            _ if at == feedback => html(&one.comment()).into_bytes(),
+            _ => cell.to_vec(),
+        });
+        let mut writer = WriterBuilder::new()
+            .quote_style(QuoteStyle::Necessary)
+            .terminator(match ends_in_cr {
+                true => Terminator::CRLF,
+                false => Terminator::Any(b'\n'),
+            })
+            .from_writer(Vec::new());
+        writer.write_record(cells).map_err(|error| failed(&error))?;
+        out.extend(writer.into_inner().map_err(|error| failed(&error))?);
+    }
+    for (one, _) in graded.iter().zip(&found).filter(|(_, found)| !**found) {
+        output::warning(&format!("{} has no row for {}", shown(path), one.name));
+    }
+    Ok(out)
+}
+
+/// A column, and what it is called in the worksheet.
+fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
+    let (name, heading) = text.split_once('=').unwrap_or((text, ""));
+    let mut headings = HEADINGS.into_iter();
+    match headings.find(|own| own.eq_ignore_ascii_case(name)) {
+        Some(name) if !heading.is_empty() => Ok((name, heading)),
+        _ => Err(Trouble(format!(
+            "`--columns {text}` is not COLUMN=HEADING, where COLUMN is {}",
+            choice(HEADINGS)
+        ))),
+    }
+}
+
+/// The number of `Participant 12345`, in whatever language.
+fn number_at_end(cell: &[u8]) -> &str {
+    let digits = cell
+        .iter()
+        .rev()
+        .take_while(|byte| byte.is_ascii_digit())
+        .count();
+    str::from_utf8(&cell[cell.len() - digits..]).unwrap_or_default()
+}
+
+fn decimal(cell: &[u8]) -> Option<f64> {
+    str::from_utf8(cell)
+        .ok()?
+        .trim()
+        .replace(',', ".")
+        .parse()
+        .ok()
+}
+
+/// A comment is HTML there.
+fn html(text: &str) -> String {
+    visible(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('\n', "<br>")
+}

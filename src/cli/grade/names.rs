@@ -1,0 +1,222 @@
+//! Who handed something in: what Moodle writes into the names of files, Gradescope into a file
+//! beside them, and GitHub Classroom into those of folders.
+
+use std::collections::BTreeMap;
+
+/// What Moodle calls a file or a folder: `Name_12345_assignsubmission_file_` and, where it is a
+/// file, its own name.
+#[derive(Debug)]
+pub struct MoodleName<'n> {
+    pub name: &'n str,
+    pub number: &'n str,
+    pub file: &'n str,
+}
+
+impl MoodleName<'_> {
+    /// As a person is called; without names there is only the number.
+    pub fn shown(&self) -> String {
+        match self.name {
+            "" | "Participant" => format!("Participant {}", self.number),
+            name => name.replace('_', " "),
+        }
+    }
+}
+
+/// The parts of such a name.
+pub fn moodle(text: &str) -> Option<MoodleName<'_>> {
+    let (who, what) = text.split_once("_assignsubmission_")?;
+    let (name, number) = who.rsplit_once('_')?;
+    // The word says by which of its plug-ins it was handed in.
+    let (_, file) = what.split_once('_').unwrap_or((what, ""));
+    let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    is_number.then_some(MoodleName { name, number, file })
+}
+
+/// What a student is called whose folder has no other name: without the `assignment-` that GitHub
+/// Classroom puts in front.
+pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
+    let own = slug.and_then(|slug| folder.strip_prefix(slug)?.strip_prefix('-'));
+    let own = own.filter(|own| !own.is_empty()).unwrap_or(folder);
+    own.strip_suffix(".zip").unwrap_or(own).to_owned()
+}
+
+/// The students of an export of Gradescope, by folder.
+#[derive(Debug, Default)]
+pub struct Submitters(BTreeMap<String, Vec<String>>);
+
+impl Submitters {
+    /// Who handed in a folder, or a group.
+    pub fn name(&self, folder: &str) -> Option<String> {
+        let names = self.0.get(folder)?;
+        Some(match &names[..] {
+            [] => folder.to_owned(),
+            names => names.join(", "),
+        })
+    }
+
+    /// All folders with who they are of.
+    pub fn all(&self) -> impl Iterator<Item = (&str, String)> {
+        let named = |folder: &'_ String| self.name(folder).unwrap_or_default();
+        self.0.keys().map(move |folder| (&**folder, named(folder)))
+    }
+}
+
+/// Reads `submission_metadata.yml`: of YAML, what Ruby writes there.
+///
+/// ```yaml
+/// submission_409194023:
+///   :submitters:
+///   - :name: Anna Li
+///     :sid: '123'
+///     :email: anna@example.org
+///   :created_at: 2026-04-26 17:34:00.861687000 Z
+/// ```
+pub fn submitters(text: &str) -> Submitters {
+    let mut all = BTreeMap::<String, Vec<Submitter>>::new();
+    let mut of_folder: Option<&mut Vec<Submitter>> = None;
+    let mut is_in_list = false;
+    for line in text.lines() {
+        let content = line.trim_start();
+        let indent = line.len() - content.len();
+        let (is_item, content) = match content.strip_prefix("- ") {
+            Some(content) => (true, content),
+            None => (false, content),
+        };
+        let content = content.trim_start_matches(':');
+        let Some((key, value)) = content.split_once(':') else {
+            continue;
+        };
+        match (indent, is_item) {
+            (0, false) => {
+                is_in_list = false;
+                of_folder = Some(all.entry(scalar(key)).or_default());
+            }
+            (2, false) => is_in_list = key == "submitters",
+            _ => {
+                let Some(submitters) = of_folder.as_mut().filter(|_| is_in_list) else {
+                    continue;
+                };
+                if is_item {
+                    submitters.push(Submitter::default());
+                }
+                if let Some(submitter) = submitters.last_mut() {
+                    submitter.set(key, scalar(value.trim()));
+                }
+            }
+        }
+    }
+    let called = |all: Vec<Submitter>| all.into_iter().filter_map(Submitter::called).collect();
+    let named = all.into_iter().map(|(folder, all)| (folder, called(all)));
+    Submitters(named.collect())
+}
+
+/// A name, an address and a number, as far as there are any.
+#[derive(Debug, Default)]
+struct Submitter([String; 3]);
+
+impl Submitter {
+    fn set(&mut self, key: &str, value: String) {
+        let keys = ["name", "email", "sid"];
+        if let Some(at) = keys.iter().position(|own| *own == key) {
+            self.0[at] = value;
+        }
+    }
+
+    fn called(self) -> Option<String> {
+        self.0.into_iter().find(|text| !text.is_empty())
+    }
+}
+
+/// A value without its quotation marks.
+fn scalar(text: &str) -> String {
+    if let Some(inner) = text
+        .strip_prefix('\'')
+        .and_then(|text| text.strip_suffix('\''))
+    {
+        return inner.replace("''", "'");
+    }
+    match serde_json::from_str(text) {
+        Ok(serde_json::Value::String(inner)) => inner,
+        _ => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_of_moodle_has_a_student_a_number_and_a_file() {
+        for (text, name, number, file) in [
+            (
+                "Anna Li_12345_assignsubmission_file_a_b.png",
+                "Anna Li",
+                "12345",
+                "a_b.png",
+            ),
+            (
+                "Anna_Li_12345_assignsubmission_file_",
+                "Anna Li",
+                "12345",
+                "",
+            ),
+            (
+                "Participant_9_assignsubmission_onlinetext_",
+                "Participant 9",
+                "9",
+                "",
+            ),
+        ] {
+            let found = moodle(text).unwrap();
+            assert_eq!(
+                (&*found.shown(), found.number, found.file),
+                (name, number, file)
+            );
+        }
+        for text in [
+            "anna_assignsubmission_file_",
+            "a_b_assignsubmission_file_",
+            "a_1_b",
+        ] {
+            assert!(moodle(text).is_none(), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_export_of_gradescope_says_who_handed_in_a_folder() {
+        let text = "---
+submission_1:
+  :submitters:
+  - :name: First Last
+    :sid: '123'
+    :email: first@example.org
+  :created_at: 2026-04-26 17:34:00.861687000 Z
+  :results:
+    output: |-
+      submission_9: name
+      - :name: nobody
+submission_2:
+  :submitters:
+  - :name: \"Z\\u00fclal \\\"Z\\\" A\"
+  - :email: bob@example.org
+    :name: 'Bob O''B'
+submission_3:
+  :submitters:
+  - :sid: 333
+submission_4:
+  :submitters: []
+";
+        let found = submitters(text);
+        let found: Vec<_> = found.all().collect();
+        let expected = [
+            ("submission_1", "First Last"),
+            ("submission_2", "Zülal \"Z\" A, Bob O'B"),
+            ("submission_3", "333"),
+            ("submission_4", "submission_4"),
+        ];
+        assert_eq!(
+            found,
+            expected.map(|(folder, name)| (folder, name.to_owned()))
+        );
+    }
+}

@@ -1,0 +1,271 @@
+//! What is said of a class as one page of HTML: its small pictures stand in it, and the whole ones
+//! beside it.
+
+use std::collections::BTreeMap;
+
+use super::{
+    graded::{Finding, Graded, Judged, percent},
+    table::figures,
+};
+use crate::{cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, numbers::short};
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// Where the exact picture of the whole scene lies.
+pub const EXACT: &str = "pictures/exact.png";
+
+/// Where a student's picture, its differences, and its own exact one lie.
+pub fn names(index: usize) -> [String; 3] {
+    ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
+}
+
+/// The page.
+pub fn page(scene: &str, graded: &[Graded], total: Option<f64>) -> String {
+    let scene = escaped(scene);
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>Pictures of {scene}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Pictures of {scene}</h1>\n{}{}",
+        summary(graded),
+        mistakes(graded)
+    );
+    html += &format!(
+        "<p class=\"hint\">Press a picture to see it beside the exact one; the map of differences is {HEAT_LEGEND}. Press a heading to sort.</p>\n\
+         <table>\n<thead><tr>{}</tr></thead>\n<tbody>\n",
+        headings(total)
+    );
+    for (index, one) in graded.iter().enumerate() {
+        html += &row(index, one, total.is_some());
+    }
+    html + "</tbody>\n</table>\n<dialog aria-label=\"a picture beside the exact one\"><form method=\"dialog\"><h2></h2><button autofocus>close</button></form><div></div></dialog>\n\
+            <script>\n"
+        + SCRIPT
+        + "</script>\n</body>\n</html>\n"
+}
+
+/// How many there are of each verdict.
+fn summary(graded: &[Graded]) -> String {
+    let kinds = [
+        ("right", "right"),
+        ("noise", "right but for noise"),
+        ("wrong", "wrong"),
+        ("unknown", "wrong for unknown reasons"),
+        ("error", "not compared"),
+    ];
+    let counts = kinds.iter().filter_map(|(word, words)| {
+        let count = graded.iter().filter(|one| one.word() == *word).count();
+        (count > 0).then(|| format!("<span class=\"{word}\">{count} {words}</span>"))
+    });
+    let counts: Vec<_> = counts.collect();
+    format!("<p>{}: {}</p>\n", students(graded.len()), counts.join(", "))
+}
+
+fn students(count: usize) -> String {
+    match count {
+        1 => "1 student".to_owned(),
+        count => format!("{count} students"),
+    }
+}
+
+/// How many students made each mistake, the most frequent first.
+fn mistakes(graded: &[Graded]) -> String {
+    let mut by_id = BTreeMap::<String, Vec<usize>>::new();
+    for (index, one) in graded.iter().enumerate() {
+        for mistake in one.best().iter().flat_map(|judged| judged.mistakes()) {
+            let all = by_id.entry(mistake.id.replace('_', " ")).or_default();
+            if all.last() != Some(&index) {
+                all.push(index);
+            }
+        }
+    }
+    if by_id.is_empty() {
+        return String::new();
+    }
+    let mut counted: Vec<_> = by_id.into_iter().collect();
+    counted.sort_by_key(|(_, who)| std::cmp::Reverse(who.len()));
+    let line = |(id, who): (String, Vec<usize>)| {
+        let link = |&index: &usize| {
+            format!(
+                "<a href=\"#s{}\">{}</a>",
+                index + 1,
+                escaped(&graded[index].name)
+            )
+        };
+        let links: Vec<_> = who.iter().map(link).collect();
+        format!(
+            "<li>{}: <b>{}</b> – {}</li>\n",
+            students(who.len()),
+            escaped(&id),
+            links.join(", ")
+        )
+    };
+    let lines: String = counted.into_iter().map(line).collect();
+    format!("<h2>Mistakes</h2>\n<ul class=\"mistakes\">\n{lines}</ul>\n")
+}
+
+fn headings(total: Option<f64>) -> String {
+    let points = total.map(|total| format!("points of {}", short(total)));
+    let names = ["student", "verdict", "error", "samples"].map(str::to_owned);
+    let sorted = names.into_iter().chain(points);
+    let heading = |name: String| {
+        format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
+    };
+    let all: Vec<String> = sorted.map(heading).collect();
+    // The picture comes after the student.
+    format!(
+        "{}<th scope=\"col\">picture</th>{}",
+        all[0],
+        all[1..].concat()
+    )
+}
+
+fn row(index: usize, one: &Graded, has_points: bool) -> String {
+    let name = escaped(&one.name);
+    let pictures = one
+        .best()
+        .map_or_else(|_| String::new(), |judged| thumbnail(index, &name, judged));
+    let mut who = format!("<b>{name}</b>");
+    if let Some(number) = &one.number {
+        who += &format!("<br><small>{}</small>", escaped(number));
+    }
+    if one.file() != one.name {
+        who += &format!("<br><small>{}</small>", escaped(one.file()));
+    }
+    let [error, samples] = figures(one);
+    let points = match (has_points, one.score) {
+        (false, _) => String::new(),
+        (true, score) => format!(
+            "<td data-label=\"points\">{}</td>",
+            score.map_or_else(String::new, short)
+        ),
+    };
+    format!(
+        "<tr class=\"{}\" id=\"s{}\"><th scope=\"row\" data-key=\"{name}\">{who}</th><td class=\"picture\">{pictures}</td>\
+         <td data-key=\"{}\">{}</td><td data-label=\"error\">{error}</td><td data-label=\"samples\">{samples}</td>{points}</tr>\n",
+        one.word(),
+        index + 1,
+        escaped(&one.line()),
+        verdict(one)
+    )
+}
+
+/// A thumbnail that opens.
+fn thumbnail(index: usize, name: &str, judged: &Judged) -> String {
+    let Some(pictures) = &judged.pictures else {
+        return String::new();
+    };
+    let [whole, heat, own] = names(index);
+    let exact = match pictures.exact {
+        Some(_) => own,
+        None => EXACT.to_owned(),
+    };
+    let [small, small_heat] = &pictures.thumbnails;
+    format!(
+        "<button type=\"button\" class=\"open\" data-name=\"{name}\" data-picture=\"{whole}\" data-exact=\"{exact}\" data-difference=\"{heat}\">\
+         <img alt=\"the picture of {name}, larger\" src=\"{small}\"><img alt=\"\" class=\"heat\" src=\"{small_heat}\"></button>"
+    )
+}
+
+/// All that is said of a student's work.
+fn verdict(one: &Graded) -> String {
+    let is_explained = one.best().is_ok_and(|judged| !judged.mistakes().is_empty());
+    let line = match is_explained {
+        // They stand below, each with its help.
+        true => format!("{}{}", one.word(), one.note()),
+        false => one.line(),
+    };
+    let mut html = format!("<p class=\"line\">{}</p>", escaped(&line));
+    if let Ok(judged) = one.best() {
+        html += &findings("", &judged.mistakes());
+        html += &findings("a guess: ", &judged.guesses());
+        if let Some(rest) = judged.rest() {
+            html += &format!(
+                "<p>{} of the difference is not explained.</p>",
+                percent(rest)
+            );
+        }
+        if judged.is_limited() {
+            html += "<p>The search came to its bound before all mistakes were tried: --effort 4 tries more.</p>";
+        }
+        if !judged.is_right() {
+            html += &objects(judged);
+        }
+        if let Some(warning) = judged.warning {
+            html += &format!("<p>Of the file: {}.</p>", escaped(warning));
+        }
+        if judged.is_ours() {
+            html +=
+                "<p class=\"mark\">It carries the text that Pinhole writes into its pictures.</p>";
+        }
+    }
+    if !one.equal_to.is_empty() {
+        html += &format!(
+            "<p class=\"mark\">It is the same in every pixel as that of {}.</p>",
+            escaped(&one.equal_to.join(", "))
+        );
+    }
+    if !one.not_compared.is_empty() {
+        let files = one.not_compared.iter();
+        let files: String = files
+            .map(|file| format!("<li>{}</li>", escaped(file)))
+            .collect();
+        html += &format!(
+            "<details><summary>{}, not compared</summary><ul>{files}</ul></details>",
+            match one.not_compared.len() {
+                1 => "1 other file".to_owned(),
+                count => format!("{count} other files"),
+            }
+        );
+    }
+    let lines: Vec<_> = one.comment().lines().map(escaped).collect();
+    html + &format!(
+        "<details class=\"comment\"><summary>a comment for the student</summary><pre>{}</pre><button type=\"button\" class=\"copy\">copy</button></details>",
+        lines.join("\n")
+    )
+}
+
+fn findings(before: &str, all: &[Finding]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let item = |one: &Finding| {
+        let sets = one
+            .set
+            .iter()
+            .map(|set| format!(" <code>--set {}</code>", escaped(&quoted(set))));
+        format!(
+            "<li>{before}{} <small>(explains {})</small><br><span class=\"help\">{}</span>{}</li>",
+            escaped(one.message),
+            percent(one.explains),
+            escaped(one.help),
+            sets.collect::<String>()
+        )
+    };
+    format!("<ul>{}</ul>", all.iter().map(item).collect::<String>())
+}
+
+/// The objects that are not right, and how many are.
+fn objects(judged: &Judged) -> String {
+    let all = judged.fields.get("objects").and_then(|all| all.as_array());
+    let all: Vec<_> = all.into_iter().flatten().collect();
+    let is_right = |one: &&&serde_json::Value| one["right"] == true;
+    let right = all.iter().filter(is_right).count();
+    let wrong = all.iter().filter(|one| one["right"] != true).map(|one| {
+        let name = match one["name"].as_str() {
+            Some(name) => escaped(name),
+            None => format!("the one with the index {}", one["index"]),
+        };
+        match one["off"].as_f64().unwrap_or_default().round() {
+            0.0 => name,
+            off => format!("{name} (off by {off} pixels)"),
+        }
+    });
+    let wrong: Vec<_> = wrong.take(12).collect();
+    match wrong.is_empty() {
+        true => format!("<p>All {right} objects are right.</p>"),
+        false => format!(
+            "<p>Objects that are not right: {}. {right} are.</p>",
+            wrong.join(", ")
+        ),
+    }
+}

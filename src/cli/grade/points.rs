@@ -1,0 +1,124 @@
+//! Points for pictures: what a right one gets, and what each mistake takes off.
+
+use std::{collections::BTreeMap, path::Path};
+
+use serde_json::Value;
+
+use super::{criteria, graded::Judged};
+use crate::{
+    cli::{Trouble, input::unreadable},
+    files,
+    scene::Scene,
+};
+
+/// Maximum length of a file of points, in bytes.
+const LIMIT: u64 = 1 << 20;
+
+/// What stands for every mistake that is not listed.
+const OTHERS: &str = "*";
+
+/// How points are given.
+#[derive(Debug)]
+pub struct Points {
+    /// For a right picture.
+    pub total: f64,
+    /// Taken off once for each object that mistakes are about, if these are not listed.
+    pub object: Option<f64>,
+    /// Taken off for each mistake, by its id.
+    mistakes: BTreeMap<String, f64>,
+}
+
+impl Points {
+    /// Reads `{"total": 20, "object": 2, "mistakes": {"roll_sign": 3, "*": 2}}`.
+    ///
+    /// # Errors
+    ///
+    /// It is something else, or names a mistake that there is not.
+    pub fn read(path: &Path) -> Result<Self, Trouble> {
+        let bytes = files::read(path, LIMIT).map_err(|error| unreadable(path, &error))?;
+        let value: Value =
+            serde_json::from_slice(&bytes).map_err(|error| unreadable(path, &error))?;
+        Self::of(&value).map_err(|why| unreadable(path, &why))
+    }
+
+    fn of(value: &Value) -> Result<Self, String> {
+        let form =
+            "points are {\"total\": 20, \"object\": 2, \"mistakes\": {\"roll_sign\": 3, \"*\": 2}}";
+        let fields = value.as_object().ok_or(form)?;
+        let number = |name: &str, value: &Value| match value.as_f64() {
+            Some(points) if points >= 0.0 && points.is_finite() => Ok(points),
+            _ => Err(format!(
+                "`{name}` is {value}, and points are numbers from 0 on"
+            )),
+        };
+        if let Some(other) = fields
+            .keys()
+            .find(|key| !["total", "object", "mistakes"].contains(&&***key))
+        {
+            return Err(format!("there is no `{other}` among points: {form}"));
+        }
+        let total = fields
+            .get("total")
+            .ok_or("`total` is missing: what a right picture gets")?;
+        let object = fields.get("object").map(|value| number("object", value));
+        let empty = serde_json::Map::new();
+        let listed = match fields.get("mistakes") {
+            Some(listed) => listed.as_object().ok_or(form)?,
+            None => &empty,
+        };
+        let mut mistakes = BTreeMap::new();
+        for (id, value) in listed {
+            if id != OTHERS && !criteria::is_id(id) {
+                let near = crate::suggest::nearest(id, criteria::ids());
+                let near =
+                    near.map_or_else(String::new, |near| format!(": did you mean `{near}`?"));
+                return Err(format!("there is no mistake `{id}`{near}"));
+            }
+            mistakes.insert(id.clone(), number(id, value)?);
+        }
+        if !mistakes.contains_key(OTHERS) {
+            return Err(
+                "`mistakes` has no `*`, which says what any other mistake takes off".to_owned(),
+            );
+        }
+        Ok(Self {
+            total: number("total", total)?,
+            object: object.transpose()?,
+            mistakes,
+        })
+    }
+
+    /// What a picture gets; nothing is known of one that is wrong for unknown reasons.
+    pub fn score(&self, judged: &Judged, scene: &Scene) -> Option<f64> {
+        match judged.word() {
+            "right" | "noise" => Some(self.total),
+            "wrong" => {
+                let off: f64 = self.taken_off(judged, scene).iter().sum();
+                Some((self.total - off).max(0.0))
+            }
+            _ => None,
+        }
+    }
+
+    /// What each mistake takes off, in their order.
+    pub fn taken_off(&self, judged: &Judged, scene: &Scene) -> Vec<f64> {
+        let mut objects = Vec::new();
+        let mistakes = judged.mistakes();
+        let points = mistakes.iter().map(|mistake| {
+            let listed = self.mistakes.get(mistake.id).copied();
+            let object = criteria::object(mistake, scene);
+            match (listed, object, self.object) {
+                (Some(points), ..) => points,
+                (None, Some(object), Some(points)) => match objects.contains(&object) {
+                    true => 0.0,
+                    false => {
+                        objects.push(object);
+                        points
+                    }
+                },
+                _ => self.mistakes[OTHERS],
+            }
+        });
+        points.collect()
+    }
+}

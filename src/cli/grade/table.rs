@@ -1,0 +1,152 @@
+//! A class in a table, for people and for other programs.
+
+use std::iter;
+
+use super::graded::{Finding, Graded, Judged, percent};
+use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
+
+/// Its cells: name, error, samples.
+pub fn figures(one: &Graded) -> [String; 2] {
+    match one.best() {
+        Err(_) => [String::new(), String::new()],
+        Ok(judged) => [
+            format!("{:.5}", judged.rmse()),
+            judged.samples().map_or_else(String::new, |samples| {
+                short((10.0 * samples).round() / 10.0)
+            }),
+        ],
+    }
+}
+
+/// A table for people, and under a line what else there is to say of a student.
+pub fn table(graded: &[Graded]) -> String {
+    let widest = graded
+        .iter()
+        .map(|one| visible_line(&one.name).chars().count());
+    let widest = widest.max().unwrap_or(0).max("student".len());
+    let line = |[name, error, samples, verdict]: [&str; 4]| {
+        let [name, verdict] = [name, verdict].map(visible_line);
+        format!("{name:<widest$}  {error:>8}  {samples:>8}  {verdict}\n")
+    };
+    let more = |text: &str| format!("{:widest$}  {}\n", "", visible_line(text));
+    let row = |one: &Graded| {
+        let [error, samples] = figures(one);
+        let mut verdict = one.line();
+        if one.best().is_ok_and(Judged::is_ours) {
+            verdict += " (rendered by Pinhole)";
+        }
+        if let Some(score) = one.score {
+            verdict += &format!("; {} points", short(score));
+        }
+        let mut text = line([&one.name, &error, &samples, &verdict]);
+        if let Ok(judged) = one.best() {
+            let guess = |guess: &Finding| more(&format!("a guess: {}", guess.message));
+            text.extend(judged.guesses().iter().map(guess));
+            if let Some(rest) = judged.rest() {
+                text += &more(&format!(
+                    "{} of the difference is not explained",
+                    percent(rest)
+                ));
+            }
+            if judged.is_limited() {
+                text += &more("the search came to its bound before all mistakes were tried: --effort 4 tries more");
+            }
+        }
+        if !one.equal_to.is_empty() {
+            text += &more(&format!(
+                "the same in every pixel as that of {}",
+                one.equal_to.join(", ")
+            ));
+        }
+        if !one.not_compared.is_empty() {
+            text += &more(&format!("not compared: {}", some(&one.not_compared)));
+        }
+        text
+    };
+    let head = line(["student", "error", "samples", "verdict"]);
+    iter::once(head).chain(graded.iter().map(row)).collect()
+}
+
+/// The first few of a list, and how many more there are.
+pub fn some(list: &[String]) -> String {
+    /// More are not listed.
+    const MOST: usize = 6;
+    let first: Vec<&str> = list.iter().take(MOST).map(String::as_str).collect();
+    match list.len().saturating_sub(MOST) {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
+/// A table for other programs.
+pub fn csv(graded: &[Graded]) -> String {
+    let row = |one: &Graded| {
+        let [error, samples] = figures(one);
+        let (mistakes, guesses, rest, limited) = match one.best() {
+            Err(_) => Default::default(),
+            Ok(judged) => (
+                judged.mistakes(),
+                judged.guesses(),
+                judged
+                    .rest()
+                    .map_or_else(String::new, |rest| format!("{rest:.4}")),
+                judged.is_limited().to_string(),
+            ),
+        };
+        let line = match one.best() {
+            Err(error) => error,
+            Ok(_) => one.line(),
+        };
+        let joined = |findings: &[Finding], text: fn(&Finding) -> String| {
+            let texts: Vec<_> = findings
+                .iter()
+                .map(text)
+                .filter(|text| !text.is_empty())
+                .collect();
+            texts.join("; ")
+        };
+        let sets = mistakes.iter().flat_map(|mistake| &mistake.set);
+        let sets: Vec<_> = sets.map(|set| quoted(set)).collect();
+        let explains: f64 = mistakes.iter().map(|mistake| mistake.explains).sum();
+        let explains = match mistakes.is_empty() {
+            true => String::new(),
+            false => format!("{explains:.4}"),
+        };
+        let cells = [
+            text_cell(one.file()),
+            one.word().to_owned(),
+            error,
+            samples,
+            text_cell(&line),
+            text_cell(&sets.join(" ")),
+            text_cell(&one.name),
+            text_cell(one.number.as_deref().unwrap_or_default()),
+            text_cell(&joined(&mistakes, |one| one.id.to_owned())),
+            explains,
+            text_cell(&joined(&mistakes, |one| one.help.to_owned())),
+            text_cell(&joined(&guesses, |one| one.message.to_owned())),
+            rest,
+            limited,
+            text_cell(&one.not_compared.join("; ")),
+            text_cell(&one.equal_to.join("; ")),
+            one.score.map_or_else(String::new, short),
+        ];
+        cells.join(",") + "\n"
+    };
+    iter::once(HEAD.to_owned())
+        .chain(graded.iter().map(row))
+        .collect()
+}
+
+const HEAD: &str = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,guesses,rest,limited,not_compared,equal_to,score\n";
+
+/// A text as a cell of a CSV file: what a program that opens it would take for a formula begins
+/// with a `'`, and is a text to it so.
+fn text_cell(text: &str) -> String {
+    let guard =
+        match text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n']) {
+            true => "'",
+            false => "",
+        };
+    format!("\"{guard}{}\"", visible_line(text).replace('"', "\"\""))
+}

@@ -1,0 +1,83 @@
+//! Files of our own beside others, until their content is complete. Each is locked as long as it is
+//! open: one that nobody has locked was left by a process that was killed.
+
+use std::{
+    ffi::OsString,
+    fs::{self, File, TryLockError},
+    io,
+    path::Path,
+};
+
+use tempfile::NamedTempFile;
+
+use super::kind;
+
+/// Maximum number of files that are made until one can be locked. Others can look for leftovers at
+/// the same moment, but not at so many.
+const MOST_TRIES: usize = 100;
+
+/// Has `make` make a file until it makes one that can be locked, without waiting for whoever locked
+/// it first.
+pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
+    for _ in 0..MOST_TRIES {
+        let file = make()?;
+        // Where the file system has no locks, nobody finds one that is free.
+        let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
+        // Before that, another process may have taken it for a leftover.
+        if is_locked && file.path().exists() {
+            return Ok(file);
+        }
+    }
+    let message = "another program locks or removes every file that is begun in its folder";
+    Err(io::Error::other(message))
+}
+
+/// The files in a folder that nobody has locked, with six random characters between this prefix and
+/// this suffix: their names, and the files themselves, which are now locked as long as they are
+/// open.
+pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
+    let is_ours = |name: &OsString| {
+        let name = name.to_str();
+        name.and_then(|name| name.strip_prefix(prefix)?.strip_suffix(suffix))
+            .is_some_and(|random| {
+                random.len() == 6 && random.bytes().all(|it| it.is_ascii_alphanumeric())
+            })
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let left = entries.filter_map(|entry| {
+        let name = Some(entry.file_name()).filter(is_ours)?;
+        entry.file_type().ok().filter(fs::FileType::is_file)?;
+        let file = kind::open(&entry.path()).ok()?;
+        file.try_lock().ok()?;
+        Some((name, file))
+    });
+    left.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::tempdir;
+
+    use super::*;
+
+    #[test]
+    fn a_file_that_others_lock_first_is_not_waited_for() {
+        let folder = tempdir().unwrap();
+        for (locked_first, is_made) in [(0, true), (3, true), (usize::MAX, false)] {
+            let mut others = Vec::new();
+            let made = locked(|| {
+                let file = NamedTempFile::new_in(folder.path())?;
+                if others.len() < locked_first {
+                    let other = file.reopen()?;
+                    other.lock()?;
+                    others.push(other);
+                }
+                Ok(file)
+            });
+            assert_eq!(made.is_ok(), is_made, "{locked_first}");
+            assert_eq!(others.len(), locked_first.min(MOST_TRIES));
+            drop(made);
+            assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
+    }
+}

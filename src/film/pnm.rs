@@ -1,0 +1,372 @@
+//! PNM files, as class-mates' first programs write them: P1 to P6, in numbers or in bytes.
+//!
+//! What a shell or a system may have done to one is undone where that can be told for certain: a
+//! mark or lines of text in front, UTF-16 instead of bytes, a carriage return before every line
+//! feed. What is missing or out of range is named with its place. PAM is left to `image`.
+
+use super::{
+    memory,
+    picture::{Coding, Picture, Rounding, Unreadable, check_size},
+    pixels::Film,
+};
+use crate::color::srgb_to_linear;
+
+/// Maximum number of bytes before a picture that may be a program's other words.
+const LINES_BEFORE: usize = 4096;
+
+const BOM: &[u8] = b"\xef\xbb\xbf";
+
+/// How a PNM file begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// With the letter P, after this many bytes, which are none or a byte order mark.
+    Plain(usize),
+    /// With UTF-16, big-endian or not, after this many bytes.
+    Utf16 {
+        /// The length of its mark.
+        mark: usize,
+        /// Whether the high byte comes first.
+        is_big: bool,
+    },
+}
+
+/// How a file begins if it is a PNM, without words in front.
+pub fn start(bytes: &[u8]) -> Option<Start> {
+    let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
+    if is_head(&bytes[mark..]) {
+        return Some(Start::Plain(mark));
+    }
+    let (mark, is_big) = match bytes {
+        [0xff, 0xfe, ..] => (2, false),
+        [0xfe, 0xff, ..] => (2, true),
+        [0, b'P', ..] => (0, true),
+        _ => (0, false),
+    };
+    let text = narrowed(bytes.get(mark..mark + 6)?, is_big)?;
+    is_head(&text).then_some(Start::Utf16 { mark, is_big })
+}
+
+/// The place of the line in which a PNM begins, after lines of other words.
+pub fn after_lines(bytes: &[u8]) -> Option<usize> {
+    let start = &bytes[..bytes.len().min(LINES_BEFORE)];
+    let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
+    feeds.map(|at| at + 1).find(|&at| {
+        // A picture says its size, and not only something that looks like a first line.
+        let mut head = Reader::new(&start[at..]);
+        is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
+    })
+}
+
+/// Whether bytes begin as a PNM does: its two letters, and what ends a word.
+fn is_head(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'P', b'1'..=b'6', end, ..] if end.is_ascii_whitespace() || *end == b'#')
+}
+
+/// The characters of UTF-16 that are bytes, all of them.
+fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
+    let (pairs, _) = bytes.as_chunks::<2>();
+    let byte = |&[a, b]: &[u8; 2]| match if is_big { (a, b) } else { (b, a) } {
+        (0, byte) => Some(byte),
+        _ => None,
+    };
+    pairs.iter().map(byte).collect()
+}
+
+/// Reads a PNM.
+///
+/// # Errors
+///
+/// What is wrong with it, and where.
+pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
+    match start(bytes) {
+        Some(Start::Plain(0)) => read_bytes(bytes, limit, Coding::Exact),
+        Some(Start::Plain(mark)) => read_bytes(&bytes[mark..], limit, Coding::TextBefore),
+        Some(Start::Utf16 { mark, is_big }) => {
+            let is_bytes = (b'4'..=b'6').contains(&bytes[mark + if is_big { 3 } else { 2 }]);
+            let text = narrowed(&bytes[mark..], is_big).filter(|_| !is_bytes);
+            let text = text.ok_or_else(|| damaged(UTF_16.to_owned()))?;
+            read_bytes(&text, limit, Coding::Utf16)
+        }
+        None => {
+            let at = after_lines(bytes).ok_or(Unreadable::Format(None))?;
+            read_bytes(&bytes[at..], limit, Coding::TextBefore)
+        }
+    }
+}
+
+const UTF_16: &str = "it was turned into UTF-16, as `>` of PowerShell does, which loses bytes: \
+    have the program write the file itself, or use `cmd /c \"program > picture.ppm\"`";
+
+fn damaged(cause: String) -> Unreadable {
+    Unreadable::Damaged {
+        format: "PNM".to_owned(),
+        cause,
+    }
+}
+
+fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unreadable> {
+    let kind = bytes[1] - b'0';
+    let mut reader = Reader::new(bytes);
+    let [width, height] = [reader.number()?, reader.number()?];
+    let is_bits = kind == 1 || kind == 4;
+    let maxval = if is_bits { 1 } else { reader.number()? };
+    if !(1..=65535).contains(&maxval) {
+        let cause = format!("its maxval is {maxval}, which is not from 1 to 65535");
+        return Err(damaged(cause));
+    }
+    let rounding = match maxval {
+        0..=255 => Rounding::Byte,
+        _ => Rounding::Word,
+    };
+    let length = if maxval < 256 { 1 } else { 2 };
+    check_size([width, height], length, limit)?;
+    let (Ok(width), Ok(height)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(Unreadable::Large {
+            width,
+            height,
+            limit,
+        });
+    };
+    let channels: usize = if matches!(kind, 3 | 6) { 3 } else { 1 };
+    let whole = 2 * channels + size_of::<[f64; 3]>();
+    memory::check(width, height, whole as u64)?;
+    let mut film = Film::new(width, height)?;
+    let samples = Samples {
+        width: width as usize,
+        height: height as usize,
+        channels,
+        maxval: maxval as u16,
+    };
+    let (numbers, is_mended) = match kind {
+        1..=3 => (samples.in_text(&mut reader, is_bits)?, false),
+        4 => (samples.in_bits(reader.after_one_space())?, false),
+        _ => samples.in_bytes(&reader, length as usize)?,
+    };
+    let light: Vec<f64> = (0..=maxval)
+        .map(|number| srgb_to_linear(number as f64 / maxval as f64))
+        .collect();
+    let light = |number: &u16| light[usize::from(*number)];
+    for (pixel, numbers) in film.pixels_mut().iter_mut().zip(numbers.chunks(channels)) {
+        *pixel = match numbers {
+            [r, g, b] => [r, g, b].map(light),
+            _ => [light(&numbers[0]); 3],
+        };
+    }
+    Ok(Picture {
+        film,
+        rounding,
+        coding: if is_mended { Coding::TextMode } else { coding },
+        crop: None,
+        opacity: None,
+    })
+}
+
+/// What a raster has to hold.
+struct Samples {
+    width: usize,
+    height: usize,
+    channels: usize,
+    maxval: u16,
+}
+
+impl Samples {
+    fn count(&self) -> usize {
+        self.width * self.height * self.channels
+    }
+
+    /// What a number belongs to.
+    fn place(&self, index: usize) -> String {
+        let pixel = index / self.channels;
+        let (x, y) = (pixel % self.width, pixel / self.width);
+        match self.channels {
+            1 => format!("pixel ({x}, {y})"),
+            _ => {
+                let channel = ["red", "green", "blue"][index % 3];
+                format!("the {channel} of pixel ({x}, {y})")
+            }
+        }
+    }
+
+    fn cut_off(&self, index: usize) -> Unreadable {
+        damaged(format!(
+            "it is cut off before {}, after {index} of {} numbers",
+            self.place(index),
+            self.count()
+        ))
+    }
+
+    fn above(&self, index: usize, number: u64, line: Option<usize>) -> Unreadable {
+        let line = line.map_or_else(String::new, |line| format!(" in line {line}"));
+        damaged(format!(
+            "{} is {number}{line}, and its maxval is {}: no number may be above that",
+            self.place(index),
+            self.maxval
+        ))
+    }
+
+    /// Numbers with white space between them; of bits none is needed, and 1 is black.
+    fn in_text(&self, reader: &mut Reader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
+        let mut numbers = Vec::with_capacity(self.count());
+        for index in 0..self.count() {
+            reader.skip_space();
+            if reader.is_at_end() {
+                return Err(self.cut_off(index));
+            }
+            let number = match is_bits {
+                true => reader.bit(),
+                false => reader.number(),
+            };
+            match number? {
+                number if number > u64::from(self.maxval) => {
+                    return Err(self.above(index, number, Some(reader.line())));
+                }
+                number if is_bits => numbers.push(1 - number as u16),
+                number => numbers.push(number as u16),
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// Bits, of which 1 is black; each row begins with a byte of its own.
+    fn in_bits(&self, raster: &[u8]) -> Result<Vec<u16>, Unreadable> {
+        let row = self.width.div_ceil(8);
+        let bit = |index: usize| {
+            let (x, y) = (index % self.width, index / self.width);
+            let byte = raster.get(y * row + x / 8);
+            let byte = byte.ok_or_else(|| self.cut_off(index))?;
+            Ok(1 - u16::from(byte >> (7 - x % 8) & 1))
+        };
+        (0..self.count()).map(bit).collect()
+    }
+
+    /// Bytes, or words of two with the high one first; and whether carriage returns were taken out.
+    fn in_bytes(&self, reader: &Reader, length: usize) -> Result<(Vec<u16>, bool), Unreadable> {
+        let raster = reader.after_one_space();
+        let wanted = length * self.count();
+        let mended = (raster.len() != wanted)
+            .then(|| {
+                reader
+                    .after_line_end()
+                    .and_then(|rest| without_returns(rest, wanted))
+            })
+            .flatten();
+        let is_mended = mended.is_some();
+        let raster = mended.as_deref().unwrap_or(raster);
+        let number = |index: usize| {
+            let bytes = raster.get(length * index..length * (index + 1));
+            let number = match bytes.ok_or_else(|| self.cut_off(index))? {
+                [byte] => u16::from(*byte),
+                bytes => u16::from_be_bytes([bytes[0], bytes[1]]),
+            };
+            match number > self.maxval {
+                true => Err(self.above(index, number.into(), None)),
+                false => Ok(number),
+            }
+        };
+        let numbers: Result<_, _> = (0..self.count()).map(number).collect();
+        Ok((numbers?, is_mended))
+    }
+}
+
+/// A raster that was written as text where a line ends in two bytes: all its line feeds have a
+/// carriage return before them, and without these it has the length that it should have.
+fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
+    let is_feed = |at: usize| raster[at] == b'\n';
+    let mut feeds = (0..raster.len()).filter(|&at| is_feed(at));
+    if feeds.any(|at| at == 0 || raster[at - 1] != b'\r') {
+        return None;
+    }
+    let is_kept = |&at: &usize| raster[at] != b'\r' || raster.get(at + 1) != Some(&b'\n');
+    let kept: Vec<u8> = (0..raster.len())
+        .filter(is_kept)
+        .map(|at| raster[at])
+        .collect();
+    (kept.len() == wanted).then_some(kept)
+}
+
+/// Reads numbers from a text, past comments.
+struct Reader<'b> {
+    bytes: &'b [u8],
+    at: usize,
+}
+
+impl<'b> Reader<'b> {
+    /// After the two letters.
+    fn new(bytes: &'b [u8]) -> Self {
+        Self { bytes, at: 2 }
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.at >= self.bytes.len()
+    }
+
+    /// The line, from 1, as editors count.
+    fn line(&self) -> usize {
+        let before = &self.bytes[..self.at];
+        1 + before.iter().filter(|&&byte| byte == b'\n').count()
+    }
+
+    fn skip_space(&mut self) {
+        while let Some(&byte) = self.bytes.get(self.at) {
+            match byte {
+                b'#' => {
+                    let rest = self.bytes[self.at..].iter();
+                    let ends = |&byte: &u8| byte == b'\n' || byte == b'\r';
+                    self.at += rest.take_while(|byte| !ends(byte)).count();
+                }
+                _ if byte.is_ascii_whitespace() || byte == 0x0b => self.at += 1,
+                _ => break,
+            }
+        }
+    }
+
+    fn number(&mut self) -> Result<u64, Unreadable> {
+        self.skip_space();
+        let word = self.bytes[self.at.min(self.bytes.len())..]
+            .split(|byte| byte.is_ascii_whitespace() || matches!(byte, b'#' | 0x0b))
+            .next()
+            .unwrap_or_default();
+        let text = str::from_utf8(word).ok();
+        let number = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
+        let number = number.and_then(|text| text.parse().ok());
+        let line = self.line();
+        self.at += word.len();
+        number.ok_or_else(|| {
+            damaged(match word {
+                [] => "it ends before its size and maxval".to_owned(),
+                _ => {
+                    let word = String::from_utf8_lossy(&word[..word.len().min(20)]);
+                    format!("`{word}` in line {line} is no whole number")
+                }
+            })
+        })
+    }
+
+    /// A number of one digit.
+    fn bit(&mut self) -> Result<u64, Unreadable> {
+        let byte = self.bytes[self.at];
+        self.at += 1;
+        match byte {
+            b'0' | b'1' => Ok(u64::from(byte - b'0')),
+            _ => {
+                let cause = format!(
+                    "`{}` in line {} is no bit",
+                    byte.escape_ascii(),
+                    self.line()
+                );
+                Err(damaged(cause))
+            }
+        }
+    }
+
+    /// What follows the one white space after a header.
+    fn after_one_space(&self) -> &'b [u8] {
+        self.bytes.get(self.at + 1..).unwrap_or_default()
+    }
+
+    /// What follows the end of the header's line.
+    fn after_line_end(&self) -> Option<&'b [u8]> {
+        let rest = self.bytes.get(self.at..)?;
+        rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))
+    }
+}

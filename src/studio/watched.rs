@@ -1,0 +1,100 @@
+//! A picture's file that threads of its own make, while the conversation goes on and tells how far
+//! it is.
+
+use std::{
+    error::Error,
+    io::Cursor,
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
+};
+
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+use lsp_server::{Message, Request};
+use serde_json::{Value, json};
+
+use super::download::{EXR, recipe, sampling, scene};
+use crate::{
+    area::Area,
+    files,
+    film::{self, Film},
+    lsp::{Answer, Refusal, response, unharmed},
+    render::{self, Control, RenderError},
+    scene::Scene,
+    tracer::World,
+};
+
+/// A render that another thread looks at and can end.
+#[derive(Debug, Default)]
+pub struct Watch {
+    pub cancel: AtomicBool,
+    /// Numbers of samples, or of exact pixels.
+    done: AtomicU64,
+    expected: AtomicU64,
+}
+
+impl Watch {
+    /// Which part is made, from 0 to 1.
+    pub fn share(&self) -> f64 {
+        let [done, expected] = [&self.done, &self.expected].map(|it| it.load(Ordering::Relaxed));
+        (done as f64 / expected.max(1) as f64).min(1.0)
+    }
+}
+
+/// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
+pub fn answer(request: Request, watch: &Watch) -> Message {
+    let Request { id, method, params } = request;
+    response(id, unharmed(|| file(&method, &params, watch)))
+}
+
+fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
+    let (scene, text) = scene(params)?;
+    let made = match method {
+        EXR => exr(&scene, watch),
+        _ => png(&scene, text, watch),
+    };
+    let file = made.map_err(|error| match watch.cancel.load(Ordering::SeqCst) {
+        true => Refusal::cancelled(),
+        false => Refusal::failed(error),
+    })?;
+    let name = method.trim_start_matches("studio/");
+    Ok(json!({ name: BASE64_STANDARD.encode(file) }))
+}
+
+type Made = Result<Vec<u8>, Box<dyn Error>>;
+
+fn png(scene: &Scene, text: String, watch: &Watch) -> Made {
+    let film: Film<[u8; 3]> = rendered(scene, watch)?;
+    let mut file = Vec::new();
+    files::write_stream(&mut file, &watch.cancel, |out| {
+        film::write_png(&film, Some(&recipe(text)), out)
+    })?;
+    Ok(file)
+}
+
+fn exr(scene: &Scene, watch: &Watch) -> Made {
+    let film: Film<[f32; 3]> = rendered(scene, watch)?;
+    let whole = Area::whole(film.width(), film.height());
+    let mut file = Cursor::new(Vec::new());
+    film::write_exr(&film, whole, whole, &mut file)?;
+    Ok(file.into_inner())
+}
+
+fn rendered<P: film::Pixel>(scene: &Scene, watch: &Watch) -> Result<Film<P>, RenderError> {
+    let cancel = &watch.cancel;
+    let world = World::new_unless(scene, cancel)?;
+    let sampling = sampling(scene);
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let expected = match sampling.is_exact() {
+        true => whole.pixels(),
+        false => sampling.total(),
+    };
+    watch.expected.store(expected, Ordering::Relaxed);
+    let control = Control {
+        progress: &|more| {
+            watch.done.fetch_add(more, Ordering::Relaxed);
+        },
+        cancel,
+        ..Control::default()
+    };
+    let rendered = render::render_as_asked(&world, &sampling, whole, &control)?;
+    Ok(rendered.into_film())
+}
