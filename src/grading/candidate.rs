@@ -185,7 +185,7 @@ impl Candidate {
         one.camera == two.camera
             && one.image == two.image
             && self.averaged == other.averaged
-            && self.layout.is_shifted() == other.layout.is_shifted()
+            && self.layout.more() == other.layout.more()
             && self.is_drawn == other.is_drawn
             && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
     }

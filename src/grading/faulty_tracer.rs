@@ -281,17 +281,6 @@ impl FaultyTracer {
         Moments::exact(part.iter().map(pixel))
     }
 
-    /// The mean of what is seen at some places of a pixel.
-    pub fn mean(&self, (x, y): (u32, u32), places: &[DVec2]) -> [f64; 3] {
-        let corner = DVec2::new(f64::from(x), f64::from(y));
-        let mut sum = [0.0; 3];
-        for place in places {
-            let color = self.color(corner + *place);
-            sum = [0, 1, 2].map(|i| sum[i] + color[i]);
-        }
-        sum.map(|sum| sum / places.len() as f64)
-    }
-
     fn color(&self, place: DVec2) -> [f64; 3] {
         let [spread, offset] = [self.behaviour.spread, self.behaviour.offset].map(DVec2::from);
         let place = place * spread + offset;

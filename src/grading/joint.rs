@@ -43,7 +43,8 @@ pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> 
     let Some(tiny) = judge.tiny(right) else {
         return Vec::new();
     };
-    let rows = ROWS.iter().filter(|row| row.shows != Shows::AtEdges);
+    let rows = ROWS.iter();
+    let rows = rows.filter(|row| row.shows != Shows::AtEdges && row.id != "cut_off");
     let rows: Vec<(Changes, Mistake)> = rows
         .filter_map(|row| {
             let mistake = Mistake::Row(row, None);
@@ -66,7 +67,7 @@ pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> 
     let left = |candidate: Candidate| {
         let left = absolute(&judge.differences(&candidate, &tiny)?);
         let count = i32::try_from(candidate.mistakes.len()).unwrap_or(i32::MAX);
-        Some((left / WORTH.powi(count), candidate))
+        Some((left / libm::pow(WORTH, f64::from(count)), candidate))
     };
     let least_first = |mut tried: Vec<(f64, Candidate)>| {
         tried.sort_by(|one, other| one.0.total_cmp(&other.0));

@@ -1,18 +1,15 @@
 //! A picture under judgement: its grids, its work, and how well candidates explain it.
 
-use std::{
-    iter,
-    sync::{Arc, atomic::AtomicBool},
-};
+use std::sync::{Arc, atomic::AtomicBool};
 
 use super::{
     Reference,
-    candidate::{Candidate, Mistake, Shows},
+    candidate::Candidate,
+    displacement::displaced,
     grid::Grid,
     level::Level,
     levenberg_marquardt::{Fitted, fit},
     likelihood::Score,
-    mistakes::ROWS,
     prediction::Prediction,
     rendering::Rendering,
     work::{self, Work},
@@ -140,20 +137,18 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// How much likelier than a null model another one is that was judged on the same level, less what the numbers cost that it has more.
-    pub fn gain(&self, level: &Level, null: &Judged, other: &Judged) -> f64 {
-        let [one, two] = [null, other].map(|found| level.predict(&found.rendering));
-        let more = other.candidate().fitted() - null.candidate().fitted();
-        one.gain(&null.score, &two) - price(level, more)
+    /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
+    /// edges show lies where it should.
+    pub fn explains(&self, candidate: &Candidate) -> bool {
+        self.explains_all(candidate)
+            && displaced(self, candidate).is_none()
+            && self.is_even(candidate)
     }
 
-    /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
-    pub fn is_explained(&self, candidate: &Candidate) -> bool {
-        let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
-        let rows = rows.take_while(|_| self.work.may_go_on());
-        let mut all = iter::once(candidate.clone())
-            .chain(rows.filter_map(|row| candidate.with(Mistake::Row(row, None))));
-        all.any(|candidate| self.explains_all(&candidate))
+    /// Whether what a candidate does not explain is noise wherever it is seen.
+    pub fn is_even(&self, candidate: &Candidate) -> bool {
+        let predicted = self.predicted(candidate, &self.fine);
+        predicted.is_some_and(|predicted| predicted.is_even())
     }
 
     /// Whether it is known that nothing shows something else than a candidate for certain.
@@ -166,22 +161,9 @@ impl<'a> Judge<'a> {
             predicted.is_some_and(|predicted| predicted.strays().is_empty())
         };
         let is_exact = candidate.behaviour.is_right()
-            && !candidate.layout.is_shifted()
+            && candidate.layout.more() == [0, 0]
             && self.fine.jpeg.is_none();
         (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
-    }
-
-    /// Whether what was found beside another candidate can be seen.
-    pub fn is_seen(&self, found: &Judged, beside: &Candidate) -> bool {
-        let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
-        let samples = found.score.samples.unwrap_or(f64::INFINITY) / count;
-        self.work
-            .spend(work::of_exact(0, 0, 2 * self.fine.grid.count()));
-        let predicted = |candidate| self.predicted(candidate, &self.fine);
-        let (Some(one), Some(other)) = (predicted(found.candidate()), predicted(beside)) else {
-            return false;
-        };
-        one.is_seen_beside(&other, samples.max(1.0))
     }
 
     /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change the picture by about so much of a cell.

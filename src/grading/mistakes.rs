@@ -88,17 +88,17 @@ pub const ROWS: &[Row] = &[
     row("aspect", InAreas, "the picture is stretched: its window is half as wide as it should be", WINDOW,
         |c, _| { let [width, height] = sides(c); widen(c, 0.5 * width / height); }),
     row("half_pixel", AtEdges, "samples lie half a pixel too far up and left: around a pixel's corner, not its middle", MIDDLE,
-        |c, _| c.layout.half_pixels = [-1, -1]),
+        |c, _| halves(c, [-1, -1])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and right", MIDDLE,
-        |c, _| c.layout.half_pixels = [1, 1]),
+        |c, _| halves(c, [1, 1])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and left", MIDDLE,
-        |c, _| c.layout.half_pixels = [-1, 1]),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far left", MIDDLE, |c, _| shift(c, [-0.5, 0.0])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far right", MIDDLE, |c, _| shift(c, [0.5, 0.0])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far up", MIDDLE, |c, _| shift(c, [0.0, -0.5])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far down", MIDDLE, |c, _| shift(c, [0.0, 0.5])),
-    row("half_pixel", AtEdges, "samples lie a whole pixel too far up and left", MIDDLE, |c, _| shift(c, [-1.0, -1.0])),
-    row("half_pixel", AtEdges, "samples lie a whole pixel too far down and right", MIDDLE, |c, _| shift(c, [1.0, 1.0])),
+        |c, _| halves(c, [-1, 1])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far left", MIDDLE, |c, _| halves(c, [-1, 0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far right", MIDDLE, |c, _| halves(c, [1, 0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far up", MIDDLE, |c, _| halves(c, [0, -1])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far down", MIDDLE, |c, _| halves(c, [0, 1])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far up and left", MIDDLE, |c, _| halves(c, [-2, -2])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far down and right", MIDDLE, |c, _| halves(c, [2, 2])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
     row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE,
@@ -280,7 +280,12 @@ fn look(c: &mut Candidate, curve: fn(f64) -> f64) {
     }
 }
 
-/// Samples lie elsewhere, by so many pixels to the right and down.
+/// Samples lie elsewhere, by so many half pixels to the right and down.
+fn halves(c: &mut Candidate, by: [i32; 2]) {
+    c.layout.half_pixels = by;
+}
+
+/// The same by parts of a pixel.
 fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = by;
 }

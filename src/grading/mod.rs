@@ -8,12 +8,13 @@
 //!    change its scene, its `layout`, what it does to `light`, or how it behaves.
 //! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the `faulty_tracer` where it behaves as no
 //!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
-//! 4. A prediction says how likely what is seen is (`likelihood`), and what no sampling explains (`strays`).
+//! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains (`strays`), and whether it lies elsewhere (`displacement`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
 //!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
 
 mod candidate;
+mod displacement;
 mod empty_pixels;
 mod faulty_tracer;
 mod forward_selection;
@@ -30,7 +31,6 @@ mod mistakes;
 mod moments;
 mod numeric_mistakes;
 mod objects;
-mod offsets;
 mod parameters;
 mod patch;
 mod plain_facts;
@@ -64,7 +64,7 @@ use self::{
     candidate::{Candidate, Mistake},
     empty_pixels::without_empty,
     judge::{Judge, Judged},
-    light::{Curve, is_near},
+    light::Curve,
     moments::Moments,
     plain_facts::EmptyRows,
     rendering::Rendering,
@@ -184,9 +184,11 @@ impl<'a> Reference<'a> {
         let Some(opacity) = &picture.opacity else {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
-        // What is transparent is seen on black: that may be right, and else its colours are judged as they are without alpha.
+        // What is transparent is seen on black: that may be right if nothing else is transparent,
+        // and else its colours are judged as they are without alpha.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
-        if matches!(verdict.kind, Kind::Right | Kind::Noise) {
+        let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
+        if is_right && opacity.range[1] == 1.0 {
             return Ok(verdict);
         }
         let told = plain_facts::transparent(opacity.range);
@@ -217,17 +219,15 @@ impl<'a> Reference<'a> {
                 .for_each(|one| one.is_right = false);
             return Ok(verdict);
         }
-        if let Some(empty) = EmptyRows::of(film, exact) {
-            let rest = empty.left_out(film);
-            let verdict = self.judge_full(&rest, jpeg, cancel)?;
-            // Rows of the colour of the background may be those of a camera that looks elsewhere.
-            let is_background = is_near(empty.light, self.scene.image.background.to_linear());
-            let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
-            if is_right || !is_background && verdict.kind == Kind::Wrong {
-                return Ok(verdict.beside(empty.told()));
-            }
+        let Some(empty) = EmptyRows::of(film, exact) else {
+            return self.judge_full(film, jpeg, cancel);
+        };
+        // Rows of one colour may be those of a camera that looks elsewhere.
+        let rest = self.judge_full(&empty.left_out(film), jpeg, cancel)?;
+        match rest.kind {
+            Kind::Right | Kind::Noise => Ok(rest.beside(empty.told())),
+            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, cancel),
         }
-        self.judge_full(film, jpeg, cancel)
     }
 
     /// Judges a picture that has something in it.
@@ -244,30 +244,22 @@ impl<'a> Reference<'a> {
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let judge = Judge::new(self, &film, jpeg, cancel);
-        // What pixels show exactly is certain.
-        let certain = offsets::regular(&judge);
-        let is_certain = certain.is_some();
-        let found = match certain {
-            Some(found) => Some(found),
-            None => forward_selection::run(&judge)?,
-        };
+        let found = forward_selection::run(&judge)?;
         // What was found is told, however much work that is.
-        let tell = || told(&judge, &film, found, is_certain);
+        let tell = || told(&judge, &film, found);
         let verdict = judge.work.without_limit(tell);
         Ok(cancel::unless_set(cancel, verdict)?)
     }
 }
 
-fn told(judge: &Judge, film: &Film, found: Option<Judged>, is_certain: bool) -> Verdict {
+fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
     // What is told takes work, too.
     let is_cut = judge.work.is_cut();
     let mut verdict = match found {
-        Some(found) if !found.candidate().mistakes.is_empty() => {
-            wrong(judge, &found, is_cut, is_certain)
-        }
-        _ if judge.explains_all(&right) && !has_other_colors(film, scene, jpeg) => {
+        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found, is_cut),
+        _ if judge.explains(&right) && !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
@@ -306,14 +298,11 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Mistakes are told that leave no more than this share of the squared difference beyond noise.
-const EXPLAINED: f64 = 0.01;
-
 /// The verdict on a picture with mistakes: they are named if together they explain it, and else they are guesses.
-fn wrong(judge: &Judge, found: &Judged, is_cut: bool, is_certain: bool) -> Verdict {
+fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
-    let is_shifted = last.layout.is_shifted() || last.behaviour.offset != [0.0; 2];
+    let is_shifted = last.layout.more() != [0, 0] || last.behaviour.offset != [0.0; 2];
     let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
         true => &judge.edges,
         false => &judge.middle,
@@ -327,11 +316,18 @@ fn wrong(judge: &Judge, found: &Judged, is_cut: bool, is_certain: bool) -> Verdi
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    for mistake in &last.mistakes {
-        let Some(after) = before.with(mistake.clone()) else {
-            continue;
+    // The one first that leaves least: one may make more difference where another hides it.
+    let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
+    while !others.is_empty() {
+        let with = |(at, mistake): (usize, &&Mistake)| {
+            let after = before.with((*mistake).clone())?;
+            Some((beyond(&after), at, after))
         };
-        let now = beyond(&after);
+        let with = others.iter().enumerate().filter_map(with);
+        let Some((now, at, after)) = with.min_by(|one, other| one.0.total_cmp(&other.0)) else {
+            break;
+        };
+        let mistake = others.remove(at);
         let set = parameters::arguments(&before.scene, &after.scene);
         let mut message = mistake.message(scene);
         if let (Mistake::Row(..), [_]) = (mistake, &set[..])
@@ -351,10 +347,15 @@ fn wrong(judge: &Judge, found: &Judged, is_cut: bool, is_certain: bool) -> Verdi
         });
         (left, before) = (now, after);
     }
-    let rest = (!judge.explains_all(last)).then(|| (left / all).min(1.0));
-    let rest = rest.filter(|rest| *rest > 0.0 && !is_certain);
-    mistakes.retain(|mistake| mistake.explains > 0.0 || is_certain);
-    let is_told = !is_cut && !mistakes.is_empty() && rest.is_none_or(|rest| rest <= EXPLAINED);
+    let square = |candidate: &Candidate| {
+        let shown = judge.predicted(candidate, &judge.fine);
+        shown.map_or(f64::INFINITY, |shown| shown.strays().square())
+    };
+    let is_explained = judge.explains(last);
+    let rest = (!is_explained).then(|| square(last) / square(&Candidate::right(scene)));
+    let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
+    mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);
+    let is_told = !is_cut && !mistakes.is_empty() && is_explained;
     let (kind, mistakes, guesses) = match is_told {
         true => (Kind::Wrong, mistakes, Vec::new()),
         false => (Kind::Unknown, Vec::new(), mistakes),

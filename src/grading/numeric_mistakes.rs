@@ -16,7 +16,13 @@ use crate::{
 };
 
 /// From so many starts numbers are fitted on the tiny grid.
-const STARTS: usize = 3;
+const STARTS: usize = 2;
+
+/// So many parameters are fitted there, those that start best.
+const STARTED: usize = 20;
+
+/// What leaves so many times as much as the best on the tiny grid is not fitted on the coarse one.
+const FAR: f64 = 2.0;
 
 /// So many parameters of objects and so many others are fitted on the coarse grid.
 const FITTED: usize = 4;
@@ -66,17 +72,21 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
         Some((fitted.left, candidate))
     };
     // Those first that start best: work may end before all are fitted.
-    let on_tiny = least_first(started).filter_map(|(parameter, tried)| {
-        let fitted = tried.iter();
-        let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
-        let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        Some((left, (parameter, best)))
-    });
+    let on_tiny = least_first(started)
+        .take(STARTED)
+        .filter_map(|(parameter, tried)| {
+            let fitted = tried.iter();
+            let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
+            let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
+            Some((left, (parameter, best)))
+        });
     let (local, others): (Vec<_>, Vec<_>) =
         on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
     let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
         fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
         fitted.truncate(FITTED);
+        let most = FAR * fitted.first().map_or(0.0, |best| best.0);
+        fitted.retain(|one| one.0 <= most);
         fitted
     });
     least_first(on_coarse)
@@ -124,7 +134,7 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
         View::Lookat(point) => point.distance(camera.eye),
         View::Direction(_) => camera.eye.length().max(1.0),
     };
-    let depths = (FROM..TO).map(|i| vec![middle * 1.2f64.powi(i)]);
+    let depths = (FROM..TO).map(|i| vec![middle * libm::pow(1.2, f64::from(i))]);
     std::iter::once(numbers).chain(depths).collect()
 }
 

@@ -147,9 +147,7 @@ fn causes(scene: &Scene) -> String {
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyRows {
     /// The first and the last.
-    pub rows: [usize; 2],
-    /// Their colour.
-    pub light: [f64; 3],
+    rows: [usize; 2],
 }
 
 impl EmptyRows {
@@ -173,7 +171,7 @@ impl EmptyRows {
             let told = (0..count).filter(is_told).count();
             let ends = [at(0), at(count.max(1) - 1)];
             let rows = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            (told >= 2 && count + 2 <= height).then_some(Self { rows, light })
+            (told >= 2 && count + 2 <= height).then_some(Self { rows })
         };
         from_below(true).or_else(|| from_below(false))
     }

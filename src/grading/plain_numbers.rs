@@ -6,7 +6,7 @@
 use super::{
     candidate::{Candidate, Mistake},
     forward_selection::CELL_STEP,
-    judge::{Judge, Judged, price},
+    judge::{Judge, price},
     parameters::Parameter,
 };
 use crate::{numbers::rounded, scene::Scene};
@@ -22,13 +22,10 @@ const DEVIATIONS: f64 = 8.0;
 const ROUNDS: usize = 3;
 
 /// A candidate whose numbers are as plain as they can be.
-pub fn plain(judge: &Judge, found: &Judged) -> Candidate {
-    let candidate = found.candidate();
-    if candidate.numbers().is_empty() {
-        return candidate.clone();
-    }
-    let own = with_own(judge, candidate, found.cost);
-    shortened(judge, &own)
+pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
+    let found = judge.judged(candidate, &judge.middle);
+    let own = found.map(|found| with_own(judge, candidate, found.cost));
+    shortened(judge, own.as_ref().unwrap_or(candidate))
 }
 
 /// The same with the scene's own numbers where it explains the picture as well with them.
@@ -50,6 +47,7 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
         // All of them but one or two; of an eye and what it looks at, one of the two points.
         let sets: Vec<Vec<usize>> = match own.len() {
             6 => vec![(3..6).collect(), (0..3).collect()],
+            // Those first that leave one free.
             count => (0..count)
                 .map(|i| (0..count).filter(|j| *j != i).collect())
                 .chain((0..count).map(|i| vec![i]))
@@ -78,6 +76,9 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
                 best = narrowed(other, at, scene);
                 if own.len() == 6 {
                     return with_own(judge, &best, most);
+                }
+                if fixed.len() + 1 == own.len() {
+                    break;
                 }
             }
         }
@@ -139,9 +140,12 @@ fn narrowed(candidate: Candidate, at: usize, scene: &Scene) -> Candidate {
 }
 
 /// A candidate whose numbers have as few digits as do.
-fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
+pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let middle = &judge.middle;
     let free = candidate.numbers().len();
+    if free == 0 {
+        return candidate.clone();
+    }
     let leveled = candidate.with_numbers(judge.scene, &candidate.leveled_numbers());
     let Some(leveled) = leveled else {
         return candidate.clone();
@@ -168,6 +172,7 @@ fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
         let judged = judge.judged(short, middle);
         judged.is_some_and(|judged| judged.cost <= most)
     };
-    let mut shorter = (0..QUARTERS).filter_map(|i| rounded_to(TENTH / 4f64.powi(i)));
+    let mut shorter =
+        (0..QUARTERS).filter_map(|i| rounded_to(TENTH / libm::pow(4.0, f64::from(i))));
     shorter.find(is_as_good).unwrap_or(leveled)
 }

@@ -9,7 +9,7 @@ use super::{
     light::{Curve, Look, STEP, is_near},
     moments::{Moments, range},
 };
-use crate::color::linear_to_srgb;
+use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
 pub const FLAT: f64 = 1e-9;
@@ -107,7 +107,6 @@ impl Prediction<'_> {
             return [0, 1, 2].map(|i| seen[i] - mean[i]);
         }
         let is_flat = self.is_flat(at);
-        let steps = self.steps(at);
         let encoded = |light| linear_to_srgb(self.curve.seen(light));
         [0, 1, 2].map(|i| {
             let by = (encoded(seen[i]) - encoded(mean[i])) / STEP;
@@ -116,14 +115,21 @@ impl Prediction<'_> {
                 true => by.clamp(2.0 * CUT_OFF, 0.0),
                 false => CUT_OFF,
             };
-            (by - expected) * steps[i]
+            let cut = encoded(mean[i]) + expected * STEP;
+            seen[i] - self.curve.light(srgb_to_linear(cut.max(0.0)))
         })
     }
 
-    /// The differences of all cells, channel by channel.
+    /// The differences of all cells, channel by channel, in the picture's own light.
     pub fn differences(&self) -> Vec<f64> {
-        let cells = 0..self.seen.len();
-        cells.flat_map(|at| self.difference(at)).collect()
+        let own = |at: usize| match self.curve {
+            Curve::Right => self.difference(at),
+            curve => {
+                let (difference, mean) = (self.difference(at), self.moments.mean[at]);
+                [0, 1, 2].map(|i| difference[i] * curve.stretch(mean[i]))
+            }
+        };
+        (0..self.seen.len()).flat_map(own).collect()
     }
 
     /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.

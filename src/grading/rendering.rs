@@ -64,7 +64,7 @@ impl Rendering {
 impl Candidate {
     /// The scene that a grid's cells are pixels of, without what it does not draw.
     pub fn drawn(&self, grid: &Grid) -> Scene {
-        let (camera, image) = grid.view(&self.scene, self.layout.is_shifted());
+        let (camera, image) = grid.view(&self.scene, self.layout.more());
         let mut scene = Scene {
             camera,
             image,
@@ -166,7 +166,7 @@ impl Candidate {
         if !is_in_place || !is_same_view || self.averaged != other.averaged {
             return part;
         }
-        let (camera, image) = grid.view(one, self.layout.is_shifted());
+        let (camera, image) = grid.view(one, self.layout.more());
         let projection = Projection::quick(&camera, &image);
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for object in 0..one.objects.len() {
