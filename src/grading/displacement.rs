@@ -59,21 +59,24 @@ impl Prediction<'_> {
     pub fn is_even(&self) -> bool {
         /// Share of a sample's variance that an error has in an exact picture, at most, and where
         /// something else is seen, at least; and the number of such pixels that is no chance.
-        const EXACT: f64 = 1e-5;
+        const EXACT: f64 = 1e-4;
         const OTHER: f64 = 0.5;
         const CHANCE: usize = 4;
+        /// The variance from which rounding is little beside it.
+        const LEAST: f64 = 1e-3;
         let share = |at: usize| {
+            let variance: f64 = self.moments.variance[at].iter().sum();
+            let is_told = variance > LEAST && !self.seen[at][0].is_nan();
             let (difference, rounding) = (self.difference(at), self.error(at, 0.0));
             let squares = (0..3).map(|i| difference[i] * difference[i] - rounding[i]);
-            let variance: f64 = self.moments.variance[at].iter().sum();
-            squares.sum::<f64>() / variance
+            is_told.then(|| squares.sum::<f64>() / variance)
         };
-        let mixed = (0..self.seen.len()).filter(|at| !self.is_flat(*at));
-        let mut shares: Vec<f64> = mixed.map(share).collect();
+        let mut shares: Vec<f64> = (0..self.seen.len()).filter_map(share).collect();
         shares.sort_by(f64::total_cmp);
+        // Of three quarters of them.
         let is_exact = shares
-            .get(shares.len() / 2)
-            .is_some_and(|median| *median < EXACT);
+            .get(shares.len() * 3 / 4)
+            .is_some_and(|most| *most < EXACT);
         let others = shares.iter().rev().take_while(|share| **share > OTHER);
         !is_exact || others.count() < CHANCE
     }

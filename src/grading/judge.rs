@@ -147,8 +147,10 @@ impl<'a> Judge<'a> {
 
     /// Whether what a candidate does not explain is noise wherever it is seen.
     pub fn is_even(&self, candidate: &Candidate) -> bool {
+        // What samples make, or a JPEG, is never exact.
+        let is_exact = candidate.behaviour.is_right() && self.fine.jpeg.is_none();
         let predicted = self.predicted(candidate, &self.fine);
-        predicted.is_some_and(|predicted| predicted.is_even())
+        !is_exact || predicted.is_some_and(|predicted| predicted.is_even())
     }
 
     /// Whether it is known that nothing shows something else than a candidate for certain.

@@ -156,8 +156,11 @@ fn no_known_mistake_explains_a_blot() {
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
 }
 
+/// Changes a pixel of a row.
+type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
+
 /// What is plain to see in a picture, and what is said of it.
-const PLAIN: [(&str, fn(Rgba<u8>, u32) -> Rgba<u8>); 7] = [
+const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
     ("transparent", |_, _| Rgba([0; 4])),
