@@ -98,7 +98,7 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<Token> {
                 _ => Role::Other,
             },
             TokenKind::Name | TokenKind::Quoted | TokenKind::Word => Role::Other,
-            TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace => continue,
+            TokenKind::Comment | TokenKind::OddSpace => continue,
             TokenKind::End => return tokens,
         };
         let span = file(token.start, token.end);

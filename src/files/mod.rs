@@ -3,7 +3,7 @@
 //! In: a path, and what somebody wants with it. Out: a file, or why there is none. `kind` looks at
 //! what a path leads to before it is opened, so that nothing waits for a pipe; `original` knows a
 //! file again that was read; `write` writes every file whole or not at all, by way of a `temporary`
-//! one; and `output_folder` replaces in a folder only what was made there; `kept` has the small
+//! one, and has the two `exchange` their names where somebody else may save the old one; and `output_folder` replaces in a folder only what was made there; `kept` has the small
 //! files that are kept of a user, in the folder that `state` knows. What the system says when that
 //! fails, `words` says to people. What is in the files is left to others.
 #![allow(
@@ -11,6 +11,7 @@
     reason = "everything else opens, makes and replaces files by this module"
 )]
 
+mod exchange;
 mod in_place;
 #[cfg(feature = "studio")]
 mod kept;

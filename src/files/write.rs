@@ -10,7 +10,7 @@ use std::{
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
-    in_place,
+    exchange, in_place,
     kind::{self, Kind, folder, without_waiting},
     original::{Original, changed},
     temporary::{self, locked},
@@ -243,26 +243,23 @@ fn replace(
     // Only now it is known that there was room for all of it.
     temporary.as_file().sync_all()?;
     check(cancel)?;
-    // While the content was written, others may have changed what was found before.
-    let must_be_new = match purpose.original() {
-        Some(original) => {
-            original.check(&place.path)?;
-            original.bytes().is_none()
-        }
-        None => matches!(purpose, Purpose::New),
-    };
     check_folder(place, purpose)?;
+    // While the content was written, others may have changed what was found before.
+    let (must_be_new, refused) = match purpose.original() {
+        Some(original) if original.bytes().is_some() => {
+            return exchange::replace(temporary, &place.path, original);
+        }
+        Some(_) => (true, changed()),
+        None => (matches!(purpose, Purpose::New), exists()),
+    };
     let persisted = match must_be_new {
         true => temporary.persist_noclobber(&place.path),
         false => temporary.persist(&place.path),
     };
     match persisted {
         Ok(_) => Ok(()),
-        Err(error) => Err(match (purpose, error.error.kind()) {
-            (Purpose::New, io::ErrorKind::AlreadyExists) => exists(),
-            (_, io::ErrorKind::AlreadyExists) => changed(),
-            _ => error.error,
-        }),
+        Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Err(refused),
+        Err(error) => Err(error.error),
     }
 }
 

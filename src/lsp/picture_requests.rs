@@ -10,9 +10,12 @@ use super::{
     params::{Answer, Refusal, at, optional},
     scene_version::SceneVersion,
 };
-use crate::editor::{
-    self, Analysis,
-    viewport::{self, Along, Drag, Shown, Vanishing},
+use crate::{
+    editor::{
+        self, Analysis,
+        viewport::{self, Along, Drag, Shown, Vanishing},
+    },
+    source::Span,
 };
 
 /// What the names of our own requests begin with.
@@ -27,8 +30,11 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     analysis: &LazyCell<Analysis<'s>, F>,
     version: &mut Option<SceneVersion>,
 ) -> Answer {
-    if about == "limits" {
-        return limits(params, converter, analysis);
+    match about {
+        "limits" => return limits(params, converter, analysis),
+        "sliders" => return sliders(converter, analysis),
+        "add" => return add(params, converter, analysis, version.as_ref()),
+        _ => {}
     }
     let Some(version) = version else {
         return Ok(Value::Null);
@@ -46,15 +52,47 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
 /// Between which numbers the one at a position may be; of texts with errors, too.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
-    let limits = editor::limits(analysis, offset);
-    Ok(limits.map_or(Value::Null, |limits| {
-        json!({
-            "least": limits.least,
-            "most": limits.most,
-            "open": limits.is_open,
-            "whole": limits.is_whole,
-        })
-    }))
+    Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
+}
+
+fn written_limits(limits: editor::Limits) -> Value {
+    json!({
+        "least": limits.least,
+        "most": limits.most,
+        "open": limits.is_open,
+        "whole": limits.is_whole,
+    })
+}
+
+/// The numbers and angles that definitions are; of texts with errors, too.
+fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
+    let sliders = editor::sliders(analysis).into_iter();
+    let written = |(name, span, limits): (&str, Span, editor::Limits)| {
+        let (range, step) = (converter.range(span), limits.step);
+        json!({ "name": name, "range": range, "limits": written_limits(limits), "step": step })
+    };
+    Ok(sliders.map(written).collect())
+}
+
+/// A block that is new, or that stands there another time. Without a scene, it is put where a
+/// camera would see it that is to come.
+fn add(
+    params: &Value,
+    converter: Converter<'_>,
+    analysis: &Analysis<'_>,
+    version: Option<&SceneVersion>,
+) -> Answer {
+    let kind: Option<String> = optional(params, "kind")?;
+    let copied: Option<usize> = optional(params, "object")?;
+    let scene = version.map(|version| &version.scene);
+    let added = match (kind, copied, scene) {
+        (Some(kind), ..) => viewport::add(analysis, scene, kind.as_str()),
+        (None, Some(index), Some(scene)) => viewport::duplicate(analysis, scene, index),
+        _ => None,
+    };
+    let added = added.ok_or_else(|| Refusal::invalid("nothing of that kind can be added"))?;
+    let edits = converter.text_edits([added.edit]);
+    Ok(json!({ "edits": edits, "name": added.name, "cursor": added.cursor }))
 }
 
 fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
@@ -144,6 +182,7 @@ fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
         from,
         to,
         along: along.transpose()?,
+        step: optional(params, "step")?,
     };
     let sources = &converter.document.sources;
     let (scene, alone) = version.alone(sources, object);

@@ -126,10 +126,9 @@ pub fn add<'s>(
             None => problems.push(no_such_let(&it, items, sources, budget)),
             Some(target) if setting(target.text).is_some() => {
                 let mut block = Block {
-                    kind: Some(target),
                     open: Some(target.span),
                     close: Some(target.span),
-                    ..Block::empty(target.span)
+                    ..Block::new(target.span, Some(target), None)
                 };
                 set_field(&mut block, it.name, it.value);
                 items.push(Item::Block(block));

@@ -51,6 +51,18 @@ impl Type {
         }
     }
 
+    /// What to write for a value of the type, for a help.
+    pub fn such_as(self) -> &'static str {
+        match self {
+            Self::Number => "write a number, such as `2`",
+            Self::Angle => "write an angle, such as `30deg`",
+            Self::Vector => "write three numbers, such as `(0, 1, 0)`",
+            Self::Color => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
+            Self::Colors => "write two colours, such as `(gray, white)`",
+            Self::Method => "write a method, such as `jittered`",
+        }
+    }
+
     /// What a value is a list of, and of how many: a vector of three numbers, a pair of two colours.
     pub fn parts(self) -> Option<(Self, usize)> {
         match self {

@@ -1,4 +1,5 @@
-//! The scene's own file, which is the only one that Studio reads or writes, except for its draft.
+//! The scene's own file. Studio reads and writes no others, except for its draft and new scenes
+//! beside it.
 
 use std::{
     io,
@@ -32,6 +33,8 @@ pub struct SceneFile {
     /// Tells when the file has changed. Without it, that is found when it is saved.
     watch: Option<Arc<Latest<Content>>>,
     draft: Draft,
+    /// The new scenes beside the file that pages have saved, which they may save again.
+    beside: Vec<PathBuf>,
 }
 
 /// The file that pages share. A page that broke while it had it has left no half of a change.
@@ -79,7 +82,8 @@ impl SceneFile {
         let text = text(read(path)).map_err(|error| error.to_string())?;
         Ok(Self {
             read,
-            folder: PathBuf::new(),
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            beside: Vec::new(),
             path: Some(path.to_owned()),
             held: Ok(Some(text)),
             version: 1,
@@ -94,6 +98,7 @@ impl SceneFile {
             read,
             draft: Draft::of(&folder),
             folder,
+            beside: Vec::new(),
             path: None,
             held: Ok(Some(SMALLEST.to_owned())),
             version: 1,
@@ -159,8 +164,8 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene under a
-    /// name that no file has. Returns the version that it is.
+    /// Saves a text, if the file still holds what it was made from, `base`; a new scene, also one
+    /// beside the file, under a name that no file has. Returns the version that it is.
     ///
     /// # Errors
     ///
@@ -172,12 +177,21 @@ impl SceneFile {
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
         let kept = self.draft.kept(self.read);
-        match &self.path {
-            Some(path) => {
-                let own = self.name();
-                if name.is_some_and(|name| name != own) {
-                    return Err(NotSaved::Refused(format!("this scene is in {own}")));
-                }
+        let own = self.name();
+        let other = name.filter(|name| *name != own && self.path.is_some());
+        let other = other.map(|name| (name, self.folder.join(name)));
+        let is_other = other.is_some();
+        let is_new = |path: &PathBuf| !self.beside.contains(path);
+        match (&self.path, other) {
+            (Some(_), Some((name, path))) if is_new(&path) => {
+                create(name, &path, new)?;
+                self.beside.push(path);
+            }
+            (Some(own_path), other) => {
+                let (own, path) = other.map_or((own, own_path.clone()), |(name, path)| {
+                    (name.to_owned(), path)
+                });
+                let path = path.as_path();
                 let unread = |why| NotSaved::Refused(format!("{own} cannot be read: {why}"));
                 let original = match Original::read(path, self.read) {
                     Ok(original) => original,
@@ -201,11 +215,10 @@ impl SceneFile {
                     }
                 }
             }
-            None => {
+            (None, _) => {
                 let name = name.unwrap_or_default();
-                check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
                 let path = self.folder.join(name);
-                write(&path, new, Purpose::New).map_err(|error| refused(name, &path, &error))?;
+                create(name, &path, new)?;
                 self.watch = preview::watch(&path, self.read).ok();
                 let _ = self.draft.keep(None);
                 self.draft = Draft::of(&path);
@@ -216,9 +229,17 @@ impl SceneFile {
         // What this page has written is saved; what earlier ones have is still to be offered.
         let earlier = kept.into_iter().flat_map(Kept::texts).skip(1);
         let _ = self.draft.keep(Kept::new(earlier).as_ref());
-        self.hold(Ok(Some(new.to_owned())));
+        if !is_other {
+            self.hold(Ok(Some(new.to_owned())));
+        }
         Ok(self.version)
     }
+}
+
+/// Makes a file for a new scene.
+fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
+    check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
+    write(path, text, Purpose::New).map_err(|error| refused(name, path, &error))
 }
 
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
@@ -292,6 +313,33 @@ mod tests {
         let saved = file.save("more", Some("mine"), None);
         assert_eq!(saved, Err(NotSaved::Changed(Some("theirs".to_owned()))));
         assert_eq!(fs::read(&path).unwrap(), b"theirs");
+    }
+
+    #[test]
+    fn a_scene_beside_the_file_is_new_and_saved_again_but_takes_the_place_of_none() {
+        let read: Read = |path| files::read(path, 99);
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("a.scn"), "own").unwrap();
+        fs::write(at("there.scn"), "theirs").unwrap();
+        let mut file = SceneFile::open(&at("a.scn"), read).unwrap();
+        let version = file.look();
+        for name in ["there.scn", "../b.scn", "b", "c/b.scn"] {
+            for base in [None, Some("theirs")] {
+                let saved = file.save("new", base, Some(name));
+                assert!(matches!(saved, Err(NotSaved::Refused(_))), "{name}");
+            }
+        }
+        let mut save = |text, base| file.save(text, base, Some("new.scn"));
+        assert_eq!(save("one", None), Ok(version));
+        let found = || Err(NotSaved::Changed(Some("one".to_owned())));
+        assert_eq!(save("two", None), found());
+        assert_eq!(save("two", Some("own")), found());
+        assert_eq!(save("two", Some("one")), Ok(version));
+        let texts = ["a.scn", "there.scn", "new.scn"].map(|name| fs::read(at(name)).unwrap());
+        assert_eq!(texts, [&b"own"[..], b"theirs", b"two"]);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+        assert_eq!(file.held(), &Ok(Some("own".to_owned())));
     }
 
     #[test]

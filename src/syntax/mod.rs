@@ -27,10 +27,10 @@ pub mod tokens;
 pub mod tree;
 mod vocabulary;
 
-pub use messages::{invalid_utf8, utf16};
+pub use messages::{INVALID_UTF8, UTF16};
 pub use parser::{parse, parse_unless, parse_value};
 pub use parts::parse_in_parts;
-pub use problem::shorten;
+pub use problem::{shorten, times};
 pub use tree::Tree;
 
 use crate::{diagnostic::Diagnostic, source::Span};
@@ -47,8 +47,8 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// What is wrong with the text.
     pub problems: Vec<Diagnostic>,
-    /// Where a mistake took the rest of the text, so that nothing is reported to be missing.
-    pub cut: Option<usize>,
+    /// Whether a mistake took the rest of the text, so that nothing is reported to be missing.
+    pub is_cut: bool,
     /// Whether something follows the grammar and was hardly meant so, such as fields that their
     /// block does not know: with other line ends it may be a mistake of syntax.
     pub is_doubtful: bool,

@@ -71,26 +71,22 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
 pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
     with_stack(|| {
         let text = source.text();
-        let scan = Scan::of(text, source.bom_len(), cancel);
+        let scan = Scan::of(text, id, source.bom_len(), cancel);
         let words = Vocabulary::new(text);
         let mut recovery = Recovery::new(source, id, &words);
         let mut right = TreeBuilder::new(text, id, &words);
         let mut at = source.bom_len();
-        let mut ends = scan.ends.as_slice();
-        let mut deep = scan.deep.as_slice();
         while at < text.len() && !cancel::is_set(cancel) {
-            ends = after(ends, at + 1);
-            deep = after(deep, at);
-            let far = ends.partition_point(|&end| end < at + CHUNK);
-            let end = ends.get(far).copied().unwrap_or(text.len());
-            let end = deep.first().map_or(end, |&place| place.min(end));
+            let end = first_from(&scan.ends, at + CHUNK).unwrap_or(text.len());
+            let deep = first_from(&scan.deep, at).filter(|&place| place <= end);
+            let end = deep.unwrap_or(end);
             let (next, is_right) = right.items(at..end, &mut recovery);
             if !is_right {
                 at = next;
                 continue;
             }
-            let next_token = Lexer::past_comments(text, next);
-            if next_token.start >= end && deep.first() != Some(&end) {
+            let next_token = Lexer::new(text, next).seen_token();
+            if next_token.start >= end && deep.is_none() {
                 at = next_token.start;
                 continue;
             }
@@ -112,10 +108,10 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     })
 }
 
-/// The places from an offset on.
-pub fn after(places: &[usize], from: usize) -> &[usize] {
-    let first = places.partition_point(|&place| place < from);
-    places.get(first..).unwrap_or_default()
+/// The first of these places, which are in order, that is no earlier than an offset.
+pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
+    let first = places.partition_point(|&place| place < offset);
+    places.get(first).copied()
 }
 
 /// Whether what stands at an offset may belong to a definition that ends before it.
@@ -129,7 +125,7 @@ fn goes_on(text: &str, end: usize, at: usize) -> bool {
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
     let text = source.text();
     let read = || {
-        let scan = Scan::of(text, start, &cancel::NEVER);
+        let scan = Scan::of(text, id, start, &cancel::NEVER);
         let words = Vocabulary::new("");
         let mut recovery = Recovery::new(source, id, &words);
         let value = recovery.whole_value(start);
@@ -194,13 +190,20 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            if let (Item::Block(block), Some(Item::Definition(_))) = (&item, recovery.items.last())
-                && self.is_rest_of_value(block, end)
+            // `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of something
+            // else, and the name the kind.
+            if let Item::Block(block) = &item
+                && let (Some(kind), Some(name)) = (block.kind, block.name)
+                && self.words.is_kind(name.text)
+                && !self.words.is_kind(kind.text)
+                && self.written(kind.span.to(name.span)).contains('\n')
             {
                 return (end, true);
             }
             end = item.span().end;
-            if self.doubtful || self.has_dashes(item.span()) {
+            // Two minuses may be a comment of another language.
+            let written = self.written(item.span());
+            if self.doubtful || (written.len() < CHUNK && written.contains("--")) {
                 match recovery.item_as_meant(start) {
                     Some(read_to) if read_to == end => continue,
                     Some(read_to) => return (read_to, false),
@@ -210,25 +213,6 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             recovery.items.push(item);
         }
         (end, true)
-    }
-
-    /// `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of the value, and the
-    /// name the kind.
-    fn is_rest_of_value(&self, block: &Block<'_>, end: usize) -> bool {
-        let (Some(kind), Some(name)) = (block.kind, block.name) else {
-            return false;
-        };
-        let breaks = |from, to| self.text.get(from..to).unwrap_or_default().contains('\n');
-        !self.words.is_kind(kind.text)
-            && self.words.is_kind(name.text)
-            && !breaks(end, kind.span.start)
-            && breaks(kind.span.end, name.span.start)
-    }
-
-    /// Two minuses may be a comment of another language.
-    fn has_dashes(&self, span: Span) -> bool {
-        let text = self.text.get(span.range()).unwrap_or_default();
-        text.len() < CHUNK && text.contains("--")
     }
 
     fn definition(&mut self, pair: Pair<'_, Rule>) -> Definition<'s> {
@@ -248,7 +232,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
-        let mut block = Block::empty(self.span(&pair));
+        let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
         // All parts but the kind and the two braces, as a rule.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
@@ -299,12 +283,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             .map_prefix(|sign, operand| negation(this.borrow().span(&sign), operand))
             .map_infix(|left, sign, right| {
                 let span = this.borrow().span(&sign);
-                let operator = match sign.as_str() {
-                    "+" => Operator::Add,
-                    "-" => Operator::Subtract,
-                    "*" => Operator::Multiply,
-                    _ => Operator::Divide,
-                };
+                let operator = Operator::of(sign.as_str()).unwrap_or(Operator::Divide);
                 chain(left, operator, span, right)
             })
             .parse(parts)

@@ -9,7 +9,7 @@ use std::{
 };
 
 use super::{
-    parser::{CHUNK, STACK, TreeBuilder, after},
+    parser::{CHUNK, STACK, TreeBuilder, first_from},
     recovery::Recovery,
     scan::Scan,
     tokens::Lexer,
@@ -41,22 +41,39 @@ pub fn parse_in_parts<'s>(
     if text.len() / 2 < bytes {
         return false;
     }
-    let scan = Scan::of(text, source.bom_len(), cancel);
-    if !scan.is_plain() {
+    let scan = Scan::of(text, id, source.bom_len(), cancel);
+    if !scan.is_plain(text) {
         return false;
     }
     let parts = ranges(source, bytes, &scan);
     let words = Vocabulary::new(text);
+    // The items of a part, if all of it is right and no item goes on behind it.
+    let read = |part: &Range<usize>| {
+        let mut recovery = Recovery::new(source, id, &words);
+        let mut right = TreeBuilder::new(text, id, &words);
+        let mut from = part.start;
+        while from < part.end {
+            let to = first_from(&scan.ends, from + CHUNK).unwrap_or(part.end);
+            let to = to.min(part.end);
+            let (next, is_right) = right.items(from..to, &mut recovery);
+            let is_read = is_right && Lexer::new(text, next).seen_token().start >= to;
+            if cancel::is_set(cancel) || !is_read || !recovery.problems.is_empty() {
+                return None;
+            }
+            from = to;
+        }
+        Some(recovery.items)
+    };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
         // Thread i parses the parts i, i + count, …, each a few parts ahead of what is asked of it.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
-                let (parts, scan, words) = (&parts, &scan, &words);
+                let (parts, read) = (&parts, &read);
                 let work = move || {
                     for part in parts.iter().skip(first).step_by(count) {
-                        let items = part_items(part.clone(), source, id, scan, words, cancel);
+                        let items = read(part);
                         let is_right = items.is_some();
                         if found.send(items).is_err() || !is_right {
                             break;
@@ -81,45 +98,12 @@ pub fn parse_in_parts<'s>(
 /// The parts of a text, each of which ends behind a block.
 fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
-    for &to in &scan.ends {
-        if to > from && to - from >= bytes {
-            parts.push(from..to);
-            from = to;
-        }
+    while let Some(to) = first_from(&scan.ends, from + bytes.max(1)) {
+        parts.push(from..to);
+        from = to;
     }
     if from < source.text().len() {
         parts.push(from..source.text().len());
     }
     parts
-}
-
-/// The items of a part, if all of it is right and no item goes on behind it.
-fn part_items<'s>(
-    part: Range<usize>,
-    source: &'s Source,
-    id: SourceId,
-    scan: &Scan,
-    words: &Vocabulary<'s>,
-    cancel: &AtomicBool,
-) -> Option<Vec<Item<'s>>> {
-    let text = source.text();
-    let mut recovery = Recovery::new(source, id, words);
-    let mut right = TreeBuilder::new(text, id, words);
-    let mut from = part.start;
-    for &to in after(&scan.ends, part.start + 1).iter().chain([&part.end]) {
-        let is_end = to >= part.end;
-        if !is_end && to - from < CHUNK {
-            continue;
-        }
-        let (next, is_right) = right.items(from..to, &mut recovery);
-        let is_read = is_right && Lexer::past_comments(text, next).start >= to;
-        if cancel::is_set(cancel) || !is_read || !recovery.problems.is_empty() {
-            return None;
-        }
-        from = to;
-        if is_end {
-            break;
-        }
-    }
-    Some(recovery.items)
 }

@@ -8,27 +8,17 @@ use crate::{
 /// What is said of a slip.
 #[derive(Clone, Copy)]
 pub struct Message {
-    code: &'static str,
-    message: &'static str,
-    label: &'static str,
-    help: &'static str,
+    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where
+    /// there is no fix.
+    texts: [&'static str; 4],
     applicability: Applicability,
 }
 
 impl Message {
-    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where
-    /// there is no fix.
-    pub const fn new(
-        code: &'static str,
-        message: &'static str,
-        label: &'static str,
-        help: &'static str,
-    ) -> Self {
+    /// What has an unsafe fix, if any: its code, what is wrong, what is said at the place, and help.
+    pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
-            code,
-            message,
-            label,
-            help,
+            texts,
             applicability: Applicability::Unsafe,
         }
     }
@@ -46,7 +36,7 @@ impl Message {
 
     /// Whether it is about something that is only too much.
     pub fn is_needless(&self) -> bool {
-        self.code.starts_with("needless") || self.code == "plus_sign"
+        self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }
 
     /// The problem at a place; the words go where the message names something. A fix says what to
@@ -64,19 +54,19 @@ impl Message {
             }
             filled
         };
+        let [code, message, label, help] = self.texts;
         let fix = fix.into().map(|fix| fix.being(self.applicability));
-        let fixes: Vec<Fix> = fix.into_iter().collect();
-        let title = fixes.first().map(|fix| fix.title.clone());
+        let title = fix.as_ref().map(|fix| fix.title.clone());
         Diagnostic {
             severity: Severity::Error,
-            code: format!("pinhole::{}", self.code),
-            message: filled(self.message),
-            help: title.or_else(|| Some(filled(self.help))),
+            code: format!("pinhole::{}", code),
+            message: filled(message),
+            help: title.or_else(|| Some(filled(help))),
             labels: vec![Label {
                 span,
-                message: filled(self.label),
+                message: filled(label),
             }],
-            fixes,
+            fixes: fix.into_iter().collect(),
             is_needless: self.is_needless(),
             is_of_syntax: true,
         }

@@ -3,7 +3,7 @@
 //! In: a text. Out: its comments, where it can be taken apart, the characters that cannot be seen,
 //! and where it may nest too deep for pest. One walk of the lexer, without recursion.
 
-use std::{collections::BTreeMap, ops::Range, sync::atomic::AtomicBool};
+use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 use super::{
     NESTING_LIMIT, Parsed, messages as say,
@@ -13,7 +13,7 @@ use super::{
 use crate::{
     cancel,
     diagnostic::{Applicability, Diagnostic, Edit, Fix, MOST_PROBLEMS},
-    source::{Source, SourceId, Span},
+    source::{SourceId, Span},
 };
 
 /// Of the places where a text can be taken apart, those are kept that are so many bytes apart: a
@@ -24,9 +24,7 @@ const SPACING: usize = 256;
 #[derive(Debug, Default)]
 pub struct Scan {
     /// Every comment.
-    comments: Vec<Range<usize>>,
-    /// Where the comment starts that has no `*/`.
-    open_comment: Option<usize>,
+    comments: Vec<Span>,
     /// Where more parentheses and minuses are open than a value may have. A minus between two
     /// values counts, too: recovery, which reads these items, counts exactly.
     pub deep: Vec<usize>,
@@ -35,12 +33,12 @@ pub struct Scan {
     pub ends: Vec<usize>,
     /// Characters that cannot be seen and are no white space of the language, and carriage returns
     /// that end no line.
-    odd_spaces: Vec<Range<usize>>,
+    odd_spaces: Vec<Span>,
 }
 
 impl Scan {
     /// Walks a text from an offset on. Cancelled, it stops on the way.
-    pub fn of(text: &str, start: usize, cancel: &AtomicBool) -> Self {
+    pub fn of(text: &str, id: SourceId, start: usize, cancel: &AtomicBool) -> Self {
         let mut scan = Self::default();
         let mut lexer = Lexer::new(text, start);
         // The minuses since the last operand, and those before every open parenthesis.
@@ -53,14 +51,11 @@ impl Scan {
             if token.kind == TokenKind::End || (count % STRIDE == 0 && cancel::is_set(cancel)) {
                 break;
             }
+            let span = Span::new(id, token.start, token.end);
             match token.kind {
-                TokenKind::Comment => scan.comments.push(token.start..token.end),
-                TokenKind::OpenComment => {
-                    scan.comments.push(token.start..token.end);
-                    scan.open_comment = Some(token.start);
-                }
+                TokenKind::Comment => scan.comments.push(span),
                 TokenKind::OddSpace if scan.odd_spaces.len() < MOST_PROBLEMS => {
-                    scan.odd_spaces.push(token.start..token.end);
+                    scan.odd_spaces.push(span);
                 }
                 TokenKind::Sign => match text.as_bytes().get(token.start) {
                     Some(b'-') => minuses += 1,
@@ -96,17 +91,18 @@ impl Scan {
             }
             is_told = is_deep;
         }
-        scan.find_carriage_returns(text, start);
+        scan.find_carriage_returns(text, id, start);
         scan
     }
 
     /// Notes carriage returns that end no line, also those in comments: there they would take the
     /// lines along that other programs show below them.
-    fn find_carriage_returns(&mut self, text: &str, start: usize) {
+    fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
             let at = start + at;
-            (text.as_bytes().get(at + 1) != Some(&b'\n')).then_some(at..at + 1)
+            let is_alone = text.as_bytes().get(at + 1) != Some(&b'\n');
+            is_alone.then(|| Span::new(id, at, at + 1))
         });
         let room = MOST_PROBLEMS - self.odd_spaces.len();
         self.odd_spaces.extend(alone.take(room));
@@ -121,47 +117,45 @@ impl Scan {
 
     /// Whether the text has no comment that is never closed, no value that nests too deep and no
     /// odd white space.
-    pub fn is_plain(&self) -> bool {
-        self.open_comment.is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
+    pub fn is_plain(&self, text: &str) -> bool {
+        self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
+    }
+
+    /// The `/*` of the comment that has no `*/`: it takes all of the text, and so it is the last.
+    fn open_comment(&self, text: &str) -> Option<Span> {
+        let last = self.comments.last()?;
+        let inner = text.get(last.range())?.strip_prefix("/*")?;
+        (!inner.ends_with("*/")).then(|| Span::new(last.source, last.start, last.start + 2))
     }
 
     /// Adds comments and problems to what was parsed.
-    pub fn report(self, source: &Source, id: SourceId, parsed: &mut Parsed<'_>) {
-        let text = source.text();
-        self.report_odd_spaces(text, id, &mut parsed.problems);
+    pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
+        self.report_odd_spaces(text, &mut parsed.problems);
         // What a comment took is missing only because of that.
-        let mut places = self.odd_spaces.iter().map(|place| place.start);
-        let hides = |at: &usize| text[*at..].starts_with('\r');
-        parsed.cut = parsed.cut.or_else(|| places.find(hides));
-        if let Some(start) = self.open_comment {
+        let hides = |place: &Span| text[place.start..].starts_with('\r');
+        parsed.is_cut |= self.odd_spaces.iter().any(hides);
+        if let Some(open) = self.open_comment(text) {
             // What the comment took is no second mistake.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
-                problem.code != "pinhole::unclosed_block" && first < start
+                problem.code != "pinhole::unclosed_block" && first < open.start
             });
-            parsed.cut = Some(start);
-            let span = Span::new(id, start, start + 2);
-            parsed
-                .problems
-                .push(say::UNCLOSED_COMMENT.at(span, &[], None));
+            parsed.is_cut = true;
+            let found = say::UNCLOSED_COMMENT.at(open, &[], None);
+            parsed.problems.push(found);
         }
-        let comments = self.comments.into_iter();
-        let comments = comments.map(|comment| Span::new(id, comment.start, comment.end));
-        parsed.comments = comments.collect();
+        parsed.comments = self.comments;
     }
 
     /// One report for each sort of character, at the first one.
-    fn report_odd_spaces(&self, text: &str, id: SourceId, problems: &mut Vec<Diagnostic>) {
+    fn report_odd_spaces(&self, text: &str, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
-            let sort = text.get(place.clone()).unwrap_or_default();
-            let span = Span::new(id, place.start, place.end);
-            sorts.entry(sort).or_default().push(span);
+            let sort = text.get(place.range()).unwrap_or_default();
+            sorts.entry(sort).or_default().push(*place);
         }
         for (sort, places) in sorts {
-            let Some(&span) = places.first() else {
-                continue;
-            };
+            let Some(&at) = places.first() else { continue };
             let all = |title, text| {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
@@ -172,11 +166,11 @@ impl Scan {
             let is_safe = has_width || !places.iter().any(joins);
             let times = times(places.len() - 1);
             let mut found = if sort == "\r" {
-                say::CARRIAGE_RETURN.at(span, &[&times], all("write line feeds", "\n"))
+                say::CARRIAGE_RETURN.at(at, &[&times], all("write line feeds", "\n"))
             } else {
                 let words = [&name_of_space(sort), times.as_str()];
                 let said = say::ODD_SPACE.safe_if(is_safe);
-                said.at(span, &words, all("write plain spaces", " "))
+                said.at(at, &words, all("write plain spaces", " "))
             };
             // What has no width, as a rule, is not meant to keep words apart.
             if !has_width {

@@ -19,12 +19,10 @@ pub enum TokenKind {
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
-    /// One character of any other sort, or `**`.
+    /// One character of any other sort, `**` or `:=`.
     Sign,
-    /// `// …` without its line end, or `/* … */`.
+    /// `// …` without its line end, or `/* … */`; without its `*/` it goes on to the end of the text.
     Comment,
-    /// A `/*` without its `*/`, up to the end of the text.
-    OpenComment,
     /// A character that cannot be seen and is no white space of the language.
     OddSpace,
     /// The end of the text.
@@ -68,19 +66,11 @@ impl<'s> Lexer<'s> {
         Token { kind, start, end }
     }
 
-    /// The first token at an offset or behind it that is no comment and can be seen.
-    pub fn past_comments(text: &'s str, at: usize) -> Token {
-        Self::new(text, at).seen_token()
-    }
-
     /// The next token that is no comment and can be seen.
     pub fn seen_token(&mut self) -> Token {
         loop {
             let token = self.token();
-            if !matches!(
-                token.kind,
-                TokenKind::Comment | TokenKind::OpenComment | TokenKind::OddSpace
-            ) {
+            if !matches!(token.kind, TokenKind::Comment | TokenKind::OddSpace) {
                 return token;
             }
         }
@@ -96,12 +86,13 @@ impl<'s> Lexer<'s> {
             (b'a'..=b'z' | b'A'..=b'Z' | b'_', _) => self.word(start),
             (b'0'..=b'9', _) | (b'.', b'0'..=b'9') => (TokenKind::Number, self.number_end(start)),
             (b'/', b'/') => (TokenKind::Comment, line_end(self.text, start)),
-            (b'/', b'*') => match self.rest(start + 2).find("*/") {
-                Some(length) => (TokenKind::Comment, start + length + 4),
-                None => (TokenKind::OpenComment, bytes.len()),
-            },
+            (b'/', b'*') => {
+                let length = self.rest(start + 2).find("*/");
+                let end = length.map_or(bytes.len(), |length| start + length + 4);
+                (TokenKind::Comment, end)
+            }
             (b'#', second) if is_name_char(second) => (TokenKind::Color, self.name_end(start + 1)),
-            (b'*', b'*') => (TokenKind::Sign, start + 2),
+            (b'*', b'*') | (b':', b'=') => (TokenKind::Sign, start + 2),
             (b'"' | b'\'', _) => self.quoted(start),
             (b'!'..=b'~', _) => (TokenKind::Sign, start + 1),
             _ => self.other(start),
@@ -188,12 +179,8 @@ impl<'s> Lexer<'s> {
 
 /// Where the line ends; the carriage return of a CRLF belongs to its end.
 pub fn line_end(text: &str, at: usize) -> usize {
-    let rest = text.get(at..).unwrap_or_default();
-    match rest.find('\n') {
-        Some(length) if rest.get(..length).is_some_and(|l| l.ends_with('\r')) => at + length - 1,
-        Some(length) => at + length,
-        None => text.len(),
-    }
+    let mut lines = text.get(at..).unwrap_or_default().lines();
+    at + lines.next().map_or(0, str::len)
 }
 
 /// Whether a byte may stand in a name.

@@ -91,12 +91,12 @@ pub struct Block<'s> {
     pub span: Span,
 }
 
-impl Block<'_> {
-    /// A block of which nothing is known yet but its place.
-    pub fn empty(span: Span) -> Self {
+impl<'s> Block<'s> {
+    /// A block of which no more is known yet than its place, its kind and its name.
+    pub fn new(span: Span, kind: Option<Name<'s>>, name: Option<Name<'s>>) -> Self {
         Self {
-            kind: None,
-            name: None,
+            kind,
+            name,
             open: None,
             fields: Vec::new(),
             bad: Vec::new(),
@@ -151,12 +151,7 @@ impl<'s> Value<'s> {
                 let operands = rest.iter().map(|step| &step.operand);
                 std::iter::once(&**first).chain(operands).collect()
             }
-            ValueKind::Number(_)
-            | ValueKind::Angle { .. }
-            | ValueKind::ColorCode(_)
-            | ValueKind::Name(_)
-            | ValueKind::Missing
-            | ValueKind::Bad => Vec::new(),
+            _ => Vec::new(),
         }
     }
 }
@@ -277,6 +272,12 @@ pub enum Operator {
 }
 
 impl Operator {
+    /// The one that is written so.
+    pub fn of(sign: &str) -> Option<Self> {
+        let mut all = [Self::Add, Self::Subtract, Self::Multiply, Self::Divide].into_iter();
+        all.find(|operator| sign.chars().eq([operator.sign()]))
+    }
+
     /// Whether it is `*` or `/`, which come before `+` and `-`.
     pub fn is_of_product(self) -> bool {
         matches!(self, Self::Multiply | Self::Divide)

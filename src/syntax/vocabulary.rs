@@ -110,10 +110,9 @@ impl<'s> Vocabulary<'s> {
     /// Whether a field that follows the grammar may have been meant otherwise: its block does not
     /// know it, its value is the name of a field, or it takes a word and has something else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
-        let Some(row) = schema::block(kind) else {
-            return self.takes(kind, field.name.text).is_none();
-        };
-        let Some(takes) = row.field(field.name.text).map(|field| field.takes) else {
+        let row = schema::block_or_nearest(kind);
+        let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));
+        let (Some(row), Some(takes)) = (row, takes) else {
             return true;
         };
         match &field.value.kind {

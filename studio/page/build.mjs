@@ -4,10 +4,21 @@
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { build } from "esbuild";
+import { marked, Renderer } from "marked";
 
 const [host = "served", folder = "dist"] = process.argv.slice(2);
 if (host !== "served" && host !== "static") throw new Error(`there is no host ${host}: it is served or static`);
 mkdirSync(folder, { recursive: true });
+
+/** What the menu has beside the host's file: the gallery's scenes, in its order, and one to build from. */
+const gallery = readFileSync("../../examples/README.md", "utf8");
+const examples = [...gallery.matchAll(/^\|.*\]\((\w+)\.scn\)/gm)].map(([, name]) => [name, readFileSync(`../../examples/${name}.scn`, "utf8")]);
+const EMPTY = `image { width 1280  height 720  background black }
+
+camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  d 2.75 }
+
+sampler { method multi_jittered  per_pixel 16  seed 1 }
+`;
 
 const { metafile } = await build({
   // The served host runs the engine itself; a site has it in a worker.
@@ -19,7 +30,7 @@ const { metafile } = await build({
   target: ["chrome111", "firefox113", "safari16.4"],
   minify: true,
   legalComments: "none",
-  loader: { ".scn": "text" },
+  define: { EXAMPLES: JSON.stringify(examples), EMPTY: JSON.stringify(EMPTY) },
   metafile: true,
   logLevel: "warning",
   outdir: folder,
@@ -37,7 +48,12 @@ const policy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-let page = readFileSync("src/index.html", "utf8");
+// The reference of the language, without links, which would lead out of the page.
+const renderer = new Renderer();
+renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
+renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
+const reference = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "");
+let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));
 if (host === "static") {
   page = page
     .replace('<meta name="pinhole-host" content="served">', `<meta http-equiv="Content-Security-Policy" content="${policy}">\n    <meta name="pinhole-host" content="static">`)

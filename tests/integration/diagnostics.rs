@@ -147,7 +147,7 @@ pub fn all_codes() -> BTreeSet<String> {
             continue;
         }
         let text = fs::read_to_string(path).expect("the source can be read");
-        for start in ["error(", "warning(", "twice(", "Message::new("] {
+        for start in ["error(", "warning(", "twice(", "Message::new(["] {
             let calls = text.split(start).skip(1);
             let quoted = calls.filter_map(|call| call.trim_start().strip_prefix('"'));
             let quoted = quoted.filter_map(|text| text.split_once('"'));

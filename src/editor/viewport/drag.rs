@@ -17,6 +17,8 @@ use super::{
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
     editor::Analysis,
+    inspect,
+    numbers::short,
     projection::Projection,
     scene::{self, Image, Part, Scene, Shape},
     schema,
@@ -40,6 +42,9 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// What a point moves along.
     pub along: Option<Along>,
+    /// So many pixels a handle may go at once: its numbers are multiples of the greatest power of
+    /// ten that moves it no farther.
+    pub step: Option<f64>,
 }
 
 /// What has to change in the text, and what becomes of the fields that do; nothing at all where
@@ -121,10 +126,10 @@ pub fn drag(
         drag,
         points: points.ok_or(not_seen)?,
     };
-    if !view.agree(ideal, ideal) {
+    if !view.agree(ideal, ideal, TOLERANCE) {
         return Err(not_seen.to_owned());
     }
-    if view.agree(ideal, current) {
+    if view.agree(ideal, current, TOLERANCE) {
         return Ok(Dragged::default());
     }
     let objects = scene.objects.iter().enumerate();
@@ -134,14 +139,24 @@ pub fn drag(
     let mut refusal = tied();
     let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
+    let snapped = drag
+        .step
+        .and_then(|step| view.snapped(current, &changes, step));
+    let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
+    let first = snapped.map_or(first, |(decimals, _)| decimals);
     for decimals in first..=first + DIGITS {
         let edits = edits(analysis, block, &changes, decimals);
+        // The place of the press is one of those that it snaps to.
+        let is_back = snapped.is_some() && rounded(current, &changes, decimals) == Some(current);
+        if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
+            return Ok(Dragged::default());
+        }
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else {
             continue;
         };
         let read_alone = read(analysis.source(), [&edits, &without_others]);
         match read_alone.map(|scene| part(&scene, drag.object.map(|_| 0))) {
-            Ok(Some(found)) if view.agree(ideal, found) => {
+            Ok(Some(found)) if view.agree(ideal, found, tolerance) => {
                 // What stands in the block itself concerns no other one, which saves reading a long
                 // text.
                 let is_own = |edit: &Edit| {
@@ -159,7 +174,8 @@ pub fn drag(
                     let is_new = after != change.from;
                     is_new.then(|| format!("{name}.{} = {after}", change.name))
                 };
-                let values = changes.iter().filter_map(value).collect();
+                let values = changes.iter().filter_map(value);
+                let values = values.chain(lens(image, &changes, found)).collect();
                 return Ok(Dragged {
                     edits,
                     values,
@@ -170,12 +186,23 @@ pub fn drag(
             // More digits might slip by what the language forbids, and nobody would see the
             // difference.
             Err(why) => match rounded(current, &changes, decimals) {
-                Some(rounded) if view.agree(ideal, rounded) => return Err(why),
+                Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
             },
         }
     }
     Err(refusal)
+}
+
+/// How much a camera sees, in all of the ways that the language has, where one of them has changed.
+fn lens(image: &Image, changes: &[Change], found: Part) -> Option<String> {
+    let is_lens = |change: &Change| matches!(change.name, "d" | "fov" | "hfov" | "view_height");
+    let (Part::Camera(camera), true) = (found, changes.iter().any(is_lens)) else {
+        return None;
+    };
+    let (seen, _) = inspect::inspect_camera(&camera, image);
+    let (d, fov, high) = (short(seen.d), seen.fov_deg, short(camera.view_height));
+    Some(format!("d {d} = fov {fov:.1}° of a window {high} high"))
 }
 
 /// Why fields cannot take the values that they should have, where the text could be changed so that
@@ -290,9 +317,30 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Whether everything in the picture or near to it, and what is held, is seen within half a
-    /// pixel of where it should be.
-    fn agree(&self, ideal: Part, found: Part) -> bool {
+    /// The number of decimals of the greatest power of ten that moves what is held by no more than
+    /// `step` pixels, and that `step`; none of what is not a handle's. Beyond the digits that
+    /// numbers have, nothing snaps.
+    fn snapped(&self, part: Part, changes: &[Change], step: f64) -> Option<(i32, f64)> {
+        let held = |part: Part| {
+            let mut marks = self.marks(part).into_iter();
+            marks.find_map(|(is_held, at)| at.filter(|_| is_held))
+        };
+        let here = held(part).filter(|_| self.drag.object.is_some())?;
+        let is_small = |decimals: &i32| {
+            let parts = changes
+                .iter()
+                .flat_map(|change| change.with_unit(part, *decimals));
+            let ways: Vec<f64> = parts
+                .filter_map(|it| Some(held(it)?.distance(here)))
+                .collect();
+            !ways.is_empty() && ways.iter().all(|way| *way <= step)
+        };
+        Some(((-9..=12).find(is_small)?, step))
+    }
+
+    /// Whether everything in the picture or near to it, and what is held, is seen no farther than
+    /// this from where it should be.
+    fn agree(&self, ideal: Part, found: Part, tolerance: f64) -> bool {
         let size = self.projection.size;
         let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
         marks.all(|((is_held, ideal), (_, found))| {
@@ -300,7 +348,7 @@ impl View<'_> {
                 return !is_held;
             };
             let is_near = (ideal.cmpge(-size) & ideal.cmple(2.0 * size)).all();
-            let agrees = found.is_some_and(|found| found.distance(ideal) <= TOLERANCE);
+            let agrees = found.is_some_and(|found| found.distance(ideal) <= tolerance);
             agrees || !(is_held || is_near)
         })
     }

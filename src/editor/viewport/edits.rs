@@ -3,6 +3,8 @@
 //! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
 //! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
 
+use glam::DVec3;
+
 use crate::{
     diagnostic::Edit,
     editor::Analysis,
@@ -31,6 +33,22 @@ impl Change {
             Value::Vector(vector) => vector.abs().max_element(),
             by => amount(by, None).abs(),
         }
+    }
+
+    /// A part after each of the numbers that change alone has been changed by a power of ten.
+    pub fn with_unit(&self, part: Part, decimals: i32) -> Vec<Part> {
+        let unit = libm::pow(10.0, f64::from(-decimals));
+        let units = match self.by {
+            Value::Vector(by) => {
+                let axes = [0, 1, 2].into_iter().filter(|axis| by[*axis] != 0.0);
+                axes.map(|axis| Value::Vector(DVec3::AXES[axis] * unit))
+                    .collect()
+            }
+            Value::Angle(_) => vec![Value::Angle(Angle::from_degrees(unit))],
+            _ => vec![Value::Number(unit)],
+        };
+        let changed = |by| part.with(self.name, operate(Operator::Add, self.from, by)?);
+        units.into_iter().filter_map(changed).collect()
     }
 }
 

@@ -7,8 +7,10 @@
 //!
 //! `lines` says where lines of the world are seen. `handles` knows where an object's handles are
 //! and how one moves the object, `camera` how the pointer moves the camera; `edits` writes the
-//! fields that change into the text. `drag` is all of that together.
+//! fields that change into the text. `drag` is all of that together. `add` writes blocks that
+//! are new.
 
+mod add;
 mod camera;
 mod drag;
 mod edits;
@@ -23,6 +25,7 @@ use crate::{
     source::Span,
 };
 
+pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
 pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};

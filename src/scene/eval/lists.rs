@@ -78,7 +78,7 @@ impl<'s> Evaluator<'_, 's> {
                 .at(part.span, self.described(part, found))
                 .help(match (list, found) {
                     (Type::Vector, Type::Angle) => "an angle divided by `1deg` is a number",
-                    _ => such_as(list),
+                    _ => list.such_as(),
                 }),
         );
     }
@@ -115,17 +115,10 @@ impl<'s> Evaluator<'_, 's> {
                         format!("write `{}`: a decimal point is a point", shorten(meant))
                     }
                     Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
-                    None => such_as(list).to_owned(),
+                    None => list.such_as().to_owned(),
                 })
                 .writing(span, applicability, meant),
         );
-    }
-}
-
-fn such_as(list: Type) -> &'static str {
-    match list {
-        Type::Colors => "write two colours, such as `(gray, white)`",
-        _ => "write three numbers, such as `(0, 1, 0)`",
     }
 }
 

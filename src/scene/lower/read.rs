@@ -98,7 +98,7 @@ fn whole<'s>(
     let mut lowering = Lowering::new(sources, Names::of(&parsed.tree), cancel);
     let wanted = parsed.problems.iter().take_while(|_| lowering.is_wanted());
     lowering.found = wanted.cloned().collect();
-    lowering.cut = parsed.cut.is_some();
+    lowering.cut = parsed.is_cut;
     if sources.sets.is_empty() {
         lowering.items(&parsed.tree.items);
         return lowering;
@@ -172,7 +172,8 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
     if sources.file.is_utf16() {
         diagnostics.clear();
-        diagnostics.push(syntax::utf16(Span::new(SourceId::File, 0, 2)));
+        let first = Span::new(SourceId::File, 0, 2);
+        diagnostics.push(syntax::UTF16.at(first, &[], None));
         return;
     }
     let Some(&first) = invalid.first() else {
@@ -184,5 +185,6 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     };
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let span = Span::new(SourceId::File, first, first + 1);
-    diagnostics.push(syntax::invalid_utf8(span, invalid.len() - 1));
+    let times = syntax::times(invalid.len() - 1);
+    diagnostics.push(syntax::INVALID_UTF8.at(span, &[&times], None));
 }

@@ -81,7 +81,7 @@ impl<'s> Recovery<'_, 's> {
     /// Whether a sign stands where the block should be closed: at the end of a line, and the next
     /// one begins an item.
     pub(super) fn is_end_of_block(&mut self) -> bool {
-        let is_item = self.is(1, "let") || self.is_head(1) && self.words.is_kind(self.word(1));
+        let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
     }
 
@@ -148,7 +148,7 @@ impl<'s> Recovery<'_, 's> {
             return;
         }
         let name = self.field_name();
-        let equals = matches!(self.word(0), "=" | ":").then(|| self.bump());
+        let equals = matches!(self.word(0), "=" | ":" | ":=").then(|| self.bump());
         let told = self.problems.len();
         self.within.takes = self.words.takes(self.within.kind, name.text);
         self.within.field = name.text;
@@ -159,10 +159,9 @@ impl<'s> Recovery<'_, 's> {
         }
         let is_again = || block.fields.iter().any(|f| f.name.text == name.text);
         if value.kind == ValueKind::Missing && is_known && is_again() {
-            let words = ["a field or `}`", name.text];
-            let mut found = say::UNEXPECTED.at(name.span, &words, None);
-            found.help = Some("take it away: the block has this field already".to_owned());
-            self.problems.push(found);
+            let help = "take it away: the block has this field already";
+            let words = ["a field or `}`", name.text, help];
+            self.report(&say::UNEXPECTED, name.span, &words, None);
             block.bad.push(name.span);
             return;
         }
@@ -234,21 +233,18 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(Place::Value);
         let word = self.word(0);
-        let is_field = match self.is_name(0) && self.is_field_name(word) {
+        // The next line has another name and a value.
+        let is_next = self.is_on_new_line(0)
+            && self.starts_value(1)
+            && !self.words.is_value(word)
+            && !self.is_foreign_call();
+        let is_field = match self.is_field_name(word) {
             true => !self.words.is_let(word),
-            // The next line has another name and a value.
-            false => {
-                self.is_name(0)
-                    && (self.starts_block()
-                        || (self.is_on_new_line(0)
-                            && !self.words.is_value(word)
-                            && !self.is_foreign_call()
-                            && self.starts_value(1)))
-            }
+            false => is_next || self.starts_block(),
         };
         let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
         let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();
-        if is_field || is_comma || is_end {
+        if (is_field && self.is_name(0)) || is_comma || is_end {
             return Value::new(ValueKind::Missing, after);
         }
         self.value()
@@ -264,10 +260,9 @@ impl<'s> Recovery<'_, 's> {
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
             // Behind a comma a name is a value, unless a value of its own follows.
-            let word = self.word(0);
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
-                || matches!(self.word(1), "(" | "[" | "<" | "=" | ":");
-            if self.is_name(0) && (!is_listed || has_value || self.is_field_name(word)) {
+                || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
+            if self.is_name(0) && (!is_listed || has_value) {
                 break;
             }
             let value = self.expression();
@@ -296,8 +291,7 @@ impl<'s> Recovery<'_, 's> {
         let shape: Vec<bool> = values.iter().map(is_vector).collect();
         let names: &[&'static str] = match (self.within.kind, shape.as_slice()) {
             _ if !block.fields.is_empty() => &[],
-            ("sphere", [true, false]) => &["center", "radius"],
-            ("sphere", [true]) => &["center"],
+            ("sphere", [true] | [true, false]) => &["center", "radius"],
             ("box", [true, true]) => &["min", "max"],
             _ => &[],
         };
@@ -309,8 +303,7 @@ impl<'s> Recovery<'_, 's> {
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
         // The corners of a box may be its centre and its size.
-        let is_sure = names.len() == values.len() && self.within.kind == "sphere";
-        let said = say::MISSING_FIELD_NAME.safe_if(is_sure);
+        let said = say::MISSING_FIELD_NAME.safe_if(self.within.kind == "sphere");
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
         block.fields.extend(fields.map(|(text, value)| {

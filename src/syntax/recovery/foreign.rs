@@ -126,26 +126,24 @@ impl Recovery<'_, '_> {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');
-        let first = Lexer::past_comments(self.text, 0);
+        let first = Lexer::new(self.text, 0).seen_token();
         let ink = self.text.get(first.start..).unwrap_or_default();
         let ink = ink.chars().filter(|c| !c.is_whitespace());
         let ink: String = ink.take(5).collect();
         let times = |mark: &str| memmem::find_iter(text.as_bytes(), mark).count();
         let count = |marks: &str| marks.split('|').map(times).sum::<usize>();
-        let is_it = |row: &&(&str, &str, &str, usize, &str)| {
+        let is_it = |row: &&(&str, &str, &str, usize, &str, &str)| {
             row.1.split(' ').any(|start| ink.starts_with(start))
                 && !row.4.chars().any(|other| text.contains(other))
                 && count(row.2) >= row.3
         };
-        let Some((what, ..)) = FOREIGN_FILES.iter().find(is_it) else {
+        let Some((what, .., more)) = FOREIGN_FILES.iter().find(is_it) else {
             return false;
         };
         let place = Span::new(self.id, first.start, first.end);
         self.items.clear();
-        let is_left_handed = matches!(*what, "a scene of POV-Ray" | "a scene of pbrt");
-        let z = if is_left_handed { say::LEFT_HANDED } else { "" };
-        self.report(&say::FOREIGN_FILE, place, &[what, z], None);
-        self.cut = Some(0);
+        self.report(&say::FOREIGN_FILE, place, &[what, more], None);
+        self.is_cut = true;
         true
     }
 }

@@ -10,7 +10,7 @@ use crate::{
         messages::{self as say, statement},
         problem::shorten,
         tokens::TokenKind,
-        tree::{Block, Definition, Item, Name, Value, bad},
+        tree::{Block, Definition, Item, Name, Value, ValueKind, bad},
     },
 };
 
@@ -62,23 +62,15 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
             return self.named_block(keyword, name);
         }
-        definition.equals = matches!(self.word(0), "=" | ":").then(|| self.bump());
-        // `:=`
-        if self.written(definition.equals.unwrap_or(keyword)) == ":"
-            && self.is(0, "=")
-            && self.is_adjacent(0)
-        {
-            definition.equals = definition.equals.map(|colon| colon.to(self.bump()));
-        }
+        definition.equals = matches!(self.word(0), "=" | ":" | ":=").then(|| self.bump());
         definition.value = self.value_of_definition(definition.name, definition.equals);
         self.settle(told);
         definition.span = keyword.to(definition.value.span);
-        while self.problems.len() == told && matches!(self.word(0), ";" | ",") {
-            self.separator();
-        }
+        let is_right = self.problems.len() == told;
         // A word is for the next item to tell.
-        if !self.is_boundary() && !self.is_name(0) && !self.word(0).starts_with('#') {
-            if self.problems.len() == told {
+        let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
+        if !is_next && !self.is_boundary() {
+            if is_right {
                 let help = "write one value behind the `=`";
                 self.unexpected("the end of the definition", help);
                 definition.value = bad(definition.value.span);
@@ -90,7 +82,7 @@ impl<'s> Recovery<'_, 's> {
 
     fn value_of_definition(&mut self, name: Option<Name<'s>>, sign: Option<Span>) -> Value<'s> {
         let (start, told) = (self.here(), self.problems.len());
-        let value = self.value_if_any();
+        let value = (!self.is_end_of_definition()).then(|| self.value());
         let Some(name) = name else {
             self.problems.truncate(told);
             return bad(value.map_or(self.behind(), |value| value.span));
@@ -112,21 +104,18 @@ impl<'s> Recovery<'_, 's> {
         value
     }
 
-    /// The value of a definition, unless it ends without one.
-    fn value_if_any(&mut self) -> Option<Value<'s>> {
-        (!self.is_end_of_definition()).then(|| self.value())
-    }
-
     /// Reads the name behind `let`: up to the `=`, and what is no name in it is the mistake.
     fn name_of_definition(&mut self, keyword: Span) -> Option<Name<'s>> {
-        let is_sign = matches!(self.word(0), "=" | ":");
+        let is_sign = matches!(self.word(0), "=" | ":" | ":=");
         if is_sign || self.is_end_of_definition() || self.is_head(0) {
             let span = if is_sign { self.here() } else { keyword };
             self.report(&say::MISSING_NAME, span, &[], None);
             return None;
         }
-        let count = self.find_in_line(|word| matches!(word, "=" | ":" | "{" | "}" | "let"));
-        let has_equals = matches!(self.word(count), "=" | ":") && !self.is_on_new_line(count);
+        let is_end = |word: &str| matches!(word, "=" | ":" | ":=" | "{" | "}" | "let");
+        let count = self.find_in_line(is_end);
+        let has_equals =
+            matches!(self.word(count), "=" | ":" | ":=") && !self.is_on_new_line(count);
         if self.is_name(0) && (count == 1 || !has_equals) {
             return Some(self.name());
         }
@@ -167,12 +156,10 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block whose head is right, or missing.
     pub(super) fn block(&mut self) {
-        let mut block = Block::empty(self.here());
-        if self.is_name(0) {
-            block.kind = Some(self.name());
-            block.name = self.is_name(0).then(|| self.name());
-        }
-        self.open_block(block);
+        let span = self.here();
+        let kind = self.is_name(0).then(|| self.name());
+        let name = self.is_name(0).then(|| self.name());
+        self.open_block(Block::new(span, kind, name));
     }
 
     /// Reads a block from its `{` on.
@@ -203,11 +190,7 @@ impl<'s> Recovery<'_, 's> {
         let what = format!("blocks stand by themselves, not within `{name}`");
         self.report(&say::NESTED_BRACES, kind.span, &[&what], None);
         while !matches!(self.word(0), "}" | "") {
-            let at = self.last_end;
             self.any_item();
-            if self.last_end == at {
-                self.bump();
-            }
         }
         self.bump();
     }
@@ -229,7 +212,6 @@ impl<'s> Recovery<'_, 's> {
 
     /// A `{` with more than a kind and a name before it.
     fn odd_head(&mut self, count: usize) {
-        let mut block = Block::empty(self.here());
         let first = self.name();
         if self.is(0, "=") && self.is_name(1) && count == 3 {
             self.bump();
@@ -241,10 +223,8 @@ impl<'s> Recovery<'_, 's> {
             let title = format!("take `{}` away", shorten(first.text));
             let fix = Fix::new(title, [Edit::new(before, "")]);
             self.report(&say::BAD_HEAD.safe_if(false), first.span, &[kind.text], fix);
-            block = Block::empty(kind.span);
-            block.kind = Some(kind);
-            block.name = (!self.is(0, "{")).then(|| self.name());
-            return self.open_block(block);
+            let name = (!self.is(0, "{")).then(|| self.name());
+            return self.open_block(Block::new(kind.span, Some(kind), name));
         }
         let mut rest = self.here();
         while !self.is(0, "{") {
@@ -256,19 +236,15 @@ impl<'s> Recovery<'_, 's> {
         let name = words.join("_");
         let fix = if is_name(&name) {
             let title = format!("write `{kind} {} {{`", shorten(&name));
-            let apart = if rest.start == first.span.end {
-                " "
-            } else {
-                ""
-            };
-            Some(Fix::new(title, [Edit::new(rest, apart.to_owned() + &name)]))
+            let is_apart = rest.start > first.span.end;
+            is_apart.then(|| Fix::new(title, [Edit::new(rest, name)]))
         } else {
             let title = format!("write `{kind} {{`");
             matches!(written, "=" | ":").then(|| self.remove(title, rest))
         };
         let said = say::BAD_HEAD.safe_if(words.len() == 1);
         self.report(&said, rest, &[&kind], fix);
-        block.kind = Some(first);
+        let mut block = Block::new(first.span, Some(first), None);
         block.bad = vec![first.span.to(rest)];
         self.open_block(block);
     }
@@ -281,9 +257,7 @@ impl<'s> Recovery<'_, 's> {
         let title = format!("write `{} {{`", shorten(&right));
         let fix = Fix::new(title, [Edit::new(whole, right)]);
         self.report(&say::BAD_HEAD, whole, &[kind.text], fix);
-        let mut block = Block::empty(kind.span);
-        (block.kind, block.name) = (Some(kind), Some(name));
-        self.open_block(block);
+        self.open_block(Block::new(kind.span, Some(kind), Some(name)));
     }
 
     /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere
@@ -294,24 +268,18 @@ impl<'s> Recovery<'_, 's> {
         };
         let kind = self.name();
         let is_field = |this: &mut Self| {
-            let word = this.word(0);
-            this.is_name(0) && this.words.takes(kind.text, word).is_some()
+            this.is_name(0) && this.words.takes(kind.text, this.word(0)).is_some()
         };
         let has_name =
             row.is_object && self.is_name(0) && !self.is_on_new_line(0) && !is_field(self);
         let name = has_name.then(|| self.name());
         let head = kind.span.to(self.behind());
-        let mut block = Block::empty(head);
-        (block.kind, block.name) = (Some(kind), name);
-        let has_sign = matches!(self.word(0), "(" | ":" | "=");
-        // What is written in place of the ` {`.
-        let open = match has_sign {
-            true => Span::new(self.id, head.end, self.here().end),
-            false => self.behind(),
-        };
+        let mut block = Block::new(head, Some(kind), name);
         let close = if self.is(0, "(") { ")" } else { "}" };
-        if has_sign {
-            self.bump();
+        // What is written in place of the ` {`.
+        let mut open = self.behind();
+        if matches!(self.word(0), "(" | ":" | "=") {
+            open = open.to(self.bump());
         }
         let mut fix = None;
         block.bad.push(open);
@@ -325,9 +293,7 @@ impl<'s> Recovery<'_, 's> {
             });
         } else {
             let from = self.here();
-            while !self.is_on_new_line(0) && !matches!(self.word(0), "{" | "}" | "let") {
-                self.bump();
-            }
+            self.resync();
             if self.is(0, "}") && !self.is_on_new_line(0) {
                 self.bump();
             }
@@ -357,9 +323,10 @@ impl<'s> Recovery<'_, 's> {
         definition.name = Some(name);
         definition.equals = Some(self.bump());
         let told = self.problems.len();
-        let value = self.value_if_any();
-        let is_end = value.is_none();
-        let value = value.unwrap_or_else(|| bad(self.behind()));
+        let value = match self.is_end_of_definition() {
+            true => bad(self.behind()),
+            false => self.value(),
+        };
         let text = shorten(name.text);
         let written = self.written(value.span);
         let mut used = written.split(|c: char| !c.is_alphanumeric());
@@ -378,10 +345,11 @@ impl<'s> Recovery<'_, 's> {
                 edits.push(Edit::remove_in(sign, self.text));
             }
             let is_next = self.is_on_new_line(0) || (self.is_name(0) && self.is(1, "="));
-            let is_sure = self.problems.len() == told && !is_end && is_next;
+            let is_right = self.problems.len() == told && value.kind != ValueKind::Bad;
             self.problems.truncate(told);
             let right = shorten(written);
-            let fix = is_sure.then(|| Fix::new(format!("write `let {text} = {right}`"), edits));
+            let title = format!("write `let {text} = {right}`");
+            let fix = (is_right && is_next).then(|| Fix::new(title, edits));
             // The word of another language may say more than `let`.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);

@@ -72,20 +72,17 @@ impl<'s> Recovery<'_, 's> {
 
     /// Two values with nothing between: an operator is missing, or the name of a field.
     pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
-        let is_whole = match left.kind {
-            ValueKind::Tuple(_) | ValueKind::ColorCode(_) => true,
+        let is_color = |value: &Value<'s>| match &value.kind {
+            ValueKind::Call(call) => call.function.text == "rgb",
             ValueKind::Name(name) => self.words.is_color(name),
-            _ => false,
+            kind => matches!(kind, ValueKind::ColorCode(_)),
         };
+        let is_whole = is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
         let (l, r) = (self.short(left.span), self.short(right.span));
         let is_method = self.within.takes == Some(Type::Method);
         if self.within.is_block && self.lists == 0 && (is_whole || is_method) {
-            let is_color = match &right.kind {
-                ValueKind::Call(call) => call.function.text == "rgb",
-                ValueKind::Name(name) => self.words.is_color(name),
-                kind => matches!(kind, ValueKind::ColorCode(_)),
-            };
-            let said = match is_color && self.words.takes(self.within.kind, "color").is_some() {
+            let takes_color = self.words.takes(self.within.kind, "color").is_some();
+            let said = match takes_color && is_color(right) {
                 true => &say::COLOR_WITHOUT_NAME,
                 false => &say::MISSING_FIELD_NAME,
             };

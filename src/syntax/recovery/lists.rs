@@ -152,6 +152,8 @@ impl<'s> Recovery<'_, 's> {
                 return None;
             }
             let word = self.word(0);
+            // A definition's line ended before this name.
+            let is_next_item = !self.within.is_block && self.is_name(0) && self.is_on_new_line(0);
             if word == close || (matches!(word, ")" | "]") && close != "}") {
                 list.span = open.to(self.bump());
                 list.is_round &= word == ")";
@@ -171,7 +173,7 @@ impl<'s> Recovery<'_, 's> {
                     Some(last) if last.comma.is_none() => last.comma = Some(comma),
                     _ => list.needless = list.needless.or(Some(comma)),
                 }
-            } else if self.ends_value() || self.is_next_item() {
+            } else if self.ends_value() || is_next_item {
                 let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
                 let last = list.elements.last().map(|element| &element.value);
                 let last = last.filter(|value| value.kind != ValueKind::Bad);
@@ -204,7 +206,12 @@ impl<'s> Recovery<'_, 's> {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
             let fix = is_plain.then(|| Fix::new("write commas", commas));
-            self.report(&say::UNEXPECTED.safe(), first, &["`,`", ";"], fix);
+            self.report(
+                &say::UNEXPECTED.safe(),
+                first,
+                &["`,`", ";", "write commas"],
+                fix,
+            );
         }
     }
 
@@ -224,11 +231,6 @@ impl<'s> Recovery<'_, 's> {
         });
         let help = "write the values alone, in the order x, y, z";
         self.report(&say::NOT_IN_LANGUAGE, first, &["names of parts", help], fix);
-    }
-
-    /// Whether a definition's line ended before this name.
-    fn is_next_item(&mut self) -> bool {
-        !self.within.is_block && self.is_name(0) && self.is_on_new_line(0)
     }
 
     /// A list without its end, and where that is missing if it is known.
@@ -293,10 +295,9 @@ impl<'s> Recovery<'_, 's> {
         };
         let fits = list.elements.len() == count && list.needless.is_none();
         let parts = list.elements.iter().map(|e| self.written(e.value.span));
-        let parts: Vec<&str> = parts.collect();
-        let right = format!("{function}({})", parts.join(", "));
-        let fix = fits.then(|| replace(span, right));
-        let said = say::BRACKETS.safe_if(function.is_empty() || !are_shares(&parts));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        let fix = fits.then(|| replace(span, format!("{function}({parts})")));
+        let said = say::BRACKETS.safe_if(function.is_empty() || !are_shares(&[&parts]));
         self.report(&said, span, &[what, example(takes)], fix);
         let kind = match fits && function.is_empty() {
             true => ValueKind::Tuple(list.elements),

@@ -19,7 +19,7 @@ mod lists;
 mod numbers;
 mod values;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use numbers::unit_of;
 
@@ -44,18 +44,16 @@ pub struct Recovery<'w, 's> {
     id: SourceId,
     words: &'w Vocabulary<'s>,
     lexer: Lexer<'s>,
-    /// Tokens that were looked at, without comments and what cannot be seen.
-    tokens: Vec<Token>,
-    /// The next of them.
-    next: usize,
+    /// The next tokens, as far as they were looked at, without comments and what cannot be seen.
+    tokens: VecDeque<Token>,
     /// Where the token ends that was taken last.
     last_end: usize,
     /// The items so far, those that pest read among them.
     pub(super) items: Vec<Item<'s>>,
     /// What was wrong so far.
     pub(super) problems: Problems,
-    /// Where a mistake took the rest of the text.
-    cut: Option<usize>,
+    /// Whether a mistake took the rest of the text.
+    is_cut: bool,
     /// Whether an item was left as it was read for want of a better explanation.
     is_doubtful: bool,
     /// Where the item ended that was read here last.
@@ -101,12 +99,11 @@ impl<'w, 's> Recovery<'w, 's> {
             id,
             words,
             lexer: Lexer::new(text, 0),
-            tokens: Vec::new(),
-            next: 0,
+            tokens: VecDeque::new(),
             last_end: 0,
             items: Vec::new(),
             problems: Problems::default(),
-            cut: None,
+            is_cut: false,
             is_doubtful: false,
             read_to: 0,
             is_ours: false,
@@ -127,9 +124,6 @@ impl<'w, 's> Recovery<'w, 's> {
         self.is_ours = true;
         self.seek(start);
         self.any_item();
-        if self.last_end == start {
-            self.bump();
-        }
         self.read_to = match self.problems.is_full() {
             true => self.text.len(),
             false => self.last_end,
@@ -175,9 +169,6 @@ impl<'w, 's> Recovery<'w, 's> {
     /// Reads the text from an offset on as one value.
     pub fn whole_value(&mut self, start: usize) -> Value<'s> {
         self.seek(start);
-        if self.kind(0) == TokenKind::End {
-            return bad(Span::new(self.id, start, start));
-        }
         let told = self.problems.len();
         let value = self.value();
         if self.kind(0) != TokenKind::End && self.problems.len() == told {
@@ -191,15 +182,14 @@ impl<'w, 's> Recovery<'w, 's> {
     /// All that was read, with what the scan found.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_slips(self.problems.len());
-        let cut = self.problems.is_full().then_some(self.read_to);
         let mut parsed = Parsed {
             tree: Tree { items: self.items },
-            cut: self.cut.or(cut),
+            is_cut: self.is_cut || self.problems.is_full(),
             is_doubtful: self.is_doubtful,
             problems: self.problems.into(),
             ..Parsed::default()
         };
-        scan.report(self.source, self.id, &mut parsed);
+        scan.report(self.text, &mut parsed);
         parsed
     }
 
@@ -207,17 +197,13 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// The token that is so many behind the next one.
     fn peek(&mut self, ahead: usize) -> Token {
-        while self.tokens.len() <= self.next + ahead {
-            self.tokens.push(self.lexer.seen_token());
+        while self.tokens.len() <= ahead {
+            self.tokens.push_back(self.lexer.seen_token());
         }
-        let end = self.text.len();
-        let token = self.tokens.get(self.next + ahead).copied();
         // With more mistakes than are kept, the text ends.
-        token.filter(|_| !self.problems.is_full()).unwrap_or(Token {
-            kind: TokenKind::End,
-            start: end,
-            end,
-        })
+        let token = self.tokens.get(ahead).filter(|_| !self.problems.is_full());
+        let end = || Lexer::new(self.text, self.text.len()).token();
+        token.copied().unwrap_or_else(end)
     }
 
     fn kind(&mut self, ahead: usize) -> TokenKind {
@@ -244,40 +230,39 @@ impl<'w, 's> Recovery<'w, 's> {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Where what stands before a token ahead ends.
-    fn end_before(&mut self, ahead: usize) -> usize {
-        match ahead {
+    /// What lies between a token ahead and the one before it.
+    fn space_before(&mut self, ahead: usize) -> &'s str {
+        let end = match ahead {
             0 => self.last_end,
             _ => self.peek(ahead - 1).end,
-        }
+        };
+        let start = self.peek(ahead).start;
+        self.text.get(end..start).unwrap_or_default()
     }
 
     /// Whether a line ends before a token ahead.
     fn is_on_new_line(&mut self, ahead: usize) -> bool {
-        let (before, token) = (self.end_before(ahead), self.peek(ahead));
-        let between = self.text.get(before..token.start).unwrap_or_default();
-        token.kind == TokenKind::End || between.contains('\n')
+        self.kind(ahead) == TokenKind::End || self.space_before(ahead).contains('\n')
     }
 
     /// Whether a token ahead stands right behind the one before it.
     fn is_adjacent(&mut self, ahead: usize) -> bool {
-        self.end_before(ahead) == self.peek(ahead).start
+        self.space_before(ahead).is_empty()
     }
 
     /// Takes the next token.
     fn bump(&mut self) -> Span {
-        let token = self.peek(0);
-        if token.kind != TokenKind::End {
-            self.next += 1;
-            self.last_end = token.end;
+        let span = self.here();
+        if self.kind(0) != TokenKind::End {
+            self.tokens.pop_front();
+            self.last_end = span.end;
         }
-        self.span_of(token)
+        span
     }
 
     /// Goes on reading at an offset.
     fn seek(&mut self, at: usize) {
         self.tokens.clear();
-        self.next = 0;
         self.last_end = at;
         self.lexer = Lexer::new(self.text, at);
     }
@@ -288,13 +273,9 @@ impl<'w, 's> Recovery<'w, 's> {
         Name { text, span }
     }
 
-    fn span_of(&self, token: Token) -> Span {
-        Span::new(self.id, token.start, token.end)
-    }
-
     fn here(&mut self) -> Span {
         let token = self.peek(0);
-        self.span_of(token)
+        Span::new(self.id, token.start, token.end)
     }
 
     /// The place behind the token that was taken last.
@@ -310,10 +291,15 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Whether a block starts at a token ahead: `sphere {` or `sphere Ball {`.
+    /// Whether a block starts at a token ahead: `sphere {` or `sphere Ball {`. Behind any other word
+    /// than a kind, a kind on a new line starts a block of its own.
     fn is_head(&mut self, ahead: usize) -> bool {
-        self.is_name(ahead)
-            && (self.is(ahead + 1, "{") || (self.is_name(ahead + 1) && self.is(ahead + 2, "{")))
+        let name = ahead + 1;
+        if !self.is_name(ahead) || !self.is_name(name) {
+            return self.is_name(ahead) && self.is(name, "{");
+        }
+        let is_kind = self.words.is_kind(self.word(name)) && !self.words.is_kind(self.word(ahead));
+        self.is(name + 1, "{") && !(is_kind && self.is_on_new_line(name))
     }
 
     /// Whether a block of a known kind starts here.
@@ -370,9 +356,7 @@ impl<'w, 's> Recovery<'w, 's> {
             "" => "the end of the file".to_owned(),
             written => shorten(written),
         };
-        let mut found = say::UNEXPECTED.at(span, &[expected, &written], None);
-        found.help = Some(help.to_owned());
-        self.problems.push(found);
+        self.report(&say::UNEXPECTED, span, &[expected, &written, help], None);
     }
 
     fn remove(&self, title: impl Into<String>, span: Span) -> Fix {
@@ -396,10 +380,8 @@ impl<'w, 's> Recovery<'w, 's> {
         let sign = self.bump();
         self.slip(sign);
         let word = self.word(0);
-        let is_value = match self.is_name(0) {
-            true => self.words.is_value(word) || unit_of(word).is_some(),
-            false => self.starts_value(0),
-        };
+        let is_value = self.starts_value(0)
+            && (!self.is_name(0) || self.words.is_value(word) || unit_of(word).is_some());
         self.within.is_doubtful |= is_value && !self.is_boundary();
     }
 
@@ -422,12 +404,10 @@ impl<'w, 's> Recovery<'w, 's> {
             false => "items",
         };
         for (sign, places) in std::mem::take(&mut self.within.slips) {
-            let Some(&first) = places.first() else {
-                continue;
-            };
+            let Some(&at) = places.first() else { continue };
             let it = if places.len() > 1 { "them" } else { "it" };
             let (message, title) = match sign {
-                "=" | ":" => (&say::NEEDLESS_EQUALS, format!("take {it} away")),
+                "=" | ":" | ":=" => (&say::NEEDLESS_EQUALS, format!("take {it} away")),
                 "," | ";" => {
                     let title = format!("take {it} away; white space separates {between}");
                     (&say::NEEDLESS_SEPARATOR, title)
@@ -443,7 +423,7 @@ impl<'w, 's> Recovery<'w, 's> {
                 Edit::new(Span::new(self.id, place.start, place.start + signs), "//")
             });
             let words = [sign, &times(places.len() - 1), between];
-            let mut found = message.at(first, &words, Fix::new(title, edits));
+            let mut found = message.at(at, &words, Fix::new(title, edits));
             if is_doubtful && found.is_needless {
                 found.fixes.clear();
             }
@@ -467,15 +447,8 @@ fn unquoted(written: &str) -> &str {
 
 /// A value of some type, for a help.
 fn example(takes: Option<Type>) -> &'static str {
-    match takes {
-        Some(Type::Number) => "write a number, such as `2`",
-        Some(Type::Angle) => "write an angle, such as `30deg`",
-        Some(Type::Vector) => "write three numbers, such as `(0, 1, 0)`",
-        Some(Type::Color) => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
-        Some(Type::Colors) => "write two colours, such as `(gray, white)`",
-        Some(Type::Method) => "write a method, such as `jittered`",
-        None => "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`",
-    }
+    let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
+    takes.map_or(any, Type::such_as)
 }
 
 /// Whether a value is a plain number, perhaps with a sign.

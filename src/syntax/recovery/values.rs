@@ -91,8 +91,7 @@ impl<'s> Recovery<'_, 's> {
                     && !self.starts_block()
                     && (is_words || self.words.is_value(word))
             }
-            TokenKind::Number | TokenKind::Quoted => true,
-            TokenKind::Color => !is_new,
+            TokenKind::Number | TokenKind::Quoted | TokenKind::Color => true,
             TokenKind::Sign => matches!(word, "(" | "[" | "<"),
             _ => false,
         }
@@ -100,13 +99,10 @@ impl<'s> Recovery<'_, 's> {
 
     /// Whether a comma stands between values, rather than between two fields.
     fn goes_on_behind_comma(&mut self) -> bool {
-        let (word, is_new) = (self.word(1), self.is_on_new_line(1));
-        match self.kind(1) {
-            TokenKind::Number | TokenKind::Color => self.within.is_block || !is_new,
-            TokenKind::Name => !is_new && self.words.is_value(word) && !self.is_field_name(word),
-            TokenKind::Sign => !is_new && matches!(word, "-" | "("),
-            _ => false,
-        }
+        let word = self.word(1);
+        matches!(self.kind(1), TokenKind::Number | TokenKind::Color)
+            || matches!(word, "-" | "(")
+            || (self.is_name(1) && self.words.is_value(word))
     }
 
     /// `multi-jittered`. A comment or the end of a line does not belong into a name.
@@ -146,10 +142,7 @@ impl<'s> Recovery<'_, 's> {
         loop {
             self.comments(Place::Operator);
             let written = self.word(0);
-            // An operator without a value before it may have been passed over: then its product
-            // goes on.
-            let is_rest = left.kind == ValueKind::Bad && PRODUCT.contains(&written);
-            if self.too_deep || !(is_rest || signs.contains(&written)) {
+            if self.too_deep || !signs.contains(&written) {
                 return left;
             }
             let sign = self.bump();
@@ -173,19 +166,13 @@ impl<'s> Recovery<'_, 's> {
         sign: Span,
         right: Value<'s>,
     ) -> Value<'s> {
-        let operator = match written {
-            "+" => Operator::Add,
-            "-" => Operator::Subtract,
-            "*" => Operator::Multiply,
-            "/" => Operator::Divide,
-            _ => {
-                let meant = ["−-", "×*", "·*", "÷/"].into_iter();
-                let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
-                let fix = meant.map(|meant| replace(sign, meant));
-                let fix = fix.or_else(|| self.power(written, &left, &right));
-                self.unknown_operator(written, sign, fix);
-                return bad(left.span.to(right.span));
-            }
+        let Some(operator) = Operator::of(written) else {
+            let meant = ["−-", "×*", "·*", "÷/"].into_iter();
+            let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
+            let fix = meant.map(|meant| replace(sign, meant));
+            let fix = fix.or_else(|| self.power(written, &left, &right));
+            self.unknown_operator(written, sign, fix);
+            return bad(left.span.to(right.span));
         };
         chain(left, operator, sign, right)
     }
@@ -212,14 +199,13 @@ impl<'s> Recovery<'_, 's> {
     fn without_operand(&mut self, left: Value<'s>, written: &str, sign: Span) -> Value<'s> {
         if written == "%" {
             self.unknown_operator(written, sign, None);
-        } else if SUM.contains(&written) {
-            // Before another sign a value may be missing.
-            let is_sure = !matches!(self.word(0), "," | ";" | "=" | "{");
+        } else {
+            // Without a factor the value would be of another type, and before another sign a value
+            // may be missing.
+            let is_sum = SUM.contains(&written);
+            let is_sure = is_sum && !matches!(self.word(0), "," | ";" | "=" | "{");
             let fix = is_sure.then(|| self.remove(format!("remove this `{written}`"), sign));
             self.report(&say::MISSING_OPERAND, sign, &["after", written], fix);
-        } else {
-            // Without a factor the value would be of another type.
-            self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
         }
         bad(left.span.to(sign))
     }
@@ -406,13 +392,8 @@ impl<'s> Recovery<'_, 's> {
 
     /// Passes over the rest of a value that nests too deep.
     pub(super) fn pass_over(&mut self) -> Value<'s> {
-        let span = self.here();
-        let rest = self.text.get(span.start..).unwrap_or_default();
-        let length = rest.chars().next().map_or(0, char::len_utf8);
-        let first = Span::new(self.id, span.start, span.start + length);
-        if !self.too_deep {
-            self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);
-        }
+        let first = self.here();
+        self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);
         self.too_deep = true;
         let mut open = self.lists;
         while !matches!(self.word(0), "" | "{" | "}" | "let") && (open > 0 || !self.is_boundary()) {

@@ -1,21 +1,15 @@
 // The part of the page's address behind #: `key=value`, joined by `&`. Browsers send it to nobody.
 // This module comes before all others, so that nothing else ever sees the token there.
 
+import { remember, remembered } from "./dom";
+
 /** What has the token in the address, and in what the tab remembers. */
 const TOKEN = "token";
-const REMEMBERED = "pinhole-token";
-
-function pairs(): [string, string][] {
-  const parts = location.hash.replace(/^#/, "").split("&").filter(Boolean);
-  return parts.map(part => {
-    const at = part.indexOf("=");
-    return at < 0 ? [part, ""] : [part.slice(0, at), part.slice(at + 1)];
-  });
-}
+const parts = () => location.hash.replace(/^#/, "").split("&").filter(Boolean);
 
 /** The value of a key, as it is written; null if it is not there. */
 export function inAddress(key: string): string | null {
-  return pairs().find(([name]) => name === key)?.[1] ?? null;
+  return parts().find(it => it.startsWith(`${key}=`))?.slice(key.length + 1) ?? null;
 }
 
 /** The page's address with this value of a key, and nothing else behind #. */
@@ -27,7 +21,7 @@ export function addressWith(key: string, value: string): string {
 export function takeToken(): string | null {
   const token = inAddress(TOKEN);
   if (token === null) return null;
-  const rest = pairs().filter(([key]) => key !== TOKEN).map(pair => pair.join("=")).join("&");
+  const rest = parts().filter(it => !it.startsWith(`${TOKEN}=`)).join("&");
   history.replaceState(history.state, "",
     location.pathname + location.search + (rest === "" ? "" : `#${rest}`));
   return token;
@@ -42,7 +36,7 @@ class Session {
   constructor() {
     const token = takeToken();
     if (token !== null) this.begin(token);
-    else this.token = remembered();
+    else this.token = remembered(TOKEN, "sessionStorage");
   }
 
   /** Begins with the token of an address. */
@@ -55,18 +49,9 @@ class Session {
   keep(token: string): void {
     this.token = token;
     this.isFresh = false;
-    try {
-      sessionStorage.setItem(REMEMBERED, token);
-    } catch {
-      // A browser that forbids it wants the printed address after reloading.
-    }
+    // A browser that forbids it wants the printed address after reloading.
+    remember(TOKEN, token, "sessionStorage");
   }
-}
-
-function remembered(): string | null {
-  try {
-    return sessionStorage.getItem(REMEMBERED);
-  } catch { return null; }
 }
 
 export const session = new Session();

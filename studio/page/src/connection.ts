@@ -1,21 +1,20 @@
 // The connection to the engine: a web socket to the served host, or a web worker, carrying one
-// JSON-RPC message a text. It is the transport of the editor's language client, and carries the
-// page's own requests beside it. A lost connection is opened anew after growing pauses, unless the
-// host has said that it will not have this page any more.
+// JSON-RPC message a text, of the editor's language client and of the page itself. A lost one is
+// opened anew after growing pauses, unless the host will not have this page any more.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
+import { meta } from "./dom";
 import { Refusal } from "./protocol";
 
 /** Something that carries texts. */
 interface Wire { send(text: string): void }
 
-/** Why there will be no connection before an address is opened that the host has printed. */
-export type Refused = "keyless" | "unknown" | "restarted" | "late" | "twice";
-
 /** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own
- *  word; `failed` is a worker. These are tried again. */
-export type Closed = "lost" | "ended" | "failed" | Refused;
+ *  word; `failed` is a worker: these are tried again. The others say why there will be none before
+ *  an address is opened that the host has printed. */
+type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
+const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
 /** `silent` is a connection that is lost for long. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
@@ -24,36 +23,32 @@ export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
-interface Waiting { resolve(result: unknown): void; reject(error: Error): void }
-
 /** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-
 /** After so much silence the server is asked whether it lives, and has so long to answer, in ms. */
 const QUIET = 700;
 const HANGING = 1200;
 
 /** What the numbers of the page's own requests begin with. */
 const OWN = "page-";
-const ALIVE = "studio/alive";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
 /** What the codes say with which the host closes a web socket. */
 const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
 
-export class Connection implements Transport {
+class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
   /** Told when nothing has come back for long, and when something has again. */
   onHang: (isHanging: boolean) => void = () => {};
-  onNotification: (method: string, params: unknown) => void = () => {};
   /** Resolves once the server has been told who we are and all that was sent before. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
-  private readonly handlers = new Set<(text: string) => void>();
-  private readonly waiting = new Map<string, Waiting>();
+  private handle: (text: string) => void = () => {};
+  private readonly waiting =
+    new Map<string, { resolve(result: any): void; reject(error: Error): void }>();
   private requests = 0;
   private attempts = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -77,22 +72,18 @@ export class Connection implements Transport {
     if (this.asked === 0) {
       if (now - this.heard < QUIET) return;
       this.asked = now;
-      this.wire.send(JSON.stringify({ jsonrpc: "2.0", id: ALIVE, method: ALIVE }));
+      void this.request("studio/alive", {}).catch(() => {});
     } else if (now - this.asked > HANGING && !this.hangs) this.onHang((this.hangs = true));
   }
 
   open(): void {
     const attempt = ++this.current;
     const isCurrent = () => attempt === this.current;
-    this.connector(
-      wire => {
-        if (!isCurrent()) return;
-        this.wire = wire;
-        this.enter("open");
-      },
-      text => isCurrent() && this.receive(text),
-      why => isCurrent() && this.lose(why),
-    );
+    this.connector(wire => {
+      if (!isCurrent()) return;
+      this.wire = wire;
+      this.enter("open");
+    }, text => isCurrent() && this.receive(text), why => isCurrent() && this.lose(why));
   }
 
   /** Tries at once where there is no connection: there is a new reason to hope for one. */
@@ -109,8 +100,9 @@ export class Connection implements Transport {
     this.wire.send(text);
   }
 
-  subscribe(handler: (text: string) => void): void { this.handlers.add(handler); }
-  unsubscribe(handler: (text: string) => void): void { this.handlers.delete(handler); }
+  /** The language client hears of all but the answers to `request`. */
+  subscribe(handler: (text: string) => void): void { this.handle = handler; }
+  unsubscribe(): void { this.handle = () => {}; }
 
   /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost, or
    *  what was asked is not wanted any more. */
@@ -120,18 +112,13 @@ export class Connection implements Transport {
     await this.ready();
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
-      this.waiting.set(id, { resolve: resolve as (result: unknown) => void, reject });
-      try {
-        this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
-        wanted?.addEventListener("abort", () => {
-          const cancel = { jsonrpc: "2.0", method: "$/cancelRequest", params: { id } };
-          if (this.waiting.delete(id)) this.send(JSON.stringify(cancel));
-          reject(wanted.reason as Error);
-        });
-      } catch (error) {
-        this.waiting.delete(id);
-        reject(error as Error);
-      }
+      this.waiting.set(id, { resolve, reject });
+      this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      wanted?.addEventListener("abort", () => {
+        const cancel = { jsonrpc: "2.0", method: "$/cancelRequest", params: { id } };
+        if (this.waiting.delete(id)) this.send(JSON.stringify(cancel));
+        reject(wanted.reason as Error);
+      });
     });
   }
 
@@ -142,20 +129,11 @@ export class Connection implements Transport {
     this.asked = 0;
     if (this.hangs) this.onHang((this.hangs = false));
     const message = JSON.parse(text);
-    if (message.id === ALIVE) return;
-    if (!("method" in message) && String(message.id).startsWith(OWN)) {
-      const waiting = this.waiting.get(message.id);
-      this.waiting.delete(message.id);
-      const { error } = message;
-      if (error) waiting?.reject(new Refusal(error.code, error.message));
-      else waiting?.resolve(message.result);
-      return;
-    }
-    if (!("id" in message) && /^(studio|pinhole)\//.test(message.method)) {
-      this.onNotification(message.method, message.params);
-      return;
-    }
-    for (const handler of [...this.handlers]) handler(text);
+    if ("method" in message || !String(message.id).startsWith(OWN)) return this.handle(text);
+    const { id, result, error } = message;
+    if (error) this.waiting.get(id)?.reject(new Refusal(error.code, error.message));
+    else this.waiting.get(id)?.resolve(result);
+    this.waiting.delete(id);
   }
 
   private lose(why: Closed): void {
@@ -165,7 +143,7 @@ export class Connection implements Transport {
     const lost = new Error("The connection was lost.");
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
-    if (why !== "lost" && why !== "ended" && why !== "failed") return this.enter(why);
+    if (!TRIED_AGAIN.includes(why)) return this.enter(why);
     // What the host has said holds until it answers again.
     const isSilent = why === "lost" && this.attempts >= PAUSES.length;
     if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
@@ -181,40 +159,36 @@ export class Connection implements Transport {
 }
 
 /** A web socket. Its first message is the token; the host's first one is that for the next time. */
-export function webSocket(path: string): Connector {
-  return (opened, receive, closed) => {
-    const { token } = session;
-    if (token === null) return closed("keyless");
-    const url = new URL(path, location.href);
-    url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-    url.hash = "";
-    const socket = new WebSocket(url);
-    let isOpen = false;
-    socket.addEventListener("open", () => socket.send(token));
-    socket.addEventListener("message", event => {
-      if (isOpen) return receive(String(event.data));
-      isOpen = true;
-      session.keep(JSON.parse(String(event.data)).params.token);
-      opened(socket);
-    });
-    socket.addEventListener("close", ({ code }) => closed(code === UNKNOWN
-      ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
-  };
-}
+const webSocket: Connector = (opened, receive, closed) => {
+  const { token } = session;
+  if (token === null) return closed("keyless");
+  const socket = new WebSocket(`${location.origin.replace(/^http/, "ws")}/socket`);
+  let isOpen = false;
+  socket.addEventListener("open", () => socket.send(token));
+  socket.addEventListener("message", event => {
+    if (isOpen) return receive(String(event.data));
+    isOpen = true;
+    session.keep(JSON.parse(String(event.data)).params.token);
+    opened(socket);
+  });
+  socket.addEventListener("close", ({ code }) => closed(code === UNKNOWN
+    ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
+};
 
 /** A web worker that runs the engine, whose first word opens it. One that fails is replaced. */
-export function worker(path: string): Connector {
-  return (opened, receive, closed) => {
-    const engine = new Worker(new URL(path, location.href), { type: "module" });
-    let isOpen = false;
-    engine.addEventListener("message", event => {
-      if (!isOpen) opened({ send: text => engine.postMessage(text) });
-      isOpen = true;
-      receive(String(event.data));
-    });
-    engine.addEventListener("error", () => {
-      engine.terminate();
-      closed("failed");
-    });
-  };
-}
+const worker: Connector = (opened, receive, closed) => {
+  const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
+  let isOpen = false;
+  engine.addEventListener("message", event => {
+    if (!isOpen) opened({ send: text => engine.postMessage(text) });
+    isOpen = true;
+    receive(String(event.data));
+  });
+  engine.addEventListener("error", () => {
+    engine.terminate();
+    closed("failed");
+  });
+};
+
+export const isServed = meta("host") !== "static";
+export const connection = new Connection(isServed ? webSocket : worker);

@@ -2,22 +2,15 @@
 
 import { diagnosticCount, forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
-import type { EditorView, KeyBinding, ViewUpdate } from "@codemirror/view";
+import { EditorView, type KeyBinding } from "@codemirror/view";
+import type { CodeAction, Diagnostic as ServerDiagnostic, PublishDiagnosticsParams } from
+  "vscode-languageserver-protocol";
 import { byId, create, createButton } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Published, ServerDiagnostic, TextEdit } from "./protocol";
+import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
-interface CodeAction {
-  title: string;
-  kind: string;
-  diagnostics?: ServerDiagnostic[];
-  edit: { changes?: Record<string, TextEdit[]> };
-  data?: { values: [number, number][] }; // made-up ones, in the text of the first edit
-}
-
 /** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
-export async function publishDiagnostics(editor: SceneEditor, published: Published): Promise<void> {
+export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
@@ -26,34 +19,39 @@ export async function publishDiagnostics(editor: SceneEditor, published: Publish
   if (published.diagnostics.length === 0 && diagnosticCount(editor.view.state) === 0) return;
   const isRight = published.diagnostics.length === 0;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
-    { range: editor.whole, context: { diagnostics: [] } });
+    { range: editor.range(), context: { diagnostics: [] } });
   // Without an answer they are shown without fixes.
-  if (editor.view.state.doc === doc) show(editor, published.diagnostics, actions ?? []);
+  if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-function show(editor: SceneEditor, diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
+  const mending = new Map<string, CodeAction[]>();
+  for (const action of actions) for (const it of action.diagnostics ?? []) {
+    mending.set(keyOf(it), [...mending.get(keyOf(it)) ?? [], action]);
+  }
+  const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
-    const fixes = actions.filter(action => action.diagnostics?.some(it => isSame(it, diagnostic)));
-    const all = fixes.length > 0 ? actions.filter(action => action.diagnostics === undefined) : [];
+    const fixes = mending.get(keyOf(diagnostic)) ?? [];
+    const all = fixes.length > 0 ? ofAll : [];
     return {
       from: editor.offset(diagnostic.range.start),
       to: editor.offset(diagnostic.range.end),
       severity: diagnostic.severity === 2 ? "warning" : "error",
-      message: visible(diagnostic.message),
-      actions: [...fixes, ...all].map(action => fix(editor, action)),
+      message: visible(String(diagnostic.message)),
+      actions: [...fixes, ...all].map(action => fix(action)),
     };
   });
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-function isSame(one: ServerDiagnostic, other: ServerDiagnostic): boolean {
-  return one.message === other.message && JSON.stringify(one.range) === JSON.stringify(other.range);
-}
+/** What is the same of a diagnostic and of that which an action names. */
+const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
-function fix(editor: SceneEditor, action: CodeAction): Action {
+function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
-  const edits = action.edit.changes?.[editor.uri] ?? [];
-  const [value] = action.data?.values ?? [];
+  const edits = action.edit?.changes?.[editor.uri] ?? [];
+  // Values that are made up are told of in the text of the first edit.
+  const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
@@ -69,48 +67,53 @@ function fix(editor: SceneEditor, action: CodeAction): Action {
   };
 }
 
-/** Whether an update of the editor brings other diagnostics, or moves them. */
-export function changesDiagnostics(update: ViewUpdate): boolean {
-  return update.docChanged || update.transactions.some(
-    it => it.effects.some(effect => effect.is(setDiagnosticsEffect)));
+/** Problems are shown anew where an update of the editor brings others, or moves them. */
+export const problemsFollow = EditorView.updateListener.of(({ docChanged, transactions }) => {
+  const areOther = transactions.some(it => it.effects.some(it => it.is(setDiagnosticsEffect)));
+  if (docChanged || areOther) showProblems();
+});
+
+const button = byId("problems");
+const isOpen = () => button.getAttribute("aria-expanded") === "true";
+button.addEventListener("click", () => {
+  button.setAttribute("aria-expanded", String(!isOpen()));
+  showProblems();
+});
+
+/** What is wrong, with its places. */
+function diagnosed(): [Diagnostic, number, number][] {
+  const found: [Diagnostic, number, number][] = [];
+  forEachDiagnostic(editor.view.state, (...it) => found.push(it));
+  return found;
 }
 
-/** The list of all that is wrong: each message leads to its place, and has its fixes. */
-export class Problems {
-  private readonly button = byId("problems");
-  private readonly list = byId("problem-list");
+/** Shows what is wrong under the text: the first of it, or all. */
+export function showProblems(): void {
+  const found = diagnosed();
+  const { length } = found;
+  setText(button, length === 0 ? "No problems" : length === 1 ? "1 problem" : `${length} problems`);
+  button.toggleAttribute("data-some", length > 0);
+  const list = byId("problem-list");
+  const isWhole = isOpen();
+  list.hidden = length === 0;
+  list.toggleAttribute("data-all", isWhole);
+  // What is not shown is not made: a drag changes the text many times a second.
+  list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
+}
 
-  constructor(private readonly view: () => EditorView) {
-    this.button.addEventListener("click", () => {
-      this.button.setAttribute("aria-expanded", String(this.list.hidden));
-      this.list.hidden = !this.list.hidden;
-      this.update();
-    });
+/** A message, which leads to its place, with its fixes. */
+function item({ severity, message, actions }: Diagnostic, from: number, to: number): HTMLElement {
+  const { view } = editor;
+  const item = create("li", severity);
+  const { number } = view.state.doc.lineAt(from);
+  item.append(createButton(`${number}: ${message}`, "place", () => {
+    view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
+    view.focus();
+  }));
+  for (const { name, apply } of actions ?? []) {
+    item.append(createButton(name, "fix", () => apply(view, from, to)));
   }
-
-  update(): void {
-    const view = this.view();
-    const items: HTMLLIElement[] = [];
-    forEachDiagnostic(view.state, (diagnostic, from, to) => {
-      const item = create("li", diagnostic.severity);
-      const jump = () => {
-        view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
-        view.focus();
-      };
-      item.append(createButton(`${view.state.doc.lineAt(from).number}: ${diagnostic.message}`,
-        "place", jump));
-      for (const { name, apply } of diagnostic.actions ?? []) {
-        item.append(createButton(name, "fix", () => apply(view, from, to)));
-      }
-      items.push(item);
-    });
-    const count = items.length;
-    setText(this.button, count === 0 ? "No problems" : count === 1 ? "1 problem"
-      : `${count} problems`);
-    this.button.toggleAttribute("data-some", count > 0);
-    // While it is closed nobody sees it: a drag changes the text many times a second.
-    this.list.replaceChildren(...(this.list.hidden ? [] : items));
-  }
+  return item;
 }
 
 /** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */
@@ -118,12 +121,9 @@ export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {
     const { head } = view.state.selection.main;
-    const fixable: { diagnostic: Diagnostic; from: number; to: number }[] = [];
-    forEachDiagnostic(view.state, (diagnostic, from, to) => {
-      if (diagnostic.actions?.length) fixable.push({ diagnostic, from, to });
-    });
-    const chosen = fixable.find(({ from, to }) => from <= head && head <= to) ?? fixable[0];
-    chosen?.diagnostic.actions?.[0]?.apply(view, chosen.from, chosen.to);
+    const fixable = diagnosed().filter(([{ actions }]) => actions?.length);
+    const chosen = fixable.find(([, from, to]) => from <= head && head <= to) ?? fixable[0];
+    chosen?.[0].actions?.[0]?.apply(view, chosen[1], chosen[2]);
     return chosen !== undefined;
   },
 };

@@ -9,6 +9,11 @@ export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   return element as E;
 }
 
+/** What the host has written into the page's head. */
+export function meta(name: string): string | undefined {
+  return document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
+}
+
 /** A new element with a class, and a text that is never read as HTML. */
 export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "",
   text = ""): HTMLElementTagNameMap[K] {
@@ -18,10 +23,12 @@ export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className 
   return element;
 }
 
-export function createButton(text: string, className: string,
-  press: () => void): HTMLButtonElement {
+/** A button, which may have another name than its text. */
+export function createButton(text: string, className: string, press: () => void,
+  name: string | null = null): HTMLButtonElement {
   const button = create("button", className, text);
   button.type = "button";
+  if (name !== null) button.setAttribute("aria-label", name);
   button.addEventListener("click", press);
   return button;
 }
@@ -38,16 +45,33 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   end: () => void): void {
   const following = new AbortController();
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
-    act: (event: PointerEvent) => void) =>
-    document.addEventListener(type, event => event.pointerId === pressed.pointerId && act(event),
-      { signal: following.signal });
+    act: (event: PointerEvent) => void) => document.addEventListener(type,
+    event => event.pointerId === pressed.pointerId && act(event), { signal: following.signal });
+  const over = () => {
+    following.abort();
+    end();
+  };
   hear("pointermove", move);
-  for (const type of ["pointerup", "pointercancel"] as const) {
-    hear(type, () => {
-      following.abort();
-      end();
-    });
-  }
+  hear("pointerup", over);
+  hear("pointercancel", over);
+}
+
+/** Does one thing after the other: of those that come while one is done, the newest alone. */
+export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<void> {
+  let next: { it: T } | null = null;
+  let work: Promise<void> | null = null;
+  const go = async () => {
+    try {
+      for (let now = next; now !== null; now = next) {
+        next = null;
+        await act(now.it);
+      }
+    } finally { work = null; }
+  };
+  return it => {
+    next = { it };
+    return (work ??= go());
+  };
 }
 
 /** Has the browser save a file. */
@@ -67,17 +91,19 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** A setting that this browser remembers; browsers that forbid it start anew each time. */
-export function remembered(key: string): string | null {
+/** A setting that this browser remembers, or this tab; browsers that forbid it start anew. */
+export function remembered(key: string, where: Store = "localStorage"): string | null {
   try {
-    return localStorage.getItem(`pinhole-${key}`);
+    return window[where].getItem(`pinhole-${key}`);
   } catch { return null; }
 }
 
-export function remember(key: string, value: string): void {
+export function remember(key: string, value: string, where: Store = "localStorage"): void {
   try {
-    localStorage.setItem(`pinhole-${key}`, value);
+    window[where].setItem(`pinhole-${key}`, value);
   } catch {
     // The page works without.
   }
 }
+
+type Store = "localStorage" | "sessionStorage";

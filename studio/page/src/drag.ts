@@ -4,11 +4,12 @@
 
 import { ChangeSet, type Text } from "@codemirror/state";
 import { byId } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Frames } from "./frames";
+import { editor } from "./editor";
+import { frames } from "./frames";
 import { Gesture } from "./gesture";
-import type { Picture } from "./picture";
-import { isSuperseded, Refusal, type Along, type Dragged, type Point } from "./protocol";
+import { picture } from "./picture";
+import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
+import { tools } from "./tools";
 import { setText } from "./visible";
 
 /** What is held, and where it was seen at the press; without an object it is the camera. */
@@ -19,63 +20,41 @@ const REFUSAL_STAYS = 5000;
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
-/** The page's parts that a drag works on, and what drags of objects are held to. */
-export interface Workbench {
-  editor: SceneEditor;
-  frames: Frames;
-  picture: Picture;
-  along(): Along | undefined;
-  rested(): void;
+// What a drag says stands where the hand is, while it lasts.
+const note = byId("drag-note");
+let staying = new AbortController();
+
+function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
+  staying.abort();
+  note.hidden = text === "";
+  note.dataset["tone"] = tone;
+  setText(note, text);
+  const { style } = byId("drag-place");
+  style.setProperty("--x", `${x}px`);
+  style.setProperty("--y", `${y}px`);
 }
 
-/** What a drag says stands where the hand is, while it lasts. */
-class Note {
-  private readonly element = byId("drag-note");
-  private timer = 0;
-  private staying = new AbortController();
-
-  say(text: string, tone: "plain" | "warning", [x, y]: Point): void {
-    this.clear();
-    this.element.hidden = text === "";
-    this.element.dataset["tone"] = tone;
-    setText(this.element, text);
-    const { clientWidth, clientHeight } = this.element.parentElement as HTMLElement;
-    const { offsetWidth, offsetHeight } = this.element;
-    const left = Math.max(4, Math.min(x + 18, clientWidth - offsetWidth - 4));
-    const above = y - offsetHeight - 14;
-    const top = Math.max(4, Math.min(above > 4 ? above : y + 22, clientHeight - offsetHeight - 4));
-    this.element.style.transform = `translate(${left}px, ${top}px)`;
+/** A refusal stays until something else is done, or for a while. */
+function endNote(): void {
+  const clear = () => showNote("", "plain", [0, 0]);
+  if (note.hidden || note.dataset["tone"] !== "warning") return clear();
+  const { signal } = (staying = new AbortController());
+  for (const type of ["pointerdown", "keydown"]) {
+    addEventListener(type, clear, { capture: true, signal });
   }
-
-  /** A refusal stays until something else is done, or for a while. */
-  end(): void {
-    if (this.element.hidden || this.element.dataset["tone"] !== "warning") return this.clear();
-    const { signal } = this.staying;
-    for (const type of ["pointerdown", "keydown"]) {
-      addEventListener(type, () => this.clear(), { capture: true, signal });
-    }
-    this.timer = setTimeout(() => this.clear(), REFUSAL_STAYS);
-  }
-
-  private clear(): void {
-    clearTimeout(this.timer);
-    this.staying.abort();
-    this.staying = new AbortController();
-    this.element.hidden = true;
-    setText(this.element, "");
-  }
+  const timer = setTimeout(clear, REFUSAL_STAYS);
+  signal.addEventListener("abort", () => clearTimeout(timer));
 }
 
-let note: Note | null = null;
 let count = 0;
 
 /** Asks for one edit at a time, always about the newest place of the hand. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
   /** The text at the press, what has become of it, and by which changes. */
-  private base: Text;
-  private current: Text;
-  private written: ChangeSet;
+  private base!: Text;
+  private current!: Text;
+  private written!: ChangeSet;
   /** Where the hand is, and what was asked for last. */
   private target: Point;
   private asked: Point;
@@ -84,35 +63,33 @@ export class Drag {
   private busy = false;
   private ending = false;
   private over = false;
-  private gesture: Gesture;
+  private gesture!: Gesture;
   private readonly holding: Promise<Held | null>;
   private settle: () => void = () => {};
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** What is held may be found out only after the press. */
-  constructor(private readonly bench: Workbench, private readonly press: Point,
-    hold: () => Promise<Held | null> | Held) {
-    const { frames, editor: { view } } = bench;
-    this.base = this.current = view.state.doc;
-    this.written = ChangeSet.empty(this.base.length);
+  constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = this.asked = press;
-    this.gesture = new Gesture(view);
     const before = frames.dragging instanceof Drag ? frames.dragging : null;
     frames.dragging = this;
-    note ??= new Note();
     this.holding = this.begin(before, hold);
   }
 
   /** The drag before this one may not have come to its end yet. */
   private async begin(before: Drag | null, hold: () => Promise<Held | null> | Held) {
+    this.take();
     if (before !== null) {
       await before.done;
-      const { view } = this.bench.editor;
-      this.base = this.current = view.state.doc;
-      this.written = ChangeSet.empty(this.base.length);
-      this.gesture = new Gesture(view);
+      this.take();
     }
     return hold();
+  }
+
+  private take(): void {
+    this.base = this.current = editor.view.state.doc;
+    this.written = ChangeSet.empty(this.base.length);
+    this.gesture = new Gesture(editor.view);
   }
 
   to(target: Point): void {
@@ -145,14 +122,14 @@ export class Drag {
   }
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
-    const { editor, frames, along } = this.bench;
     const { base, press, uri } = this;
     this.asked = place;
-    if (!this.isOpen) editor.openAside(uri, base.toString());
+    if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
-    const about = { textDocument: { uri }, object, handle, from: press, to, along: along() };
+    const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
+      step: tools.step };
     try {
       const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (this.over) return;
@@ -179,14 +156,14 @@ export class Drag {
     const text = changes.apply(base);
     if (!text.eq(current)) this.gesture.apply(this.written.invert(base).compose(changes));
     this.written = changes;
-    this.current = this.bench.editor.view.state.doc;
+    this.current = editor.view.state.doc;
   }
 
   /** Whoever has changed the text otherwise keeps it. */
   private back(): void {
-    if (this.over || this.bench.editor.view.state.doc !== this.current) return;
+    if (this.over || editor.view.state.doc !== this.current) return;
     this.gesture.cancel(this.written.invert(this.base));
-    this.current = this.bench.editor.view.state.doc;
+    this.current = editor.view.state.doc;
   }
 
   private finish(): void {
@@ -195,15 +172,13 @@ export class Drag {
     if (this.current.eq(this.base)) this.back();
     this.over = true;
     this.gesture.end();
-    note?.end();
-    if (this.isOpen) this.bench.editor.closeAside(this.uri);
-    // Another drag may have begun before this one has come to its end.
-    if (this.bench.frames.dragging === this) this.bench.frames.dragging = null;
+    endNote();
+    if (this.isOpen) editor.closeAside(this.uri);
     this.settle();
-    this.bench.rested();
+    frames.released(this);
   }
 
   private say(text: string, tone: "plain" | "warning"): void {
-    note?.say(text, tone, this.bench.picture.toScreen(this.target));
+    showNote(text, tone, picture.toScreen(this.target));
   }
 }

@@ -1,64 +1,27 @@
-// The editor: CodeMirror with what the server gives through the language client. Fixes and hints
-// have files of their own.
+// The editor: CodeMirror with what the server gives through the language client.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
 import { bracketMatching } from "@codemirror/language";
 import { lintGutter, nextDiagnostic, previousDiagnostic } from "@codemirror/lint";
-import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, LSPPlugin, renameKeymap,
-  serverCompletion, signatureHelp, Workspace, type WorkspaceFile } from "@codemirror/lsp-client";
+import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, renameKeymap,
+  serverCompletion, signatureHelp } from "@codemirror/lsp-client";
+import { diff } from "@codemirror/merge";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec, type Extension,
-  type Text } from "@codemirror/state";
+import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec,
+  type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
-import type { Connection } from "./connection";
+import type { Position, Range, TextEdit } from "vscode-languageserver-protocol";
+import { connection } from "./connection";
+import { byId, meta } from "./dom";
 import { gestureHistory, rewrite } from "./gesture";
 import { sceneHighlighting, sceneLanguage } from "./language";
-import { isSuperseded, type Position, type Published, type Range, type TextEdit } from "./protocol";
+import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-class SceneFile implements WorkspaceFile {
-  constructor(readonly uri: string, readonly languageId: string, public version: number,
-    public doc: Text, readonly view: EditorView) {}
-
-  getView(): EditorView { return this.view; }
-}
-
-/** The one file that the page has open. */
-class SceneWorkspace extends Workspace {
-  override files: SceneFile[] = [];
-  private version = 0;
-
-  override syncFiles(): { file: SceneFile; prevDoc: Text; changes: ChangeSet }[] {
-    return this.files.flatMap(file => {
-      const plugin = LSPPlugin.get(file.view);
-      if (plugin === null || plugin.unsyncedChanges.empty) return [];
-      const update = { file, prevDoc: file.doc, changes: plugin.unsyncedChanges };
-      file.doc = file.view.state.doc;
-      file.version = ++this.version;
-      plugin.clear();
-      return [update];
-    });
-  }
-
-  override openFile(uri: string, languageId: string, view: EditorView): void {
-    const file = new SceneFile(uri, languageId, ++this.version, view.state.doc, view);
-    this.files = [file];
-    this.client.didOpen(file);
-  }
-
-  override closeFile(uri: string): void {
-    this.files = this.files.filter(file => file.uri !== uri);
-    this.client.didClose(uri);
-  }
-
-  /** A server that is new knows nothing yet. */
-  override connected(): void {
-    this.syncFiles();
-    super.connected();
-  }
-}
+/** So long it may take to find out where two texts differ, in milliseconds. */
+const DIFF_TIME = 100;
 
 /** Halves of surrogate pairs, which no file and no message can hold. */
 const HALVES = /\p{Surrogate}/gu;
@@ -71,6 +34,22 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
       { from: from + index, to: from + index + 1, insert: "\ufffd" });
   });
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
+});
+
+/** Replaces several lines at once itself: a browser would give the new ones the style of the old,
+ *  which the page's policy refuses. */
+const replacedLines = EditorView.domEventHandlers({
+  beforeinput({ inputType, data, isComposing }, view) {
+    const { state } = view;
+    const { from, to } = state.selection.main;
+    if (inputType !== "insertText" || data === null || isComposing) return false;
+    if (!data.includes("\n") && to <= state.doc.lineAt(from).to) return false;
+    const insert = () => state.update(state.replaceSelection(data),
+      { userEvent: "input.type", scrollIntoView: true });
+    const handlers = state.facet(EditorView.inputHandler);
+    if (!handlers.some(handle => handle(view, from, to, data, insert))) view.dispatch(insert());
+    return true;
+  },
 });
 
 /** A brace that is typed takes over the one that its block has already, behind space alone. */
@@ -90,27 +69,20 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
 /** A text with lines that end by LF, as the editor has them. */
 export function withLf(text: string): string { return text.replace(/\r\n?/g, "\n"); }
 
-export class SceneEditor {
+class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
   /** The address by which the server knows the scene; empty until it has been told. */
   uri = "";
-  /** What to do with the diagnostics that the server publishes. */
-  diagnosed: (published: Published) => void = () => undefined;
+  onNotification: (method: string, params: any) => void = () => {};
+  onUpdate: (update: ViewUpdate) => void = () => {};
 
-  constructor(parent: HTMLElement, private readonly connection: Connection,
-    nonce: string | undefined, extensions: Extension, update: (update: ViewUpdate) => void) {
+  constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new LSPClient({
-      workspace: client => new SceneWorkspace(client),
       // A busy machine may take its time; a lost connection is told by the connection.
       timeout: 60_000,
       sanitizeHTML: sanitized,
-      notificationHandlers: {
-        "textDocument/publishDiagnostics": (_, params) => {
-          this.diagnosed(params);
-          return true;
-        },
-      },
+      unhandledNotification: (_, method, params) => this.onNotification(method, params),
       extensions: [serverCompletion(), hoverTooltips(), signatureHelp()],
     });
     connection.ready = () => this.client.initializing;
@@ -118,12 +90,10 @@ export class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        extensions,
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        bracketMatching(), closeBrackets(), closingBrace,
-        gestureHistory(),
+        bracketMatching(), closeBrackets(), closingBrace, replacedLines, gestureHistory(),
         sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
           spellcheck: "false", autocapitalize: "off" }),
@@ -135,11 +105,17 @@ export class SceneEditor {
           ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
-          if (it.docChanged) this.sync();
-          update(it);
+          // Without a connection, the server hears of it later.
+          if (it.docChanged && connection.state === "open") this.client.sync();
+          this.onUpdate(it);
         }),
       ],
     });
+  }
+
+  /** What the page's other parts add, which goes before what the editor does by itself. */
+  extend(extension: Extension): void {
+    this.view.dispatch({ effects: StateEffect.appendConfig.of(Prec.high(extension)) });
   }
 
   /** The text, with lines that end by LF. */
@@ -147,7 +123,7 @@ export class SceneEditor {
 
   /** Asks the server about the scene, as `Connection.request` does. */
   request<Result>(method: string, params: object): Promise<Result> {
-    return this.connection.request(method, { textDocument: { uri: this.uri }, ...params });
+    return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
   /** The same; null where no answer comes, as it is where the text has errors. */
@@ -155,15 +131,21 @@ export class SceneEditor {
     try {
       return await this.request<Result | null>(method, params);
     } catch (error) {
-      if (!isSuperseded(error) && this.connection.state === "open") console.warn(error);
+      if (!isSuperseded(error) && connection.state === "open") console.warn(error);
       return null;
     }
   }
 
-  /** The place of all the text. */
-  get whole(): Range {
-    return { start: { line: 0, character: 0 },
-      end: { line: this.view.state.doc.lines, character: 0 } };
+  /** The same; null also where the text has changed meanwhile. */
+  async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
+    const { doc } = this.view.state;
+    const answer = await this.ask<Result>(method, params);
+    return this.view.state.doc === doc ? answer : null;
+  }
+
+  /** The place of all the text, or of a part of it. */
+  range(from = 0, to = this.view.state.doc.length): Range {
+    return { start: this.position(from), end: this.position(to) };
   }
 
   /** Puts a text in place that no undo takes away: it has a history of its own. */
@@ -172,18 +154,13 @@ export class SceneEditor {
     rewrite(this.view, { changes, selection: { anchor: 0 } });
   }
 
-  /** Tells the server about a text beside the scene's, under an address of its own; forgets it. */
-  openAside(uri: string, text: string): void {
-    const textDocument = { uri, languageId: "pinhole", version: 0, text };
-    this.tell("textDocument/didOpen", { textDocument });
+  /** Tells the server about a text beside the scene's, under an address of its own. */
+  openAside(uri: string, doc: Text): void {
+    const file = { uri, languageId: "pinhole", version: 0, doc, getView: () => null };
+    if (connection.state === "open") this.client.didOpen(file);
   }
 
-  closeAside(uri: string): void { this.tell("textDocument/didClose", { textDocument: { uri } }); }
-
-  private tell(method: string, params: object): void {
-    if (this.connection.state !== "open") return;
-    this.connection.send(JSON.stringify({ jsonrpc: "2.0", method, params }));
-  }
+  closeAside(uri: string): void { if (connection.state === "open") this.client.didClose(uri); }
 
   /** Tells the server about the text, unless it was told already. */
   start(): void {
@@ -196,27 +173,15 @@ export class SceneEditor {
   /** Puts another text in place. No more changes than differs, so that the cursor stays. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
-    const shorter = Math.min(old.length, text.length);
-    let start = 0;
-    while (start < shorter && old[start] === text[start]) start++;
-    let end = 0;
-    while (end < shorter - start
-      && old[old.length - 1 - end] === text[text.length - 1 - end]) end++;
-    // Characters beyond the first 65536 have two units, and change as one.
-    if (/[\ud800-\udbff]/.test(text.charAt(start - 1))) start--;
-    if (/[\udc00-\udfff]/.test(text.charAt(text.length - end))) end--;
-    if (start < old.length - end || start < text.length - end) {
-      this.view.dispatch({ changes: { from: start, to: old.length - end,
-        insert: text.slice(start, text.length - end) }, userEvent: "input.replace" });
-    }
+    const changes = diff(old, text, { timeout: DIFF_TIME }).map(({ fromA, toA, fromB, toB }) =>
+      ({ from: fromA, to: toA, insert: text.slice(fromB, toB) }));
+    if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 
-  connected(): void { this.client.connect(this.connection); }
-  disconnected(): void { this.client.disconnect(); }
-
-  /** Moves the cursor to a place of the text, and shows it. */
-  jump(position: Position): void {
-    this.view.dispatch({ selection: { anchor: this.offset(position) }, scrollIntoView: true });
+  /** A server that is new knows nothing yet. */
+  connected(): void {
+    this.client.workspace.syncFiles();
+    this.client.connect(connection);
   }
 
   offset({ line, character }: Position, doc = this.view.state.doc): number {
@@ -236,7 +201,6 @@ export class SceneEditor {
       ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });
     return ChangeSet.of(edits.map(change), doc.length, "\n");
   }
-
-  /** Tells the server what has changed; without a connection, it hears of it later. */
-  private sync(): void { if (this.connection.state === "open") this.client.sync(); }
 }
+
+export const editor = new SceneEditor(byId("editor"), meta("nonce"));

@@ -2,28 +2,48 @@
 // file of this computer that the browser opens and saves.
 
 import { diffArrays } from "diff";
-import example from "../../../examples/figure_9_9.scn";
-import type { Connection } from "./connection";
+import { invertedEffects, isolateHistory } from "@codemirror/commands";
+import { StateEffect, type Extension, type Transaction } from "@codemirror/state";
+import { connection, isServed } from "./connection";
 import { byId, create, createButton, download } from "./dom";
-import { withLf, type SceneEditor } from "./editor";
+import { editor, withLf } from "./editor";
 import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
-import type { Status } from "./status";
+import { say } from "./status";
 import { setText, visibleLine } from "./visible";
 
 /** What browsers that can save into files offer for it. */
-interface FileHandle {
-  name: string;
-  getFile(): Promise<File>;
-  createWritable(): Promise<{ write(text: string): Promise<void>; close(): Promise<void> }>;
-}
-
 interface FilePickers {
-  showOpenFilePicker?(options: object): Promise<FileHandle[]>;
-  showSaveFilePicker?(options: object): Promise<FileHandle>;
+  showOpenFilePicker?(options: object): Promise<FileSystemFileHandle[]>;
+  showSaveFilePicker?(options: object): Promise<FileSystemFileHandle>;
 }
 
+/** The scene of a page without a file. */
+const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
 const pickers = window as unknown as FilePickers;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
+
+/** A scene, and where it is kept. */
+class Scene {
+  /** What its file held when it was last seen; null where there was none. */
+  seen: string | null = null;
+  /** What the page's text was made from: Save asks if the file holds something else. */
+  base: string | null = null;
+  /** Whether the file has gone since. */
+  isGone = false;
+  handle: FileSystemFileHandle | null = null;
+  /** Whether the host is still to make a file of it, under a name that Save asks for. */
+  isNew = isServed;
+  /** The text that it starts with, which is not worth saving; null for a file. */
+  untouched: string | null = null;
+
+  constructor(public name = "scene.scn") {}
+}
+
+/** Another scene comes in the place of one, and goes again by Undo. */
+const turns = StateEffect.define<{ from: Scene; to: Scene }>();
+
+export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
+  .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
 
 /** How long a save may take before it is said that it is not done, in milliseconds. */
 const SLOW = 800;
@@ -35,92 +55,102 @@ const NOT_YET = "Nothing is saved yet: Studio does not answer.";
 const MOST_CHANGES = 3000;
 
 /** The host's file as the page last saw it; a static page has local files alone. */
-export class Files {
-  name = "scene.scn";
+class Files {
   onSaved: () => void = () => {};
-  /** What the page's text was made from: Save asks if the file holds something else. */
-  base: string | null = null;
-  private held: string | null = null;
-  /** Whether the file has gone since. */
-  private isGone = false;
-  private handle: FileHandle | null = null;
-  /** Whether the host's file is still to be made, under a name that Save asks for. */
-  private isNew = false;
-  private opened = false;
-  /** The text that a new scene starts with, which is not worth saving; null for a file. */
-  private untouched: string | null = null;
+  /** The host's scene, and the one that the page shows. */
+  private hosts = new Scene();
+  at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly status: Status, private readonly isServed: boolean) {
+  constructor() {
     byId("save").addEventListener("click", () => void this.save());
     byId("open").addEventListener("click", () => void this.open());
-    byId("open").hidden = isServed;
+    byId("file").addEventListener("change", ({ target }) => {
+      const [file] = (target as HTMLInputElement).files ?? [];
+      if (file !== undefined) void this.take(file, null);
+      (target as HTMLInputElement).value = ""; // The same file can be chosen again.
+    });
+    byId("new").addEventListener("click", () => this.begin(EMPTY));
+    for (const [name, text] of EXAMPLES) byId("examples").append(
+      createButton(name.replace(/(\d)_(\d)/, "$1.$2").replaceAll("_", " "), "",
+        () => this.begin(text, new Scene(`${name}.scn`))));
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
-  /** The name as people may see it. */
-  private get shownName(): string { return visibleLine(this.name); }
-
-  get isUnsaved(): boolean {
-    const { text } = this.editor;
-    return this.opened && text !== this.untouched
-      && (this.isGone || this.seen === null || text !== withLf(this.seen) || LONE.test(this.seen));
+  /** Puts another scene in place; Undo brings back the one before. */
+  private begin(text: string, to = new Scene()): void {
+    to.untouched = to.seen === null ? withLf(text) : null;
+    const { view } = editor;
+    view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: withLf(text) },
+      selection: { anchor: 0 }, scrollIntoView: true, annotations: isolateHistory.of("full"),
+      effects: turns.of({ from: this.at, to }) });
   }
 
-  /** What the file held when it was last seen; null where there was none. */
-  get seen(): string | null { return this.held; }
-  private set seen(text: string | null) { this.held = this.base = text; }
+  /** Follows the text to the scene that it belongs to. */
+  follow(transactions: readonly Transaction[]): void {
+    for (const { effects } of transactions) for (const it of effects) {
+      if (it.is(turns)) this.at = it.value.to;
+    }
+  }
+
+  /** The name as people may see it. */
+  private get shownName(): string { return visibleLine(this.at.name); }
+
+  get isUnsaved(): boolean {
+    const { text } = editor;
+    const { isGone, seen, untouched } = this.at;
+    return editor.uri !== "" && text !== untouched
+      && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
+  }
 
   /** The text with its file's ends of lines. */
-  get textToSave(): string { return withEndsOf(this.seen ?? "", this.editor.text); }
+  get textToSave(): string { return withEndsOf(this.at.seen ?? "", editor.text); }
 
   /** Puts a draft in place. */
   restore(draft: Draft): void {
-    if (this.seen !== null) this.base = draft.base;
-    this.editor.replace(draft.text);
+    if (this.at.seen !== null) this.at.base = draft.base;
+    editor.replace(draft.text);
     this.show();
   }
 
   /** The host says what file it has: at first, after the connection was lost, when a new scene
    *  has got its name, and when the file has changed. */
   hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
-    this.name = name;
-    this.isNew = this.isServed && !saved;
-    if (!this.opened) {
-      this.opened = true;
-      this.seen = saved ? text : null;
-      const start = this.isServed ? (text ?? "") : example;
-      this.untouched = saved ? null : withLf(start);
-      this.editor.open(start);
+    Object.assign(this.hosts, { name, isNew: isServed && !saved });
+    // What becomes of the host's file is told when its scene is there again, and is saved.
+    if (this.at !== this.hosts) return this.show();
+    if (editor.uri === "") {
+      this.at.seen = this.at.base = saved ? text : null;
+      const start = isServed ? (text ?? "") : FIGURE;
+      this.at.untouched = saved ? null : withLf(start);
+      editor.open(start);
       this.tellLone();
-      if (linked !== null) this.editor.replace(linked);
+      if (linked !== null) editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
-      if (!this.isServed) this.untouched = this.editor.text;
+      if (!isServed) this.at.untouched = editor.text;
       if (text === null) this.tellGone(reason);
-    } else if (this.isServed && saved) {
-      this.untouched = null;
+    } else if (isServed && saved) {
+      this.at.untouched = null;
       this.changed(text, reason);
     }
-    this.editor.start();
+    editor.start();
     this.show();
   }
 
   /** The file was changed by somebody else, is gone, or is back. */
   private changed(text: string | null, reason?: string | null): void {
-    const { seen, isGone } = this;
-    this.isGone = text === null;
+    const { seen, isGone } = this.at;
+    this.at.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
-    } else if (this.editor.text === withLf(text)
-      || (seen !== null && this.editor.text === withLf(seen))) {
+    } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
       this.conflict.close();
-      this.seen = text;
-      this.editor.replace(text);
-      this.status.say(`${this.shownName} was changed outside; the page follows.`);
+      this.at.seen = this.at.base = text;
+      editor.replace(text);
+      say(`${this.shownName} was changed outside; the page follows.`);
       this.tellLone();
     } else this.ask(text);
     this.show();
@@ -128,13 +158,13 @@ export class Files {
 
   /** A page cannot show the file as the language reads it: nothing is changed without a word. */
   private tellLone(): void {
-    if (LONE.test(this.seen ?? "")) this.status.say(`${this.shownName} has carriage returns alone, `
-      + "which end no line in a scene; Save writes line feeds in their place.", "warning");
+    if (LONE.test(this.at.seen ?? "")) say(`${this.shownName} has carriage returns `
+      + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
   }
 
   private tellGone(reason?: string | null): void {
-    this.isGone = true;
-    this.status.say(reason ? `${this.shownName} cannot be read: ${reason}`
+    this.at.isGone = true;
+    say(reason ? `${this.shownName} cannot be read: ${reason}`
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
@@ -149,29 +179,29 @@ export class Files {
 
   async save(): Promise<void> {
     try {
-      if (!this.isServed) await this.saveLocal();
-      else if (this.isNew) this.askName();
-      else await this.saveAs(this.name);
+      if (!isServed) await this.saveLocal();
+      else if (this.at.isNew) this.askName();
+      else await this.saveAs(this.at.name);
     } catch (error) { this.failed(error as Error); }
     this.show();
   }
 
   /** Says what kept a file from being saved or opened, unless that was the user. */
   private failed({ name, message }: Error): void {
-    if (name !== "AbortError") this.status.say(message, "warning");
+    if (name !== "AbortError") say(message, "warning");
   }
 
   private async saveAs(name: string): Promise<void> {
-    if (this.connection.state !== "open") throw new Error(NOT_SAVED);
+    if (connection.state !== "open") throw new Error(NOT_SAVED);
     const text = this.textToSave;
-    const about = { text, base: this.isGone ? null : this.base, ...(this.isNew ? { name } : {}) };
-    const slow = setTimeout(() => this.status.say(NOT_YET, "warning"), SLOW);
+    const { isGone, isNew, base } = this.at;
+    const isHosts = this.at === this.hosts && !isNew;
+    const about = { text, base: isGone ? null : base, ...(isHosts ? {} : { name }) };
+    const slow = setTimeout(() => say(NOT_YET, "warning"), SLOW);
     try {
-      const answer = await this.connection.request<Saved>("studio/save", about);
-      if (answer.ok) {
-        this.saved(name, text);
-        this.isNew = false;
-      } else if (answer.text === null) this.changed(null);
+      const answer = await connection.request<Saved>("studio/save", about);
+      if (answer.ok) this.saved(name, text);
+      else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
@@ -179,11 +209,11 @@ export class Files {
   }
 
   private saved(name: string, text: string): void {
-    this.name = name;
-    this.seen = text;
-    this.isGone = false;
-    this.untouched = null;
-    this.status.say(`${this.shownName} is saved.`);
+    this.at.seen = this.at.base = text;
+    Object.assign(this.at, { name, isGone: false, isNew: false, untouched: null });
+    // A host without a file has that one from now on.
+    if (this.hosts.isNew) this.hosts = this.at;
+    say(`${this.shownName} is saved.`);
     this.onSaved();
   }
 
@@ -193,7 +223,7 @@ export class Files {
     const field = byId<HTMLInputElement>("name-field");
     const problem = byId("name-problem");
     setText(problem, "");
-    field.value = this.name;
+    field.value = this.at.name;
     byId("name-form").onsubmit = async event => {
       if ((event.submitter as HTMLButtonElement | null)?.value === "") return;
       event.preventDefault();
@@ -213,83 +243,61 @@ export class Files {
 
   private async saveLocal(): Promise<void> {
     const text = this.textToSave;
-    this.handle ??= (await pickers.showSaveFilePicker?.({ ...SCENES, suggestedName: this.name }))
-      ?? null;
-    if (this.handle === null) {
-      download(this.name, text, "text/plain");
-    } else {
+    const about = { ...SCENES, suggestedName: this.at.name };
+    this.at.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
+    if (this.at.handle === null) download(this.at.name, text, "text/plain");
+    else {
       // The browser writes into a copy, which takes the file's place as a whole on closing.
-      const file = await this.handle.createWritable();
+      const file = await this.at.handle.createWritable();
       await file.write(text);
       await file.close();
     }
-    this.saved(this.handle?.name ?? this.name, text);
+    this.saved(this.at.handle?.name ?? this.at.name, text);
   }
 
   private async open(): Promise<void> {
-    const question = "The scene on the page is not saved. Open another one in its place?";
-    if (this.isUnsaved && !confirm(question)) return;
+    if (isServed || pickers.showOpenFilePicker === undefined) return byId("file").click();
     try {
-      if (pickers.showOpenFilePicker !== undefined) {
-        const [handle] = await pickers.showOpenFilePicker(SCENES);
-        if (handle !== undefined) await this.take(await handle.getFile(), handle);
-        return;
-      }
-      const input = create("input");
-      input.type = "file";
-      input.accept = ".scn,text/plain";
-      input.addEventListener("change", () => {
-        const file = input.files?.[0];
-        if (file !== undefined) void this.take(file, null);
-      });
-      input.click();
+      const [handle] = await pickers.showOpenFilePicker(SCENES);
+      if (handle !== undefined) await this.take(await handle.getFile(), handle);
     } catch (error) { this.failed(error as Error); }
   }
 
-  private async take(file: File, handle: FileHandle | null): Promise<void> {
+  private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {
     try {
       // Other encodings would come back from Save as another text.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
-      this.editor.open(text);
-      this.handle = handle;
-      this.name = file.name;
-      this.seen = text;
-      this.untouched = null;
+      const scene = new Scene(file.name);
+      scene.handle = handle;
+      if (!isServed) scene.seen = scene.base = text;
+      this.begin(text, scene);
       this.tellLone();
-    } catch { this.status.say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
+    } catch { say(`${visibleLine(file.name)} is no text in UTF-8.`, "warning"); }
     this.show();
   }
 
   /** Shows how page and file differ, and asks. Undo brings back what is not chosen. */
   private ask(theirs: string): void {
-    const lines = difference(withLf(theirs), this.editor.text)
+    const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
     byId("conflict-lines").replaceChildren(...lines);
     setText(byId("conflict-name"), this.shownName);
-    const choose = (act: () => void) => () => {
-      this.conflict.close();
-      act();
+    this.conflict.returnValue = "";
+    this.conflict.onclose = () => {
+      const { returnValue: choice } = this.conflict;
+      // Saving will ask again, because the page's text is still made from an older one.
+      if (choice === "") return;
+      this.at.seen = this.at.base = theirs;
+      if (choice === "page") void this.save();
+      else editor.replace(theirs);
       this.show();
     };
-    byId("conflict-choices").replaceChildren(
-      createButton("Keep the page's text and save it", "primary", choose(() => {
-        this.seen = theirs;
-        void this.save();
-      })),
-      createButton("Take the file's text", "", choose(() => {
-        this.seen = theirs;
-        this.editor.replace(theirs);
-      })),
-      // Saving will ask again, because the page's text is still made from an older one.
-      createButton("Decide later", "", choose(() => {})),
-    );
     if (!this.conflict.open) this.conflict.showModal();
   }
 }
 
-/** A text with the ends of lines that a file has; a new line ends as the one before it. A carriage
- *  return alone ends none. */
+/** A text with the ends of lines that a file has; a new line ends as the one before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -320,3 +328,5 @@ function compared(a: string[], b: string[]): DifferenceLine[] {
   return parts.flatMap(({ value, added, removed }) =>
     value.map((text): DifferenceLine => ({ sign: added ? "+" : removed ? "-" : " ", text })));
 }
+
+export const files = new Files();

@@ -1,9 +1,9 @@
 // Pictures of the newest text: a coarse one at once, then finer ones, to what the scene asks for.
 // The newest text wins; the last good picture stays while it has errors.
 
-import type { Connection } from "./connection";
+import { connection } from "./connection";
 import { fromBase64 } from "./dom";
-import type { SceneEditor } from "./editor";
+import { editor } from "./editor";
 import { isSuperseded, type Frame } from "./protocol";
 
 /** How fine a picture is. */
@@ -23,14 +23,17 @@ const COARSE_PIXELS = 320 * 180;
 /** More than this a canvas cannot hold in every browser. */
 const MOST_PIXELS = 16_000_000;
 const LONGEST_SIDE = 8192;
-
 /** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
 const HAND_RESTS = 20;
-
 /** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
 const SOON = 200;
 
-export class Frames {
+class Frames {
+  onShow: (shown: Shown) => void = () => {};
+  /** Told whether the newest text has a picture, or what kept it from having one. */
+  onState: (state: "good" | "broken" | Error) => void = () => {};
+  /** Told when what was dragged is let go of. */
+  onRest: () => void = () => {};
   /** What is being dragged. */
   dragging: object | null = null;
   /** Settles when the newest text's coarse picture has come, or will not come. */
@@ -44,13 +47,11 @@ export class Frames {
   /** The generation whose picture the server has refused. */
   private refused = 0;
 
-  constructor(
-    private readonly editor: SceneEditor,
-    private readonly connection: Connection,
-    private readonly show: (shown: Shown) => void,
-    /** Told whether the newest text has a picture, or what kept it from having one. */
-    private readonly told: (state: "good" | "broken" | Error) => void,
-  ) {}
+  /** What was dragged is no more, unless something else is dragged already. */
+  released(dragged: object): void {
+    if (this.dragging === dragged) this.dragging = null;
+    this.onRest();
+  }
 
   /** The size of the scene's picture, as soon as something else knows it. A picture that was
    *  refused is asked for anew: it may have been too large. */
@@ -66,7 +67,7 @@ export class Frames {
 
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
-    if (this.editor.uri === "" || this.connection.state !== "open") return;
+    if (editor.uri === "" || connection.state !== "open") return;
     const [width, height] = (this.askedFor = this.size);
     const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE,
       Math.sqrt((width * height) / MOST_PIXELS), 1));
@@ -90,7 +91,7 @@ export class Frames {
   }
 
   private ask(how: { scale: number; samples?: number }): Promise<Frame | null> {
-    return this.editor.request("pinhole/frame", how);
+    return editor.request("pinhole/frame", how);
   }
 
   /** Shows a picture that was asked for. Says whether its text is still the newest. */
@@ -99,7 +100,7 @@ export class Frames {
     try {
       const frame = await answer;
       if (frame === null) {
-        if (generation === this.generation) this.told("broken");
+        if (generation === this.generation) this.onState("broken");
         return false;
       }
       const bitmap = await decoded(fromBase64(frame.png));
@@ -109,14 +110,14 @@ export class Frames {
       }
       this.shown = generation;
       this.size = frame.size;
-      this.show({ bitmap, size: frame.size, fineness, version: frame.version });
-      this.told("good");
+      this.onShow({ bitmap, size: frame.size, fineness, version: frame.version });
+      this.onState("good");
       return generation === this.generation;
     } catch (error) {
       if (isSuperseded(error) || generation !== this.generation
-        || this.connection.state !== "open") return false;
+        || connection.state !== "open") return false;
       this.refused = generation;
-      this.told(error as Error);
+      this.onState(error as Error);
       this.retry();
       return false;
     }
@@ -132,3 +133,5 @@ async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const { image } = await decoder.decode().finally(() => decoder.close());
   return createImageBitmap(image).finally(() => image.close());
 }
+
+export const frames = new Frames();

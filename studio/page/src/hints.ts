@@ -1,20 +1,13 @@
-// What the editor shows between the letters: values that the server works out, and a swatch before
-// each colour, which opens a picker.
+// Between the letters: values that the server works out, and a swatch before each colour.
 
 import { StateEffect, StateField } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
   type DecorationSet } from "@codemirror/view";
-import { create } from "./dom";
-import type { SceneEditor } from "./editor";
+import type { Color, ColorInformation, ColorPresentation, InlayHint } from
+  "vscode-languageserver-protocol";
+import { create, newestOf } from "./dom";
+import { editor } from "./editor";
 import { Gesture } from "./gesture";
-import type { Position, Range, TextEdit } from "./protocol";
-
-interface InlayHint { position: Position; label: string }
-interface Color { red: number; green: number; blue: number; alpha: number }
-interface ColorInformation { range: Range; color: Color }
-
-/** How long the text has to rest before hints are asked for, in milliseconds. */
-const REST = 150;
 
 /** A colour as it is written. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
@@ -37,8 +30,7 @@ class HintWidget extends WidgetType {
 }
 
 class SwatchWidget extends WidgetType {
-  constructor(private readonly hints: Hints, private readonly color: string,
-    private readonly written: string) { super(); }
+  constructor(private readonly color: string, private readonly written: string) { super(); }
 
   override eq(other: SwatchWidget): boolean {
     return other.color === this.color && other.written === this.written;
@@ -50,23 +42,14 @@ class SwatchWidget extends WidgetType {
     // The text is one stop of the Tab key. From a colour, Alt-Enter leads here.
     input.tabIndex = -1;
     let gesture: Gesture | null = null;
-    let wanted: string | null = null;
     let work = Promise.resolve();
-    input.addEventListener("input", () => {
-      const going = (gesture ??= new Gesture(view));
-      wanted = input.value;
-      // One after the other, and of those that wait the newest alone.
-      work = work.then(async () => {
-        const color = wanted;
-        wanted = null;
-        if (color !== null) await this.hints.pick(view.posAtDOM(input), color, going);
-      });
-    });
-    input.addEventListener("change", () => {
-      const going = gesture;
+    const write = newestOf((color: string) =>
+      pick(view.posAtDOM(input), color, (gesture ??= new Gesture(view))));
+    input.addEventListener("input", () => (work = write(input.value)));
+    input.addEventListener("change", () => void work.then(() => {
+      gesture?.end();
       gesture = null;
-      void work.then(() => going?.end());
-    });
+    }));
     this.updateDOM(input);
     return input;
   }
@@ -95,57 +78,40 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-export class Hints {
-  private timer = 0;
+/** The text has come to rest: it has new hints. */
+export async function refreshHints(): Promise<void> {
+  const { doc } = editor.view.state;
+  const [hints, colors] = await Promise.all([
+    editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.range() }),
+    editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
+  ]);
+  // A newer text or connection brings new ones.
+  if (hints === null || colors === null) return;
+  const decorations = [
+    ...hints.map(({ position, label }) =>
+      Decoration.widget({ widget: new HintWidget(String(label)), side: 1 })
+      .range(editor.offset(position))),
+    ...colors.map(({ range, color }) => {
+      const from = editor.offset(range.start);
+      const widget = new SwatchWidget(hex(color), doc.sliceString(from, editor.offset(range.end)));
+      return Decoration.widget({ widget, side: -1 }).range(from);
+    }),
+  ];
+  editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
+}
 
-  constructor(private readonly editor: SceneEditor) {}
-
-  /** The text has changed: new hints come when it rests. */
-  changed(): void {
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.refresh(), REST);
-  }
-
-  private async refresh(): Promise<void> {
-    const { editor } = this;
-    const { doc } = editor.view.state;
-    if (editor.uri === "") return;
-    const [hints, colors] = await Promise.all([
-      editor.ask<InlayHint[]>("textDocument/inlayHint", { range: editor.whole }),
-      editor.ask<ColorInformation[]>("textDocument/documentColor", {}),
-    ]);
-    // A newer text or connection brings new ones.
-    if (hints === null || colors === null || editor.view.state.doc !== doc) return;
-    const decorations = [
-      ...hints.map(({ position, label }) =>
-        Decoration.widget({ widget: new HintWidget(label), side: 1 })
-        .range(editor.offset(position))),
-      ...colors.map(({ range, color }) => {
-        const from = editor.offset(range.start);
-        const widget = new SwatchWidget(this, hex(color),
-          doc.sliceString(from, editor.offset(range.end)));
-        return Decoration.widget({ widget, side: -1 }).range(from);
-      }),
-    ];
-    editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
-  }
-
-  /** Writes a picked colour over the one at an offset, in the way it is written there. */
-  async pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
-    const { editor } = this;
-    const { doc } = editor.view.state;
-    const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
-    const start = editor.position(offset);
-    const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
-    const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
-    const range = { start, end: { line: start.line, character: start.character + written.length } };
-    const ways = await editor.ask<{ label: string; textEdit?: TextEdit }[]>(
-      "textDocument/colorPresentation", { color, range });
-    const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
-      ?? ways?.[0];
-    if (way?.textEdit !== undefined && editor.view.state.doc === doc) gesture.apply(
-      editor.changes([way.textEdit]));
-  }
+/** Writes a picked colour over the one at an offset, in the way it is written there. */
+async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
+  const { doc } = editor.view.state;
+  const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
+  const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
+  const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
+  const range = editor.range(offset, offset + written.length);
+  const ways = await editor.askCurrent<ColorPresentation[]>(
+    "textDocument/colorPresentation", { color, range });
+  const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
+    ?? ways?.[0];
+  if (way?.textEdit !== undefined) gesture.apply(editor.changes([way.textEdit]));
 }
 
 function hex({ red, green, blue }: Color): string {

@@ -1,57 +1,39 @@
 // What is under the pointer: it is named in the footer, and outlined.
 
-import type { SceneEditor } from "./editor";
-import type { OverlayLayer } from "./overlays";
-import type { Picture } from "./picture";
+import { newestOf } from "./dom";
+import { editor } from "./editor";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { nameOf } from "./selection";
-import type { Status } from "./status";
+import { point as tell } from "./status";
 
-export class Hover {
-  private busy = false;
-  private next: Point | null = null;
-  private place: Point | null = null;
+/** Where the pointer is on the stage. */
+let place: Point | null = null;
 
-  constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer, private readonly status: Status) {
-    picture.stage.addEventListener("pointerleave", () => this.leave());
-    picture.stage.addEventListener("pointermove", event => {
-      this.place = event.pointerType === "touch" ? null : picture.local(event);
-      if (event.buttons !== 0) status.point("");
-      else this.again();
-    });
-  }
+picture.stage.addEventListener("pointermove", event => {
+  place = event.pointerType === "touch" ? null : picture.local(event);
+  if (event.buttons !== 0) tell("");
+  else hoverAgain();
+});
+picture.stage.addEventListener("pointerleave", () => {
+  place = null;
+  void hover(null);
+});
 
-  /** Something else may be seen where the pointer is. */
-  again(): void { if (this.place !== null) void this.at(this.picture.toPicture(this.place)); }
+/** Something else may be seen where the pointer is. */
+export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
-  /** While one answer is awaited, only the newest place is remembered. */
-  private async at(point: Point): Promise<void> {
-    this.next = point;
-    if (this.busy) return;
-    this.busy = true;
-    while (this.next !== null) {
-      const at: Point = this.next;
-      this.next = null;
-      const isInside = this.picture.isInside(at);
-      const pick = isInside ? await this.editor.ask<Pick>("pinhole/pick", { point: at }) : null;
-      this.status.point(pick === null ? "" : described(pick, at));
-      this.overlays.hover(pick?.object?.index ?? null);
-      if (pick === null || !this.overlays.isOn("samples")) continue;
-      const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
-      const samples = await this.editor.ask<Samples>("pinhole/samples", { pixel });
-      this.overlays.showSamples(pixel, samples);
-    }
-    this.busy = false;
-  }
-
-  private leave(): void {
-    this.next = this.place = null;
-    this.overlays.hover(null);
-    this.overlays.showSamples([0, 0], null);
-    this.status.point("");
-  }
-}
+const hover = newestOf(async (at: Point | null) => {
+  const isInside = at !== null && picture.isInside(at);
+  const pick = isInside ? await editor.ask<Pick>("pinhole/pick", { point: at }) : null;
+  tell(pick === null || at === null ? "" : described(pick, at));
+  overlays.hover(pick?.object?.index ?? null);
+  if (pick === null || at === null || !overlays.isOn("samples")) return overlays.showSamples(null);
+  const pixel: Point = [Math.floor(at[0]), Math.floor(at[1])];
+  const samples = await editor.ask<Samples>("pinhole/samples", { pixel });
+  overlays.showSamples(samples && { pixel, samples });
+});
 
 /** A sentence on what is seen at a point. */
 function described({ object, point, distance, color }: Pick, at: Point): string {

@@ -1,100 +1,127 @@
-// The keys of the picture: what arrows move, and the choice of tools, views and what drags are held
-// to.
+// The keys of the picture, which work wherever the focus is not in a text field.
 
-import { Drag, type Workbench } from "./drag";
-import type { Along, Point } from "./protocol";
-import type { Selection } from "./selection";
-import type { Status } from "./status";
-import { TOOLS, type Tools } from "./tools";
+import { byId } from "./dom";
+import { Drag } from "./drag";
+import { picture } from "./picture";
+import type { Point } from "./protocol";
+import { selection } from "./selection";
+import { say } from "./status";
+import { tools, type Tool } from "./tools";
 
 /** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
 const KEY_STEP = 10;
-
-/** A pause after which the next arrow key begins another drag, in milliseconds. */
+/** A pause after which the next arrow key, or turn of the wheel, begins another drag, in ms. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-export class Keys {
+/** Where keys mean something of their own: all of them, or those that arrows and Space are. */
+const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
+const SAVE = "Control+s"; // works there, too
+const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
+
+/** A key as it stands at its control. */
+function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
+  if (!ctrlKey && !metaKey) return key;
+  return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
+}
+
+/** The control that a key presses; one that drags are held to already is let go. */
+function controlOf(key: string): HTMLElement | undefined {
+  const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
+  const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
+  return found?.matches("[name=along]:checked") ? byId("free") : found;
+}
+
+/** Whether the space bar is held, which has drags shift the picture. */
+export let space = false;
+let drag: Drag | null = null;
+let pause = 0;
+
+document.addEventListener("keydown", down);
+document.addEventListener("keyup", up);
+picture.onDolly = turned => {
+  drag ??= ofCamera("dolly");
+  drag.by([0, -turned * 60]);
+  rest();
+};
+picture.stage.addEventListener("focusout", event => {
+  // From handle to handle the hands stay on the picture.
+  if (event.relatedTarget instanceof Node && picture.stage.contains(event.relatedTarget)) return;
+  endKeys();
+  freeSpace();
+});
+
+export function endKeys(): void {
+  clearTimeout(pause);
+  drag?.end();
+  drag = null;
+}
+
+function down(event: KeyboardEvent): void {
+  const { key } = event;
+  const arrow = ARROWS[key];
+  const on = event.target as Element;
+  const whole = nameOf(event);
+  const isElsewhere = on.closest(TEXT) !== null && whole !== SAVE;
+  if (event.defaultPrevented || isElsewhere) return;
+  const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage") === null;
+  if (isOfControl && (arrow !== undefined || key === " " || key === "Escape")) return;
+  tools.held = event;
+  clearTimeout(pause);
+  if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) endKeys();
+  if (event.altKey || (event.metaKey && arrow !== undefined)) return;
+  if (arrow !== undefined) {
+    const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
+    drag ??= begin(on);
+    drag?.by([arrow[0] * step, arrow[1] * step]);
+  } else if (whole === "Escape") {
+    if (drag === null) selection.select(null);
+    drag?.cancel();
+    drag = null;
+  } else if (whole === " ") {
+    space = true;
+    picture.stage.dataset["space"] = "";
+  } else {
+    const control = controlOf(whole);
+    if (control === undefined) return;
+    control.click();
+  }
+  event.preventDefault();
+}
+
+function up(event: KeyboardEvent): void {
+  tools.held = event;
+  if (event.key === " ") freeSpace();
+  if (event.key in ARROWS) rest();
+}
+
+/** Taps that follow each other are one drag. */
+function rest(): void {
+  clearTimeout(pause);
+  pause = setTimeout(endKeys, KEY_PAUSE);
+}
+
+function freeSpace(): void {
   space = false;
-  private drag: Drag | null = null;
-  private pause = 0;
+  delete picture.stage.dataset["space"];
+}
 
-  constructor(private readonly bench: Workbench, private readonly selection: Selection,
-    private readonly tools: Tools, private readonly status: Status) {
-    const { stage } = bench.picture;
-    stage.addEventListener("keydown", event => this.down(event));
-    stage.addEventListener("keyup", event => this.up(event));
-    stage.addEventListener("focusout", event => {
-      // From handle to handle the hands stay on the picture.
-      if (event.relatedTarget instanceof Node && stage.contains(event.relatedTarget)) return;
-      this.end();
-      this.freeSpace();
-    });
-  }
+function ofCamera(handle: Tool): Drag {
+  const { size: [width, height] } = picture;
+  // Roll turns about the middle: one has to take hold beside of it.
+  const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
+  return new Drag(at, () => ({ object: null, handle, at }));
+}
 
-  end(): void {
-    clearTimeout(this.pause);
-    this.drag?.end();
-    this.drag = null;
-  }
-
-  private down(event: KeyboardEvent): void {
-    const { key } = event;
-    const { picture } = this.bench;
-    const arrow = ARROWS[key];
-    this.tools.shift = event.shiftKey;
-    clearTimeout(this.pause);
-    if (arrow === undefined && !["Escape", "Shift", "Control"].includes(key)) this.end();
-    if (event.altKey || event.metaKey || (event.ctrlKey && arrow === undefined)) return;
-    if (arrow !== undefined) {
-      const step = event.ctrlKey ? KEY_STEP / 10 : KEY_STEP;
-      this.drag ??= this.begin(event.target as Element);
-      this.drag?.by([arrow[0] * step, arrow[1] * step]);
-    } else if (key === "Escape") {
-      if (this.drag === null) this.selection.select(null);
-      this.drag?.cancel();
-      this.drag = null;
-    } else if (key === " ") {
-      this.space = true;
-      picture.stage.dataset["space"] = "";
-    } else if (key in TOOLS) this.tools.choose(TOOLS[key as keyof typeof TOOLS]);
-    else if ("xyz".includes(key)) this.tools.hold(key as Along);
-    else if (key === "f") this.tools.hold("floor");
-    else if (key === "+" || key === "=") picture.zoomBy(2);
-    else if (key === "-") picture.zoomBy(0.5);
-    else if (key === "0") picture.fit();
-    else if (key === "1") picture.actualSize();
-    else return;
-    event.preventDefault();
-  }
-
-  private up(event: KeyboardEvent): void {
-    this.tools.shift = event.shiftKey;
-    if (event.key === " ") this.freeSpace();
-    // Taps that follow each other are one drag.
-    if (event.key in ARROWS) this.pause = setTimeout(() => this.end(), KEY_PAUSE);
-  }
-
-  private freeSpace(): void {
-    this.space = false;
-    delete this.bench.picture.stage.dataset["space"];
-  }
-
-  /** What an arrow key drags: the focused handle, else the selected object or the camera. */
-  private begin(focused: Element): Drag | null {
-    const { tool } = this.tools;
-    const { size: [width, height] } = this.bench.picture;
-    const isHandle = focused.closest(".handle") !== null;
-    if (!isHandle && tool !== "move") {
-      // Roll turns about the middle: one has to take hold beside of it.
-      const at: Point = [tool === "roll" ? 0.75 * width : width / 2, height / 2];
-      return new Drag(this.bench, at, () => ({ object: null, handle: tool, at }));
-    }
-    const held = this.selection.held(isHandle ? focused : null);
-    if (held !== null) return new Drag(this.bench, held.at, () => held);
-    this.status.say("Select an object, or choose what the camera does.", "warning");
-    return null;
-  }
+/** What an arrow key drags: the focused handle, else the selected object or the camera. */
+function begin(focused: Element): Drag | null {
+  const { tool } = tools;
+  const isHandle = focused.closest(".handle") !== null;
+  if (!isHandle && tool !== "move") return ofCamera(tool);
+  const held = selection.held(isHandle ? focused : null);
+  if (held !== null) return new Drag(held.at, () => held);
+  say("Select an object, or choose what the camera does.", "warning");
+  return null;
 }

@@ -1,8 +1,7 @@
-// The scene language as the editor colours it while one types. What names mean is the server's
-// business.
+// The scene language as the editor colours it. What names mean is the server's business.
 
-import { HighlightStyle, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
-import { tags } from "@lezer/highlight";
+import { StreamLanguage, syntaxHighlighting } from "@codemirror/language";
+import { classHighlighter } from "@lezer/highlight";
 
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
 const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
@@ -56,7 +55,7 @@ export const sceneLanguage = StreamLanguage.define<State>({
       if (!state.block && KINDS.has(word[0])) return "keyword";
       if (defines) return "typeName";
       if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos))
-        && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.standard";
+        && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.special";
       if (state.block && state.parentheses === 0 && FIELDS.has(word[0])) return "propertyName";
       return "variableName";
     }
@@ -69,21 +68,10 @@ export const sceneLanguage = StreamLanguage.define<State>({
     state.defines = false;
     return "+-*/=".includes(character ?? "") ? "operator" : "punctuation";
   },
-  indent: (state, after, context) =>
-    state.block && !/^\s*\}/.test(after) ? context.unit : 0,
+  indent: (state, after, context) => state.block && !/^\s*\}/.test(after) ? context.unit : 0,
   languageData: { commentTokens: { line: "//", block: { open: "/*", close: "*/" } },
     closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
-export const sceneHighlighting = syntaxHighlighting(
-  HighlightStyle.define([
-    { tag: tags.comment, color: "var(--code-comment)", fontStyle: "italic" },
-    { tag: tags.keyword, color: "var(--code-keyword)" },
-    { tag: tags.propertyName, color: "var(--code-field)" },
-    { tag: tags.typeName, color: "var(--code-name)", fontWeight: "600" },
-    { tag: tags.number, color: "var(--code-number)" },
-    { tag: tags.atom, color: "var(--code-number)" },
-    { tag: tags.standard(tags.variableName), color: "var(--code-keyword)" },
-    { tag: [tags.operator, tags.punctuation], color: "var(--code-punctuation)" },
-  ]),
-);
+/** What has which colour is in studio.css. */
+export const sceneHighlighting = syntaxHighlighting(classHighlighter);

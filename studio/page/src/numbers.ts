@@ -1,18 +1,16 @@
-// Numbers in the text that one can turn: a drag to the side with the alt key, and a slider that
-// opens below a number on a click or by Alt-Enter.
+// Numbers in the text that one can turn: by a drag with the alt key, and by a slider below them.
 
 import { syntaxTree } from "@codemirror/language";
-import { Facet, StateEffect, StateField, type EditorState,
-  type Extension } from "@codemirror/state";
-import { EditorView, keymap, showTooltip, type Command, type Tooltip,
-  type TooltipView } from "@codemirror/view";
+import { StateEffect, StateField, type Extension } from "@codemirror/state";
+import { EditorView, keymap, showTooltip, type TooltipView } from "@codemirror/view";
 import { create, createButton, followPointer } from "./dom";
+import { editor } from "./editor";
 import { Gesture } from "./gesture";
 import { endsInWholeField, NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
-/** A number literal, with the sign that belongs to it. */
-interface Literal { from: number; to: number; value: number; step: number }
+/** A number literal, with the sign that belongs to it, and where its unit ends. */
+export interface Literal { from: number; to: number; end: number; value: number; step: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
@@ -20,7 +18,8 @@ const DRAG_PIXELS = 4;
 /** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
-function literalAt(state: EditorState, at: number): Literal | null {
+export function literalAt(at: number): Literal | null {
+  const { state } = editor.view;
   const node = [-1, 1].map(side => syntaxTree(state).resolveInner(at, side as -1 | 1))
     .find(it => it.name === "number");
   if (node === undefined) return null;
@@ -30,8 +29,8 @@ function literalAt(state: EditorState, at: number): Literal | null {
   const before = state.sliceDoc(line.from, node.from);
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
-  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length, value,
-    step: stepOf(value, written, endsInWholeField(before)) };
+  return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length,
+    end: node.to, value, step: stepOf(value, written, endsInWholeField(before)) };
 }
 
 /** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
@@ -44,17 +43,18 @@ function stepOf(value: number, written: string, isWhole: boolean): number {
   return 10 ** (lastDigit < 0 ? Math.min(exponent, lastDigit) : exponent);
 }
 
-function format(value: number, step: number): string {
-  const decimals = Math.max(0, Math.round(-Math.log10(step)));
+export function format(value: number, step: number): string {
+  // A step of 0.25 has two decimals, one of 1e-7 seven.
+  const [, fraction = "", power = "0"] = /^\d+(?:\.(\d+))?(?:e(.*))?$/
+    .exec(String(Number(step.toPrecision(12)))) ?? [];
+  const decimals = Math.max(0, fraction.length - Number(power));
   const rounded = Number(value.toFixed(Math.min(decimals, 100)));
   return String(Object.is(rounded, -0) ? 0 : rounded);
 }
 
-/** Says between which numbers the one at a place of the text may be; null if nobody knows. */
-const limitSource = Facet.define<(at: number) => Promise<Limits | null>>();
-
-async function limitsOf({ state }: EditorView, literal: Literal): Promise<Limits | null> {
-  return (await state.facet(limitSource)[0]?.(literal.to)) ?? null;
+/** Says between which numbers the one at an offset may be; null if nobody knows. */
+function limitsOf(at: number): Promise<Limits | null> {
+  return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
 /** The least and the greatest value that a number can be turned to. */
@@ -63,19 +63,29 @@ function bounds({ step }: Literal, limits: Limits | null): [number, number] {
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
+/** The same for a slider: about the value that is there, unless both bounds are known. */
+function offered(literal: Literal, limits: Limits | null): [number, number] {
+  const span = Math.max(Math.abs(literal.value), 50 * literal.step);
+  const [least, most] = bounds(literal, limits);
+  if (limits?.open === false && Number.isFinite(most - least)) return [least, most];
+  return [Math.max(least, literal.value - span), Math.min(most, literal.value + span)];
+}
+
 /** Turns one number through a gesture, as far as its limits allow, which the server knows. */
-class Turn {
+export class Turn {
   private readonly gesture: Gesture;
   private to: number;
   private written: string;
   private readonly bounds: Promise<[number, number]>;
   private wanted = 0;
+  /** Whether somebody else has changed the number. */
+  isOver = false;
 
-  constructor(private readonly view: EditorView, private readonly literal: Literal) {
-    this.gesture = new Gesture(view);
+  constructor(private readonly literal: Literal) {
+    this.gesture = new Gesture(editor.view);
     this.to = literal.to;
-    this.written = view.state.sliceDoc(literal.from, literal.to);
-    this.bounds = limitsOf(view, literal).then(limits => bounds(literal, limits));
+    this.written = editor.view.state.sliceDoc(literal.from, literal.to);
+    this.bounds = limitsOf(literal.to).then(limits => bounds(literal, limits));
   }
 
   async set(value: number): Promise<void> {
@@ -83,9 +93,10 @@ class Turn {
     this.wanted = value;
     const [least, most] = await this.bounds;
     const text = format(Math.min(most, Math.max(least, this.wanted)), step);
-    const now = this.view.state.sliceDoc(from, this.to);
+    const now = editor.view.state.sliceDoc(from, this.to);
     // Whoever has changed the number otherwise keeps it.
-    if (text === now || now !== this.written) return;
+    this.isOver ||= now !== this.written;
+    if (text === now || this.isOver) return;
     this.gesture.apply({ from, to: this.to, insert: text });
     this.to = from + text.length;
     this.written = text;
@@ -94,83 +105,89 @@ class Turn {
   end(): void { void this.bounds.then(() => this.gesture.end()); }
 }
 
+/** A slider of a number, which may be gone. What it does until it is let go is one turn. */
+export class Dial {
+  readonly range = create("input");
+  turn: Turn | null = null;
+
+  constructor(readonly literal: () => Literal | null) {
+    this.range.type = "range";
+    this.range.addEventListener("input", () => void this.set(Number(this.range.value)));
+    this.range.addEventListener("change", () => this.end());
+  }
+
+  async set(value: number): Promise<void> {
+    const found = this.literal();
+    if (found !== null) this.turn ??= new Turn(found);
+    await this.turn?.set(value);
+  }
+
+  end(): void {
+    this.turn?.end();
+    this.turn = null;
+  }
+
+  /** Shows the number between the ends that its limits leave. */
+  offer(found: Literal, limits: Limits | null): void {
+    const [min, max] = offered(found, limits);
+    Object.assign(this.range, { min, max, step: found.step, value: found.value });
+  }
+}
+
 const openSlider = StateEffect.define<number | null>();
 
-const sliderField = StateField.define<Tooltip | null>({
+/** Where the number begins whose slider is open. */
+const sliderField = StateField.define<number | null>({
   create: () => null,
-  update(tooltip, transaction) {
-    let next = tooltip;
+  update(open, transaction) {
+    const { changes, docChanged, effects, selection } = transaction;
+    const next = effects.findLast(it => it.is(openSlider));
+    if (next !== undefined) return next.value;
     // Typing closes it; what the slider itself writes does not.
-    if (next !== null && transaction.docChanged) next = transaction.isUserEvent("input") ? null
-      : { ...next, pos: transaction.changes.mapPos(next.pos, -1) };
-    if (next !== null && transaction.selection !== undefined) next = null;
-    for (const effect of transaction.effects) {
-      if (!effect.is(openSlider)) continue;
-      const pos = effect.value;
-      next = pos === null ? null : { pos, create: createSlider, strictSide: false };
-    }
-    return next;
+    const isTyped = docChanged && transaction.isUserEvent("input");
+    return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
-  provide: field => showTooltip.from(field),
+  provide: field => showTooltip.from(field, pos =>
+    pos === null ? null : { pos, create: createSlider, strictSide: false }),
 });
 
-function createSlider(view: EditorView): TooltipView {
+const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.of(pos) });
+
+function createSlider({ state }: EditorView): TooltipView {
   const dom = create("div", "slider");
-  const range = create("input");
-  range.type = "range";
-  let turn: Turn | null = null;
-  let shown: number | null = null;
-  const literal = () => literalAt(view.state, (view.state.field(sliderField)?.pos ?? 0) + 1);
+  const dial = new Dial(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
+  const { range, literal } = dial;
+  let limits: Limits | null = null;
   const adapt = () => {
     const found = literal();
-    if (found === null || turn !== null || found.value === shown) return;
-    const span = Math.max(Math.abs(found.value), 50 * found.step);
-    const offer = (limits: Limits | null) => {
-      const [least, most] = bounds(found, limits);
-      range.min = String(Math.max(least, found.value - span));
-      range.max = String(Math.min(most, found.value + span));
-      range.step = String(found.step);
-      range.value = String(found.value);
-    };
+    if (found === null || dial.turn !== null) return;
     range.setAttribute("aria-label", `Value ${found.value}`);
-    shown = found.value;
-    offer(null);
-    const isStill = () => found.value === shown && turn === null;
-    void limitsOf(view, found).then(limits => isStill() && offer(limits));
+    dial.offer(found, limits);
   };
-  range.addEventListener("input", () => {
-    const found = literal();
-    if (found !== null) turn ??= new Turn(view, found);
-    void turn?.set(Number(range.value));
-  });
-  range.addEventListener("change", () => {
-    turn?.end();
-    turn = null;
-  });
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
     event.preventDefault();
-    view.dispatch({ effects: openSlider.of(null) });
-    view.focus();
+    show(null);
+    editor.view.focus();
   });
-  const less = createButton("−", "", () => turnOnce(view, literal(), -1));
-  less.setAttribute("aria-label", "Less");
-  const more = createButton("+", "", () => turnOnce(view, literal(), 1));
-  more.setAttribute("aria-label", "More");
+  const less = createButton("−", "", () => turnOnce(literal(), -1), "Less");
+  const more = createButton("+", "", () => turnOnce(literal(), 1), "More");
   const grip = create("span", "grip", "↔");
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
-  grip.addEventListener("pointerdown", event => {
-    const found = literal();
-    if (found !== null) scrub(event, view, found);
-  });
+  grip.addEventListener("pointerdown", event => scrub(event, literal()));
   dom.append(less, range, more, grip);
+  void limitsOf((state.field(sliderField) ?? 0) + 1).then(found => {
+    limits = found;
+    adapt();
+  });
   return { dom, mount: adapt, update: ({ docChanged }) => { if (docChanged) adapt(); } };
 }
 
 /** Turns a number by the way of the pointer to the side, until it is let go. */
-function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
+function scrub(event: PointerEvent, literal: Literal | null): boolean {
+  if (literal === null) return false;
   event.preventDefault();
-  const turn = new Turn(view, literal);
+  const turn = new Turn(literal);
   document.body.classList.add("scrubbing");
   const move = (next: PointerEvent) => void turn.set(
     literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
@@ -178,61 +195,51 @@ function scrub(event: PointerEvent, view: EditorView, literal: Literal): void {
     document.body.classList.remove("scrubbing");
     turn.end();
   });
+  return true;
 }
 
 /** Turns a number by a step. Says whether there is one. */
-function turnOnce(view: EditorView, literal: Literal | null, direction: number): boolean {
+function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
-  const turn = new Turn(view, literal);
+  const turn = new Turn(literal);
   void turn.set(literal.value + direction * literal.step);
   turn.end();
   return true;
 }
 
-/** Turns the number at the cursor; elsewhere the key does what it does without. */
-function turnBy(direction: number): Command {
-  return view => turnOnce(view, literalAt(view.state, view.state.selection.main.head), direction);
-}
+const atCursor = () => literalAt(editor.view.state.selection.main.head);
 
-const openAtCursor: Command = view => {
-  const literal = literalAt(view.state, view.state.selection.main.head);
-  if (literal === null) return false;
-  view.dispatch({ effects: openSlider.of(literal.from) });
-  requestAnimationFrame(() => view.dom.querySelector<HTMLInputElement>(".slider input")?.focus());
-  return true;
-};
-
-export function numberControls(limits: (at: number) => Promise<Limits | null>): Extension {
-  return [
-    limitSource.of(limits),
-    sliderField,
-    EditorView.domEventHandlers({
-      pointerdown(event, view) {
-        if (!event.altKey || event.button !== 0) return false;
-        const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
-        const literal = at === null ? null : literalAt(view.state, at);
-        if (literal === null) return false;
-        scrub(event, view, literal);
-        return true;
-      },
-      // With the alt key the editor would begin to select.
-      mousedown: event => event.altKey,
-      click(event, view) {
-        const { main } = view.state.selection;
-        const literal = main.empty && !event.altKey ? literalAt(view.state, main.head) : null;
-        if (literal !== null) view.dispatch({ effects: openSlider.of(literal.from) });
-        return false;
-      },
-    }),
-    keymap.of([
-      { key: "Alt-ArrowUp", run: turnBy(1) },
-      { key: "Alt-ArrowDown", run: turnBy(-1) },
-      { key: "Alt-Enter", run: openAtCursor },
-      { key: "Escape", run: view => {
-        if (view.state.field(sliderField) === null) return false;
-        view.dispatch({ effects: openSlider.of(null) });
-        return true;
-      } },
-    ]),
-  ];
-}
+export const numberControls: Extension = [
+  sliderField,
+  EditorView.domEventHandlers({
+    pointerdown(event, view) {
+      if (!event.altKey || event.button !== 0) return false;
+      const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
+      return scrub(event, at === null ? null : literalAt(at));
+    },
+    // With the alt key the editor would begin to select.
+    mousedown: event => event.altKey,
+    click({ altKey }, { state }) {
+      const literal = state.selection.main.empty && !altKey ? atCursor() : null;
+      if (literal !== null) show(literal.from);
+      return false;
+    },
+  }),
+  keymap.of([
+    // Elsewhere than at a number these do what they do without.
+    { key: "Alt-ArrowUp", run: () => turnOnce(atCursor(), 1) },
+    { key: "Alt-ArrowDown", run: () => turnOnce(atCursor(), -1) },
+    { key: "Alt-Enter", run: ({ dom }) => {
+      const literal = atCursor();
+      if (literal === null) return false;
+      show(literal.from);
+      requestAnimationFrame(() => dom.querySelector<HTMLInputElement>(".slider input")?.focus());
+      return true;
+    } },
+    { key: "Escape", run: ({ state }) => {
+      if (state.field(sliderField) === null) return false;
+      show(null);
+      return true;
+    } },
+  ]),
+];

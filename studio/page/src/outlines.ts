@@ -1,19 +1,19 @@
 // Asks for what is drawn over the picture: of the newest text, and no more than is shown.
 
-import type { Connection } from "./connection";
-import { byId } from "./dom";
-import type { SceneEditor } from "./editor";
-import type { Frames } from "./frames";
-import type { OverlayLayer } from "./overlays";
+import { connection } from "./connection";
+import { byId, newestOf } from "./dom";
+import { editor } from "./editor";
+import { frames } from "./frames";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
 import type { Overlays, SceneObject } from "./protocol";
-import { nameOf, type Selection } from "./selection";
+import { nameOf, selection } from "./selection";
 import { setText } from "./visible";
-
-/** How long the text has to rest before its objects are listed, in milliseconds. */
-const REST = 150;
 
 /** So many objects are described to those who do not see the picture. */
 const DESCRIBED = 6;
+
+let described = "";
 
 /** Says what is seen, and where; changes of it are announced. */
 function describe({ size, objects }: Overlays, count: number): void {
@@ -26,69 +26,38 @@ function describe({ size, objects }: Overlays, count: number): void {
   });
   if (count > objects.length) places.push(`${count - objects.length} more`);
   const text = places.length === 0 ? "A scene without objects" : places.join("; ");
-  const canvas = document.querySelector("canvas");
   // At first nothing has changed.
-  const isNew = canvas?.dataset["seen"] !== undefined && canvas.ariaLabel !== text;
-  if (isNew) setText(byId("seen"), text);
-  canvas?.setAttribute("aria-label", text);
-  canvas?.setAttribute("data-seen", "");
+  if (described !== "" && described !== text) setText(byId("seen"), text);
+  described = text;
+  picture.canvas.setAttribute("aria-label", text);
 }
 
-export class Outlines {
-  onRest: () => void = () => {};
-  private asking = false;
-  private outdated = false;
-  private timer = 0;
-
-  constructor(private readonly editor: SceneEditor, private readonly connection: Connection,
-    private readonly frames: Frames, private readonly overlays: OverlayLayer,
-    private readonly selection: Selection) {}
-
-  /** The text has changed, or the server. The coarse picture comes first. */
-  changed(): void {
-    void this.frames.coarse.then(() => this.refresh());
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.rested(), REST);
-  }
-
-  /** The names and places of the objects, once nothing moves any more. */
-  async rested(): Promise<void> {
-    const { editor, frames, selection } = this;
-    const { doc } = editor.view.state;
-    if (frames.dragging !== null || this.connection.state !== "open") return;
-    this.onRest();
-    const about = { object: selection.index };
-    const objects = await editor.ask<SceneObject[]>("pinhole/objects", about);
-    if (objects === null || editor.view.state.doc !== doc) return;
-    selection.list(objects);
-    const only = objects.slice(0, DESCRIBED).map(it => it.index);
-    const seen = await editor.ask<Overlays>("pinhole/overlays", { only });
-    if (seen !== null && editor.view.state.doc === doc) describe(seen, objects.length);
-  }
-
-  async refresh(): Promise<void> {
-    const { connection, editor, frames, overlays, selection } = this;
-    this.outdated = true;
-    if (this.asking) return;
-    this.asking = true;
-    while (this.outdated && connection.state === "open") {
-      this.outdated = false;
-      const { doc } = editor.view.state;
-      const shown = [selection.index, overlays.hovered].filter(it => it !== null);
-      const needsNone = shown.length === 0 && !overlays.needsAny;
-      if (frames.dragging !== null && needsNone) continue;
-      const only = overlays.needsAll ? null : shown;
-      const about = { object: selection.index, only };
-      const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-      // A text with errors has the last good picture, which nothing can be taken hold of in.
-      overlays.isTrue = answer !== null;
-      if (answer !== null && editor.view.state.doc === doc) {
-        overlays.data = answer;
-        frames.resized(answer.size);
-      }
-      overlays.draw();
-      selection.draw();
-    }
-    this.asking = false;
-  }
+/** The text has come to rest: its objects are listed, with their names and places. */
+export async function listObjects(): Promise<void> {
+  if (frames.dragging !== null || connection.state !== "open") return;
+  const about = { object: selection.index };
+  const objects = await editor.askCurrent<SceneObject[]>("pinhole/objects", about);
+  if (objects === null) return;
+  selection.list(objects);
+  const only = objects.slice(0, DESCRIBED).map(it => it.index);
+  const seen = await editor.askCurrent<Overlays>("pinhole/overlays", { only });
+  if (seen !== null) describe(seen, objects.length);
 }
+
+/** Asks for what is shown, one question after the other. */
+export const refreshOutlines = newestOf<void>(async () => {
+  const shown = [selection.index, overlays.hovered].filter(it => it !== null);
+  const needsNone = shown.length === 0 && !overlays.needsAny;
+  if (connection.state !== "open" || (frames.dragging !== null && needsNone)) return;
+  const { doc } = editor.view.state;
+  const about = { object: selection.index, only: overlays.needsAll ? null : shown };
+  const answer = await editor.ask<Overlays>("pinhole/overlays", about);
+  // A text with errors has the last good picture, which nothing can be taken hold of in.
+  overlays.isTrue = answer !== null;
+  if (answer !== null && editor.view.state.doc === doc) {
+    overlays.data = answer;
+    frames.resized(answer.size);
+  }
+  overlays.draw();
+  selection.draw();
+});

@@ -1,28 +1,22 @@
-// What is drawn over the picture: outlines, vanishing points with the lines that lead there, the
-// horizon, the view axis, the pixel grid, the planes near and far, and the samples of a pixel.
+// What is drawn over the picture: layers that can be switched on, and what is selected or hovered.
 
-import { createSvg, remember, remembered } from "./dom";
-import type { Picture } from "./picture";
+import { byId, createSvg, remember, remembered } from "./dom";
+import { picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
-/** What can be switched on, with its name in the menu. */
-export const LAYERS = {
-  outlines: "Outlines of all objects",
-  vanishing: "Vanishing points",
-  horizon: "Horizon",
-  axis: "View axis",
-  grid: "Pixel grid",
-  near: "Near and far",
-  samples: "Samples of the pixel under the pointer",
-} as const;
+/** What can be switched on: the boxes of a menu have these names. */
+export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
-export type Layer = keyof typeof LAYERS;
+const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** From this zoom on a grid of pixels can be seen. */
+/** From this zoom on a grid of pixels can be seen, and samples in a pixel. */
 const GRID_ZOOM = 6;
+const SAMPLES_ZOOM = 4;
+/** So far from the stage's border arrows end, in screen pixels. */
+const EDGE = 14;
 
-export class OverlayLayer {
+class OverlayLayer {
   /** The newest overlays; those of the last good text while there is none. */
   data: Overlays | null = null;
   /** Whether they are those of the text that is there. */
@@ -32,28 +26,23 @@ export class OverlayLayer {
   onNeed: () => void = () => {};
   private selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
-  private readonly on = new Set<Layer>();
 
-  constructor(private readonly svg: SVGSVGElement, private readonly picture: Picture) {
+  constructor(private readonly svg: SVGElement) {
     const layers = remembered("layers")?.split(" ") ?? [];
-    const known = Object.keys(LAYERS) as Layer[];
-    for (const layer of known) if (layers.includes(layer)) this.on.add(layer);
+    for (const box of boxes) {
+      box.checked = layers.includes(box.name);
+      box.addEventListener("change", () => {
+        remember("layers", boxes.filter(it => it.checked).map(it => it.name).join(" "));
+        this.draw();
+        if (box.checked) this.onNeed();
+      });
+    }
   }
 
-  isOn(layer: Layer): boolean { return this.on.has(layer); }
-
-  turn(layer: Layer, on: boolean): void {
-    if (on) this.on.add(layer);
-    else this.on.delete(layer);
-    remember("layers", [...this.on].join(" "));
-    this.draw();
-    if (on) this.onNeed();
-  }
+  isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
   /** Whether anything is switched on that the server has to be asked about. */
-  get needsAny(): boolean {
-    return this.needsAll || (["horizon", "near"] as const).some(layer => this.isOn(layer));
-  }
+  get needsAny(): boolean { return this.needsAll || this.isOn("horizon") || this.isOn("near"); }
 
   /** Whether something is switched on that all objects have. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
@@ -70,14 +59,16 @@ export class OverlayLayer {
     if (hovered !== null && !this.data?.objects.some(it => it.index === hovered)) this.onNeed();
   }
 
-  showSamples(pixel: Point, samples: Samples | null): void {
-    this.samples = samples === null ? null : { pixel, samples };
+  showSamples(samples: typeof this.samples): void {
+    if (samples === null && this.samples === null) return;
+    this.samples = samples;
     this.draw();
   }
 
   draw(): void {
-    const { data, picture, svg } = this;
+    const { data, svg } = this;
     svg.replaceChildren();
+    setText(byId("unseen"), data === null ? "" : [...this.unseen(data)].join(" "));
     if (data === null) return;
     const group = createSvg("g", { transform: picture.matrix });
     svg.append(group);
@@ -88,7 +79,7 @@ export class OverlayLayer {
       group.append(createSvg("path", { d, class: `line under ${name}` }),
         createSvg("path", { d, class: `line ${name}` }));
     };
-    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid(picture));
+    if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
     if (this.isOn("near")) {
       path("near", data.near);
       path("far", data.far);
@@ -110,21 +101,46 @@ export class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
+  /** Marks a point with its coordinates; outside of the stage it is an arrow at the border. */
   private mark(point: Point, name: string, text: string): void {
-    const [x, y] = this.picture.toScreen(point);
-    if (Math.abs(x) > 1e6 || Math.abs(y) > 1e6) return;
-    const d = `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`;
-    const label = createSvg("text", { x: x + 9, y: y - 7, class: `mark ${name}` });
-    setText(label, text);
-    this.svg.append(createSvg("path", { d, class: `line under ${name}` }),
-      createSvg("path", { d, class: `line ${name}` }), label);
+    const [x, y] = picture.toScreen(point);
+    const { clientWidth: width, clientHeight: height } = picture.stage;
+    const [middleX, middleY] = [width / 2, height / 2];
+    // How far out it is: 1 is the border.
+    const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
+      Math.abs(y - middleY) / (middleY - EDGE));
+    const part = Math.max(1, out);
+    const [atX, atY] = [middleX + (x - middleX) / part, middleY + (y - middleY) / part];
+    const turn = Math.atan2(y - middleY, x - middleX) * 180 / Math.PI;
+    const shape = out > 1 ? { d: "M-16 0H0M-7 -6L0 0L-7 6", transform:
+      `translate(${atX} ${atY}) rotate(${turn})` }
+      : { d: `M${x - 7} ${y}H${x + 7}M${x} ${y - 7}V${y + 7}`, transform: "" };
+    const isRight = atX > width - 200;
+    const label = createSvg("text", { x: atX + (isRight ? -12 : 12), class: `mark ${name}`,
+      y: Math.max(16, atY - 9), "text-anchor": isRight ? "end" : "start" });
+    setText(label, `${text} (${point.map(it => Math.round(it)).join(", ")})`);
+    this.svg.append(createSvg("path", { ...shape, class: `line under ${name}` }),
+      createSvg("path", { ...shape, class: `line ${name}` }), label);
+  }
+
+  /** Why something that is switched on is not to be seen. */
+  private *unseen(data: Overlays): Generator<string> {
+    const { zoom } = picture;
+    if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
+    if (this.isOn("horizon") && data.horizon === null) yield "The horizon is not near the picture.";
+    if (this.isOn("near") && data.near.length + data.far.length === 0) {
+      yield "Near and far cut no checkerboard that is seen.";
+    }
+    const parallel = this.isOn("vanishing") ? data.vanishing.filter(it => it.point === null) : [];
+    for (const { axis } of parallel) yield `Lines along ${axis} stay parallel in this picture.`;
+    if (this.isOn("samples") && zoom < SAMPLES_ZOOM) yield "Samples show when you zoom in.";
   }
 
   private drawSamples(): void {
     if (this.samples === null) return;
     const { pixel, samples } = this.samples;
-    const [x, y] = this.picture.toScreen(pixel);
-    const size = this.picture.zoom;
+    const [x, y] = picture.toScreen(pixel);
+    const size = picture.zoom;
     this.svg.append(createSvg("rect", { x, y, width: size, height: size, class: "line sampled" }));
     samples.points.forEach(([dx, dy], i) => {
       const dot = createSvg("circle", { cx: x + dx * size, cy: y + dy * size,
@@ -136,7 +152,7 @@ export class OverlayLayer {
 }
 
 /** The lines between the pixels that can be seen. */
-function grid(picture: Picture): Polyline[] {
+function grid(): Polyline[] {
   const { stage, size } = picture;
   const [left, top] = picture.toPicture([0, 0]);
   const [right, bottom] = picture.toPicture([stage.clientWidth, stage.clientHeight]);
@@ -147,3 +163,5 @@ function grid(picture: Picture): Polyline[] {
   for (let y = y0; y <= y1; y++) lines.push([[x0, y], [x1, y]]);
   return lines;
 }
+
+export const overlays = new OverlayLayer(document.querySelector("#lines") as SVGElement);

@@ -1,5 +1,6 @@
 // The picture: a canvas in a stage, and the view of it, which can be zoomed into single pixels.
 
+import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
@@ -9,9 +10,11 @@ const MOST_ZOOM = 64;
 /** The space between the picture and the stage's border, in screen pixels. */
 const MARGIN = 12;
 
-export class Picture {
+class Picture {
   /** Called when the view or the size of the picture has changed. */
   onView: () => void = () => {};
+  /** Called when the wheel is to move the camera: 1 is 300 pixels of it. */
+  onDolly: (turned: number) => void = () => {};
   size: [number, number] = [1280, 720];
   zoom = 1;
 
@@ -27,7 +30,10 @@ export class Picture {
     new ResizeObserver(() => (this.fitted ? this.fit() : this.place())).observe(stage);
     stage.addEventListener("wheel", event => {
       event.preventDefault();
-      this.zoomBy(2 ** (-event.deltaY / (event.deltaMode === 0 ? 300 : 10)), this.local(event));
+      // With the shift key browsers turn the wheel to the side.
+      const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
+      if (event.shiftKey) this.onDolly(turned);
+      else this.zoomBy(2 ** -turned, this.local(event));
     }, { passive: false });
   }
 
@@ -43,6 +49,7 @@ export class Picture {
     canvas.dataset["version"] = String(version);
     if (size[0] !== this.size[0] || size[1] !== this.size[1]) {
       this.size = size;
+      this.stage.style.setProperty("--aspect", String(size[0] / size[1]));
       this.fit();
     }
     canvas.dispatchEvent(new CustomEvent("pinhole-frame",
@@ -121,3 +128,6 @@ export class Picture {
     this.onView();
   }
 }
+
+export const picture = new Picture(byId("stage"),
+  document.querySelector("canvas") as HTMLCanvasElement);

@@ -1,9 +1,6 @@
-// What goes over the connection beside the Language Server Protocol: the answers of `pinhole/…` and
-// `studio/…`, as docs/protocol.md describes them.
+// The answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
 
-export interface Position { line: number; character: number }
-export interface Range { start: Position; end: Position }
-export interface TextEdit { range: Range; newText: string }
+import type { Range, TextEdit } from "vscode-languageserver-protocol";
 
 /** A point of the picture, in pixels of the scene, from the top left corner. */
 export type Point = readonly [number, number];
@@ -49,6 +46,11 @@ export interface Dragged {
 
 /** Between which numbers a number may be; `open` excludes the bounds themselves. */
 export interface Limits { least: number | null; most: number | null; open: boolean; whole: boolean }
+/** A number or angle that a `let` is, and what a slider of it may be turned to. */
+export interface Slider { name: string; range: Range; limits: Limits; step: number | null }
+
+/** A block that is new: what writes it, and the offset at which it begins. */
+export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
 /** The file that a served page edits: its text is null while there is none. */
@@ -78,6 +80,3 @@ export class Refusal extends Error {
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }
-
-export interface ServerDiagnostic { range: Range; severity?: number; message: string }
-export interface Published { uri: string; version?: number; diagnostics: ServerDiagnostic[] }

@@ -1,13 +1,16 @@
-// What is selected: the object that the cursor is in. It has handles over the picture, and is named
-// in the menu of all objects.
+// What is selected: the object that the cursor is in. It has handles over the picture, is named in
+// the menu of all objects, and can be duplicated and deleted as others can be added.
 
+import { isolateHistory } from "@codemirror/commands";
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, createButton, create } from "./dom";
 import type { Held } from "./drag";
-import type { SceneEditor } from "./editor";
-import type { OverlayLayer } from "./overlays";
-import type { Picture } from "./picture";
-import type { DrawnObject, Handle, Point, SceneObject } from "./protocol";
+import { editor } from "./editor";
+import { overlays } from "./overlays";
+import { picture } from "./picture";
+import { tools } from "./tools";
+import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
+import { say } from "./status";
 
 /** The least distance of two targets, in screen pixels, to the side or in height. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
@@ -22,7 +25,7 @@ interface Placed { object: SceneObject; from: number; to: number }
 
 export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
 
-export class Selection {
+class Selection {
   /** The index of the object that is selected. */
   index: number | null = null;
   onChange: () => void = () => {};
@@ -32,8 +35,7 @@ export class Selection {
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
 
-  constructor(private readonly editor: SceneEditor, private readonly picture: Picture,
-    private readonly overlays: OverlayLayer) {
+  constructor() {
     this.menu.addEventListener("change", () => {
       const chosen = this.placed.find(it => String(it.object.index) === this.menu.value);
       this.select(chosen?.object ?? null);
@@ -74,32 +76,49 @@ export class Selection {
     // The list has the first objects alone.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
-    this.editor.jump(object.selection.start);
+    const anchor = editor.offset(object.selection.start);
+    editor.view.dispatch({ selection: { anchor }, scrollIntoView: true });
     this.cursorMoved();
   }
 
   private place(object: SceneObject): Placed {
     const { start, end } = object.range;
-    return { object, from: this.editor.offset(start), to: this.editor.offset(end) };
+    return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
   private follow(): void {
-    const { head } = this.editor.view.state.selection.main;
+    const { head } = editor.view.state.selection.main;
     const touching = this.placed.filter(it => it.from < it.to && it.from <= head && head <= it.to);
     // At the border of two it is the second one.
     const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
     const index = found?.object.index ?? null;
     this.menu.value = index === null ? "" : String(index);
-    if (index === this.index) return;
+    const isSame = index === this.index;
     this.index = index;
-    this.overlays.select(index);
+    this.offer();
+    if (isSame) return;
+    overlays.select(index);
     this.draw();
     this.onChange();
   }
 
+  /** Where the selected object's block stands in the text. */
+  get block(): { from: number; to: number } | undefined {
+    const found = this.placed.find(it => it.object.index === this.index);
+    return found && { from: found.from, to: found.to };
+  }
+
+  private offer(): void {
+    for (const id of ["duplicate", "delete"]) {
+      byId<HTMLButtonElement>(id).disabled = this.index === null;
+    }
+    const hasFloor = this.placed.some(it => it.object.kind === "checkerboard");
+    tools.offer(this.index !== null, hasFloor);
+  }
+
   /** The selected object as it is drawn; none while that is not known of this text. */
   get drawn(): DrawnObject | undefined {
-    const { data, isTrue } = this.overlays;
+    const { data, isTrue } = overlays;
     return isTrue ? data?.objects.find(it => it.index === this.index) : undefined;
   }
 
@@ -116,7 +135,7 @@ export class Selection {
     if (!same) this.handles.replaceChildren(...buttons);
     const taken: Point[] = [];
     shown.forEach(({ at }, i) => {
-      const [x, y] = apart(this.picture.toScreen(at as Point), taken);
+      const [x, y] = apart(picture.toScreen(at as Point), taken);
       taken.push([x, y]);
       const button = buttons[i] as HTMLButtonElement;
       button.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
@@ -124,10 +143,9 @@ export class Selection {
   }
 
   private createHandle(object: DrawnObject, { handle, label }: Handle): HTMLButtonElement {
-    const button = createButton("", "handle", () => {});
+    const button = createButton("", "handle", () => {}, `${nameOf(object)}: ${label}`);
     button.dataset["handle"] = handle;
     button.dataset["object"] = String(object.index);
-    button.setAttribute("aria-label", `${nameOf(object)}: ${label}`);
     button.append(create("span", "handle-label", label));
     return button;
   }
@@ -148,4 +166,33 @@ function apart([x, y]: Point, taken: readonly Point[]): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
   return ASIDE.map(([dx, dy]): Point => [x + dx, y + dy]).find(isFree) ?? [x, y];
+}
+
+export const selection = new Selection();
+
+for (const button of document.querySelectorAll<HTMLElement>("[data-kind]")) {
+  button.addEventListener("click", () => void add({ kind: button.dataset["kind"] }));
+}
+byId("duplicate").addEventListener("click", () => void add({ object: selection.index }));
+byId("delete").addEventListener("click", remove);
+
+/** Adds a block, which the server writes: one of a kind, or a copy. */
+async function add(about: object): Promise<void> {
+  const added = await editor.askCurrent<Added>("pinhole/add", about);
+  if (added === null) return;
+  // The cursor in it has it selected, as soon as it is known as an object.
+  editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
+    selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
+  say(`${added.name ?? "A copy"} is added.`);
+}
+
+/** Takes the selected block away, with its line if nothing else is there. */
+function remove(): void {
+  const { view, view: { state: { doc } } } = editor;
+  const found = selection.block;
+  if (found === undefined) return;
+  const [first, last] = [doc.lineAt(found.from), doc.lineAt(found.to)];
+  const rest = doc.sliceString(first.from, found.from) + doc.sliceString(found.to, last.to);
+  view.dispatch({ annotations: isolateHistory.of("full"), changes: rest.trim() === ""
+    ? { from: first.from, to: Math.min(last.to + 1, doc.length) } : found });
 }

@@ -1,12 +1,11 @@
-// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent
-// anywhere.
+// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent.
 
 import { addressWith, inAddress } from "./address";
-import { byId, createButton, download, fromBase64 } from "./dom";
-import type { Connection } from "./connection";
-import type { SceneEditor } from "./editor";
-import type { Files } from "./files";
-import type { Status } from "./status";
+import { byId, download, fromBase64 } from "./dom";
+import { connection } from "./connection";
+import { editor } from "./editor";
+import { files } from "./files";
+import { say } from "./status";
 import { setText } from "./visible";
 
 /** A scene in a link may have so many characters unpacked. */
@@ -39,14 +38,14 @@ async function unpacked(text: string): Promise<string> {
 let known: string | null = null;
 
 /** The scene in the page's own address; null if there is none, or none that is new. */
-export async function sceneInAddress(status: Status): Promise<string | null> {
+export async function sceneInAddress(): Promise<string | null> {
   const held = inAddress(KEY);
   if (held === null || held === known) return null;
   known = held;
   try {
     return await unpacked(held);
   } catch {
-    status.say("The link is damaged: its scene cannot be read.", "warning");
+    say("The link is damaged: its scene cannot be read.", "warning");
     return null;
   }
 }
@@ -57,54 +56,47 @@ export function showProgress(share: number): void {
   setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);
 }
 
-export function offerSharing(editor: SceneEditor, connection: Connection, status: Status,
-  files: Files): void {
-  const stem = () => files.name.replace(/\.scn$/, "");
-  const rendering = byId("rendering");
-  const picture = async (kind: "png" | "exr", type: string) => {
-    if (!rendering.hidden) return status.say("Another picture is being made.", "warning");
-    const name = `${stem()}.${kind}`;
-    status.say(`Rendering ${name}…`);
-    const wanted = new AbortController();
-    byId("cancel").onclick = () => wanted.abort(new Error(`${name} was cancelled.`));
-    showProgress(0);
-    rendering.hidden = false;
-    try {
-      const answer = await connection.request<Partial<Record<string, string>> | null>(
-        `studio/${kind}`, { text: editor.text }, wanted.signal);
-      const bytes = answer?.[kind];
-      if (bytes === undefined) return status.say("The text has errors: it has no picture.",
-        "warning");
-      download(name, fromBase64(bytes), type);
-      status.say(`${name} is downloaded.`);
-    } catch (error) {
-      status.say((error as Error).message, "warning");
-    } finally { rendering.hidden = true; }
-  };
-  byId("download-png").addEventListener("click", () => void picture("png", "image/png"));
-  byId("download-exr").addEventListener("click", () => void picture("exr", "image/x-exr"));
-  for (const id of ["download-scene", "connection-download"]) {
-    byId(id).addEventListener("click", () =>
-      download(`${stem()}.scn`, files.textToSave, "text/plain"));
-  }
-
-  const dialog = byId<HTMLDialogElement>("share-dialog");
-  const field = byId<HTMLInputElement>("share-link");
-  dialog.append(
-    createButton("Copy", "primary", () => {
-      field.select();
-      void navigator.clipboard.writeText(field.value).then(
-        () => (dialog.close(), status.say("The link is copied.")),
-        () => status.say(NO_COPY, "warning"),
-      );
-    }),
-    createButton("Close", "", () => dialog.close()),
-  );
-  byId("share").addEventListener("click", async () => {
-    if (editor.text.length > LONGEST) return status.say(
-      "The scene is too long for a link: give away its file.", "warning");
-    field.value = addressWith(KEY, await packed(editor.text));
-    dialog.showModal();
-    field.select();
-  });
+const stem = () => files.at.name.replace(/\.scn$/, "");
+const rendering = byId("rendering");
+const render = async (kind: "png" | "exr", type: string) => {
+  if (!rendering.hidden) return say("Another picture is being made.", "warning");
+  const name = `${stem()}.${kind}`;
+  say(`Rendering ${name}…`);
+  const wanted = new AbortController();
+  byId("cancel").onclick = () => wanted.abort(new Error(`${name} was cancelled.`));
+  showProgress(0);
+  rendering.hidden = false;
+  try {
+    const answer = await connection.request<Partial<Record<string, string>> | null>(
+      `studio/${kind}`, { text: editor.text }, wanted.signal);
+    const bytes = answer?.[kind];
+    if (bytes === undefined) return say("The text has errors: it has no picture.", "warning");
+    download(name, fromBase64(bytes), type);
+    say(`${name} is downloaded.`);
+  } catch (error) {
+    say((error as Error).message, "warning");
+  } finally { rendering.hidden = true; }
+};
+byId("download-png").addEventListener("click", () => void render("png", "image/png"));
+byId("download-exr").addEventListener("click", () => void render("exr", "image/x-exr"));
+for (const id of ["download-scene", "connection-download"]) {
+  byId(id).addEventListener("click", () =>
+    download(`${stem()}.scn`, files.textToSave, "text/plain"));
 }
+
+const dialog = byId<HTMLDialogElement>("share-dialog");
+const field = byId<HTMLInputElement>("share-link");
+byId("copy").addEventListener("click", () => {
+  field.select();
+  void navigator.clipboard.writeText(field.value).then(
+    () => (dialog.close(), say("The link is copied.")),
+    () => say(NO_COPY, "warning"),
+  );
+});
+byId("share").addEventListener("click", async () => {
+  if (editor.text.length > LONGEST) return say(
+    "The scene is too long for a link: give away its file.", "warning");
+  field.value = addressWith(KEY, await packed(editor.text));
+  dialog.showModal();
+  field.select();
+});

@@ -1,80 +1,45 @@
-// The line at the bottom: what is under the pointer, what has happened, how far the picture is, and
-// whether the engine answers.
+// The line at the bottom, and the bar that says what is wrong with the connection.
 
 import type { ConnectionState } from "./connection";
 import { byId } from "./dom";
 import type { Fineness } from "./frames";
 import { setText, visibleLine } from "./visible";
 
+/** What becomes of a text until there is a connection again. */
+const KEPT = "What is written here stays, and can be downloaded.";
 const FINENESS: Record<Fineness, string> =
   { coarse: "coarse", sharp: "one sample a pixel", final: "finished" };
 
-/** Where a page without a connection gets one. */
-const OPEN_PRINTED = "open the address that pinhole studio has printed in its terminal, in this "
-  + "tab";
+/** Names what is under the pointer. */
+export function point(text: string): void { setText(byId("pointed"), text); }
 
-const CONNECTION: Record<ConnectionState, string> = {
-  open: "",
-  connecting: "Connecting…",
-  lost: "Connection lost; connecting again…",
-  failed: "The engine has stopped; it is started again…",
-  silent: `Nothing answers at this address any more. If Studio was ended, start it again, `
-    + `and ${OPEN_PRINTED}.`,
-  ended: `Studio was ended. Start it again, and ${OPEN_PRINTED}.`,
-  keyless: `This tab has no token of Studio: ${OPEN_PRINTED}.`,
-  unknown: `This address is from an earlier run of Studio, or incomplete: ${OPEN_PRINTED}.`,
-  restarted: `Studio was started anew, and does not know this tab: ${OPEN_PRINTED}.`,
-  late: `The address that a browser is started with serves for a minute, which is over: `
-    + `${OPEN_PRINTED}.`,
-  twice: `The address that a browser was started with was opened twice, perhaps by `
-    + `somebody else on this computer. Its session has ended: ${OPEN_PRINTED}.`,
-};
+/** Says what has happened. */
+export function say(text: string, tone: "plain" | "warning" = "plain"): void {
+  const said = byId("said");
+  setText(said, visibleLine(text));
+  said.dataset["tone"] = tone;
+}
 
-const HANGS = "Nothing has come back for two seconds: Studio is stopped, or has too much to do.";
+/** The text has changed: what was said of the one before is not true any more. */
+export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 
-/** What becomes of a text until there is a connection again. */
-const KEPT = " What is written here stays, and can be downloaded.";
+export function picture([width, height]: [number, number], fineness: Fineness): void {
+  setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
+}
 
-export class Status {
-  private readonly pointed = byId("pointed");
-  private readonly said = byId("said");
+/** Marks the picture as one of an older text, or no longer. */
+export function stale(why: string | null): void {
+  const note = byId("stale");
+  note.hidden = why === null;
+  setText(note, why ?? "");
+  byId("stage").toggleAttribute("data-stale", why !== null);
+}
 
-  /** Names what is under the pointer. */
-  point(text: string): void { setText(this.pointed, text); }
-
-  /** Says what has happened. */
-  say(text: string, tone: "plain" | "warning" = "plain"): void {
-    setText(this.said, visibleLine(text));
-    this.said.dataset["tone"] = tone;
-  }
-
-  /** The text has changed: what was said of the one before is not true any more. */
-  changed(): void { if (this.said.dataset["tone"] !== "warning") this.say(""); }
-
-  picture([width, height]: [number, number], fineness: Fineness): void {
-    setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
-  }
-
-  /** Marks the picture as one of an older text, or no longer. */
-  stale(why: string | null): void {
-    const note = byId("stale");
-    note.hidden = why === null;
-    setText(note, why ?? "");
-    byId("stage").toggleAttribute("data-stale", why !== null);
-  }
-
-  /** Says that nothing comes back, although there is a connection. */
-  hanging(isHanging: boolean): void {
-    byId("connection-bar").hidden = !isHanging;
-    byId("connection-download").hidden = !isHanging;
-    if (isHanging) setText(byId("connection"), HANGS + KEPT);
-  }
-
-  /** Says whether there is a connection, and if not, what becomes of the text. */
-  connection(state: ConnectionState, hasText: boolean): void {
-    const isKept = hasText && state !== "connecting";
-    byId("connection-bar").hidden = state === "open";
-    byId("connection-download").hidden = !isKept;
-    setText(byId("connection"), CONNECTION[state] + (isKept ? KEPT : ""));
-  }
+/** Says what is wrong with the connection, and what becomes of the text until it is not. */
+export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
+  const isKept = hasText && state !== "connecting" && state !== "open";
+  byId("connection-bar").hidden = state === "open";
+  byId("connection-download").hidden = !isKept;
+  const said = byId("connection-states").querySelector(`[data-state=${state}]`)?.textContent ?? "";
+  setText(byId("connection"), isKept ? `${said} ${KEPT}` : said);
 }

@@ -1,42 +1,52 @@
 // What a drag on the picture does: which tool is chosen, and what drags of objects are held to.
 
 import { byId } from "./dom";
+import { picture } from "./picture";
 import type { Along } from "./protocol";
-import type { Status } from "./status";
+import { setText } from "./visible";
 
-/** The tools, by the keys that choose them. All but the first move the camera. */
-export const TOOLS = {
-  m: "move", o: "orbit", p: "pan", d: "dolly", r: "roll", v: "view_distance", l: "look",
-} as const;
+/** What a drag moves; all but the first move the camera. */
+export type Tool = "move" | "orbit" | "pan" | "dolly" | "roll" | "view_distance" | "look";
 
-export type Tool = (typeof TOOLS)[keyof typeof TOOLS];
+/** A handle goes so many screen pixels at once, unless the control key is held. */
+const STEP = 8;
+const radios = (name: string) =>
+  [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
 
-export class Tools {
+class Tools {
   tool: Tool = "move";
-  shift = false;
-  private readonly menu = byId<HTMLSelectElement>("along");
-  private readonly inputs = document.querySelectorAll<HTMLInputElement>("input[name=tool]");
+  /** The keys that are held, which free drags of objects. */
+  held = { shiftKey: false, ctrlKey: false };
+  /** What is held to; undefined as long as nobody has chosen. */
+  private chosen: Along | "" | undefined;
+  private hasFloor = false;
 
-  constructor(private readonly stage: HTMLElement, private readonly status: Status) {
-    for (const input of this.inputs) {
-      input.addEventListener("change", () => this.choose(input.value as Tool));
+  constructor() {
+    const summary = document.querySelector("#camera-menu summary") as Element;
+    for (const input of radios("tool")) input.addEventListener("change", () => {
+      this.tool = input.value as Tool;
+      picture.stage.dataset["tool"] = this.tool;
+      if (this.tool !== "move") setText(summary, `Camera: ${this.tool.replace("_", " ")}`);
+    });
+    for (const input of radios("along")) {
+      input.addEventListener("change", () => (this.chosen = input.value as Along | ""));
     }
   }
 
-  choose(tool: Tool): void {
-    this.tool = tool;
-    this.stage.dataset["tool"] = tool;
-    for (const input of this.inputs) input.checked = input.value === tool;
+  /** Offers what is of use: there is an object to drag, and there may be a floor under it. */
+  offer(isSelected: boolean, hasFloor: boolean): void {
+    this.hasFloor = hasFloor;
+    byId("along").hidden = !isSelected;
+    for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
-  get along(): Along | undefined {
-    if (this.shift) return "floor";
-    return (this.menu.value || undefined) as Along | undefined;
-  }
+  /** What drags are held to, if no key frees them. */
+  private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
-  hold(along: Along): void {
-    this.menu.value = this.menu.value === along ? "" : along;
-    const chosen = this.menu.selectedOptions[0]?.text.toLowerCase() ?? "";
-    this.status.say(`Drags of objects: ${chosen}.`);
-  }
+  get along(): Along | undefined { return this.held.shiftKey ? undefined : this.kept || undefined; }
+
+  /** So far something goes at once, in pixels of the picture. */
+  get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
 }
+
+export const tools = new Tools();

@@ -22,8 +22,7 @@ function run(engine: Engine): void {
   say([engine.greeting()]);
 }
 
-init({ module_or_path: new URL("pinhole_bg.wasm", import.meta.url) }).then(
-  () => run(new Engine()),
-  // A rejection alone would not reach the page.
-  error => setTimeout(() => { throw error; }),
-);
+// A rejection alone would not reach the page.
+const fail = (error: unknown) => setTimeout(() => { throw error; });
+const wasm = new URL("pinhole_bg.wasm", import.meta.url);
+init({ module_or_path: wasm }).then(() => run(new Engine()), fail);

@@ -41,6 +41,7 @@ for (const colorScheme of ["dark", "light"]) {
       await audit(page, "with the share dialog");
       await page.click("#share-dialog >> text=Close");
       {
+        await page.click("summary:text('Help')");
         await page.click("#keys");
         await audit(page, "with the list of keys");
         await page.click("#keys-dialog >> text=Close");
@@ -100,7 +101,8 @@ test("paper has the picture and the whole text", async t => {
 for (const [width, height, least] of [[640, 400, 0.4], [390, 844, 0.9], [844, 390, 0.3], [820, 1180, 0.9]]) {
   test(`everything can be reached at ${width} × ${height}, and the picture is large`, async t => {
     const page = await open(await launch(t), await host(t), { viewport: { width, height } });
-    for (const id of ["#undo", "#save", "#share", "#keys", "#objects", "#along", "#zoom-in", "#zoom-actual", "#problems", "#theme"]) {
+    await page.selectOption("#objects", { label: "Ball (sphere)" });
+    for (const id of ["#undo", "#save", "#share", "summary:text('Help')", "#objects", "#along", "#zoom-in", "#zoom-actual", "#problems", "#theme"]) {
       const { x, y, width: wide, height: high } = await page.locator(id).evaluate(it => {
         it.scrollIntoView({ block: "nearest", inline: "nearest" });
         const box = it.getBoundingClientRect();

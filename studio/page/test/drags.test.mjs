@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { FIGURE, finished, hand, handle, host, launch, onPage, open, rested, text, type } from "./helpers.mjs";
+import { choose, FIGURE, finished, hand, handle, host, launch, onPage, open, rested, text, type } from "./helpers.mjs";
 
 const BALL = [455, 320];
 
@@ -28,7 +28,7 @@ test("one drag follows another, from handle to handle, to the camera and back", 
     assert.notEqual(await text(page), before, `the drag of ${label} does nothing`);
   }
   for (const tool of ["orbit", "pan", "move", "orbit", "look"]) {
-    await page.check(`input[value=${tool}]`, { force: true });
+    await choose(page, tool);
     const before = await text(page);
     const at = tool === "move" ? await handle(page, "Crate: center") : await onPage(page, [640, 600]);
     await hand(page, at, [25, 10]);
@@ -64,7 +64,7 @@ test("a drag depends on press and place alone, and says what moves with it", asy
 for (const [tool, by] of [["orbit", [90, 60]], ["orbit", [0, -400]], ["look", [0, -200]], ["look", [60, 300]], ["pan", [70, 30]], ["dolly", [0, 80]], ["roll", [50, 90]], ["view_distance", [0, -90]], ["move", [80, 40]]]) {
   test(`out and back leaves the text as it was: ${tool} ${by}`, async t => {
     const page = await open(await launch(t), await host(t));
-    await page.check(`input[value=${tool}]`, { force: true });
+    await choose(page, tool);
     const from = await onPage(page, tool === "move" ? BALL : [900, 380]);
     await hand(page, from, by.map(it => it / 2), { steps: 6, hold: true });
     await rested(page);

@@ -173,6 +173,16 @@ export async function onPage(page, [x, y]) {
   );
 }
 
+/** Chooses what a drag moves. Those of the camera are in a menu. */
+export async function choose(page, tool) {
+  await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool);
+}
+
+/** Chooses what drags of the selected object are held to. */
+export async function hold(page, along) {
+  await page.check(`input[name=along][value="${along}"]`, { force: true });
+}
+
 /** Drags from one point of the picture to another. */
 export async function drag(page, from, to) {
   await page.mouse.move(...(await onPage(page, from)));

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { andFinished, drag, FIGURE, host, launch, onPage, open } from "./helpers.mjs";
+import { andFinished, choose, drag, FIGURE, host, launch, onPage, open } from "./helpers.mjs";
 
 const BOXES = readFileSync(new URL("../../../examples/three_vanishing_points.scn", import.meta.url), "utf8");
 
@@ -20,10 +20,11 @@ test("the lines of the boxes lead to the vanishing points, which follow the came
   const page = await open(await launch(t), await host(t, BOXES));
   await show(page, "vanishing");
   await page.waitForSelector("#lines .axis-x");
-  assert.deepEqual((await marked(page)).sort(), ["x", "y", "z"]);
+  const marks = (await marked(page)).map(it => /^([xyz]) \(-?\d+, -?\d+\)$/.exec(it)?.[1] ?? it);
+  assert.deepEqual(marks.sort(), ["x", "y", "z"]);
   const place = () => page.getAttribute("#lines text.axis-z", "x");
   const before = await place();
-  await page.check('input[value="orbit"]', { force: true });
+  await choose(page, "orbit");
   await andFinished(page, () => drag(page, [400, 300], [450, 300]));
   assert.notEqual(await place(), before);
   // The menu's choice is remembered.

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { comparing, decoded, FIGURE, hand, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
+import { choose, comparing, decoded, FIGURE, hand, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
 const STEPS = Number(process.env.STEPS ?? 60);
 const SEED = Number(process.env.SEED ?? 1);
@@ -34,7 +34,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
     },
     undo: async () => (await page.isEnabled("#undo")) && page.click("#undo"),
     redo: async () => (await page.isEnabled("#redo")) && page.click("#redo"),
-    tool: () => page.check(`input[value=${one(["move", "move", "orbit", "pan", "dolly", "roll", "view_distance", "look"])}]`, { force: true }),
+    tool: () => choose(page, one(["move", "move", "orbit", "pan", "dolly", "roll", "view_distance", "look"])),
     select: async () => page.selectOption("#objects", { index: Math.floor(random() * (await page.locator("#objects option").count())) }),
     async key() {
       await page.focus("#stage");

@@ -113,6 +113,7 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
         from: point(from),
         to: point(to),
         along: along.and_then(|along| Along::named(along)),
+        step: None,
     };
     match dragged(&format!("{start}{text}"), &moved) {
         Ok(text) => text[start.len()..].to_owned(),

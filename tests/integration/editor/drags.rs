@@ -168,7 +168,7 @@ proptest! {
         let to = point_of(&before, to);
         let handles = handles(&before);
         let handle = handles[which % handles.len()];
-        let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word) };
+        let moved = Drag { object: Some(0), handle, from: to, to, along: Along::named(word), step: None };
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
@@ -217,7 +217,7 @@ proptest! {
         let reading = scene::read(&sources(&text));
         let Some(before) = reading.scene else { return Ok(()) };
         let [from, to] = [from, to].map(|point| point_of(&before, point));
-        let moved = Drag { object: None, handle, from, to, along: None };
+        let moved = Drag { object: None, handle, from, to, along: None, step: None };
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let after = read(&changed);
         prop_assert_eq!(&after.objects, &before.objects);

@@ -180,16 +180,20 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
     // Whether two words were joined, one was taken apart, or one replaced, may be read in several
-    // ways.
+    // ways, and of the last four pairs each may have been joined or not.
+    const WAYS: i32 = 1 << 4;
     let read = |text| [true, false].map(|is_two| Words::of(text, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
     let pairs = before
         .iter()
         .flat_map(|before| after.iter().map(move |after| (before, after)));
-    let ways =
-        pairs.flat_map(|(before, after)| [true, false].map(|joins| of_names(before, after, joins)));
-    let least = ways.min_by_key(|(lost, new)| lost.len() + new.len());
-    let (lost, new) = least.unwrap();
+    let mut ways = pairs
+        .flat_map(|(before, after)| (0..WAYS).map(move |apart| of_names(before, after, !apart)));
+    let size = |(lost, new): &(Vec<String>, Vec<String>)| lost.len() + new.len();
+    let first = ways.next().unwrap();
+    let is_kept = size(&first) == 0;
+    let least = if is_kept { None } else { ways.min_by_key(size) };
+    let (lost, new) = least.filter(|it| size(it) < size(&first)).unwrap_or(first);
     let is_listed = has_removed && lost.iter().all(|name| after[0].contains(name));
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("names are lost: {lost:?}"));
@@ -204,8 +208,9 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     (fixed.text, complaints)
 }
 
-/// The names that are lost, and those that are new.
-fn of_names(before: &[String], after: &[String], joins: bool) -> (Vec<String>, Vec<String>) {
+/// The names that are lost, and those that are new. The bits say which of the pairs that may have
+/// been joined were, the last pair first; the sign is that of all others.
+fn of_names(before: &[String], after: &[String], mut joins: i32) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
     // `look at` is one word.
     let is_known = |word: &String| {
@@ -215,12 +220,17 @@ fn of_names(before: &[String], after: &[String], joins: bool) -> (Vec<String>, V
     };
     let times = |all: &[String], word: &String| all.iter().filter(|other| *other == word).count();
     for at in (1..names.len()).rev() {
-        let Some([one, two]) = names.get(at - 1..=at).filter(|_| joins) else {
+        let Some([one, two]) = names.get(at - 1..=at) else {
             continue;
         };
         let joined = [format!("{one}{two}"), format!("{one}_{two}")];
         let is_joined = |word: &&String| is_known(word) && times(&new, word) > times(&names, word);
         if let Some(word) = joined.iter().find(is_joined).cloned() {
+            let is_meant = joins & 1 == 1;
+            joins >>= 1;
+            if !is_meant {
+                continue;
+            }
             names.drain(at - 1..=at);
             new.remove(new.iter().position(|other| *other == word).unwrap());
         }

@@ -187,6 +187,121 @@ fn a_number_has_the_limits_of_its_field() {
     }
 }
 
+/// Definitions have sliders: by the comment behind them, or by the fields that they stand in.
+#[test]
+fn definitions_have_ranges() {
+    let text = "let a = 1 // [0.5:0.1:2] how large\nlet b = -2 //[-3:3]\nlet c = 3 // [3:1]\nlet n = 4\nlet t = 0.5rad // turn\n\
+        let v = (1, 2, 3) // [1:2]\nlet e = a + 1 // [1:2]\ncamera { eye (0, 0, 5) lookat (0, 0, 0) fov t }\n\
+        sampler { per_pixel n }\nsphere { radius c }\nsphere { radius a + b }";
+    let mut talk = Talk::with(text);
+    let found = talk.ask("pinhole/sliders", json!({}));
+    let found: Vec<Value> = found
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|it| {
+            let limits = &it["limits"];
+            json!([
+                it["name"],
+                limits["least"],
+                limits["most"],
+                limits["whole"],
+                it["step"]
+            ])
+        })
+        .collect();
+    let pi = std::f64::consts::PI;
+    let expected = [
+        json!(["a", 0.5, 2.0, false, 0.1]),
+        json!(["b", -3.0, 3.0, false, null]),
+        json!(["c", 0.0, null, false, null]),
+        json!(["n", 1.0, null, true, null]),
+        json!(["t", 0.0, pi, false, null]),
+    ];
+    assert_eq!(found, expected);
+}
+
+/// What is added is right, has a name that is free, and is seen.
+#[test]
+fn what_is_added_is_seen() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for before in [
+        "",
+        camera,
+        "let Sphere1 = 2\n",
+        "camera { eye (0, 0, 5) lookat (0, -1, 0) }\nsphere Sphere1 { center (0, 0, 0) }\n\
+         checkerboard { y -2 }",
+        "sphere { center (0, 1, 0) radios 1 }",
+    ] {
+        for (kind, name) in [
+            ("sphere", "Sphere"),
+            ("triangle", "Triangle1"),
+            ("box", "Box1"),
+            ("checkerboard", "Checkerboard1"),
+        ] {
+            let mut talk = Talk::with(before);
+            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            let name_found = found["name"].as_str().expect("a name");
+            assert!(name_found.starts_with(name), "{found}");
+            assert!(!before.contains(name_found), "{found}");
+            let camera = if before.contains("camera") {
+                ""
+            } else {
+                camera
+            };
+            let text = format!(
+                "{camera}{}{written}\n",
+                before.trim_end().replace("radios", "radius")
+            );
+            let mut talk = Talk::with(&text);
+            let overlays = talk.ask("pinhole/overlays", json!({}));
+            let objects = overlays["objects"]
+                .as_array()
+                .unwrap_or_else(|| panic!("{text}"));
+            let [x, y] = [0, 1].map(|i| objects[objects.len() - 1]["handles"][0]["at"][i].as_f64());
+            assert!(
+                (0.0..800.0).contains(&x.unwrap()) && (0.0..450.0).contains(&y.unwrap()),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// With a step, numbers are those of a grid, and the place of the press leaves the text as it is.
+#[test]
+fn a_drag_snaps() {
+    let text =
+        "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nsphere { center (0.123, 0, 0) radius 1 }";
+    let mut talk = Talk::with(text);
+    let held = talk.ask("pinhole/overlays", json!({}))["objects"][0]["handles"][0]["at"][0]
+        .as_f64()
+        .unwrap();
+    for by in [-200.0, -35.0, -7.0, 0.0, 2.0, 4.9, 12.0, 81.0, 333.0] {
+        let about = json!({ "object": 0, "handle": "center", "to": [held + by, 225], "step": 8 });
+        let found = talk.ask("pinhole/drag", about);
+        let edits = found["edits"].as_array().expect("edits");
+        let x: Option<f64> = edits.first().map(|edit| {
+            edit["newText"]
+                .as_str()
+                .expect("a text")
+                .parse()
+                .expect("a number")
+        });
+        // A metre has 90 pixels here, so that a hundredth has 0.9 and a tenth 9.
+        match x {
+            None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
+            Some(x) => {
+                assert!(
+                    (x * 100.0 - (x * 100.0).round()).abs() < 1e-9,
+                    "{by}: {found}"
+                );
+                assert!((x - 0.123 - by / 90.0).abs() < 0.02, "{by}: {found}");
+            }
+        }
+    }
+}
+
 /// Who drags a ball that the camera looks at hears that the camera moves.
 #[test]
 fn a_drag_tells_what_else_moves() {

@@ -82,10 +82,13 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // No name but its own.
-    let elsewhere = json!({ "text": "x", "base": SCENE, "name": "b.scn" });
-    let error = page.respond("studio/save", elsewhere)["error"].take();
-    assert_eq!(error["message"], "this scene is in a.scn");
+    // A new scene beside it stays in its folder.
+    for name in ["../b.scn", "sub/b.scn", "b.txt"] {
+        let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
+        let error = page.respond("studio/save", elsewhere)["error"].take();
+        assert_eq!(error["code"], -32803, "{name}");
+        assert_eq!(folder.names(), ["a.scn"], "{name}");
+    }
     let own = json!({ "text": SCENE, "base": SCENE, "name": "a.scn" });
     assert_eq!(page.ask("studio/save", own), saved());
     // Where the text was there is a folder now.
@@ -181,8 +184,13 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
             file("new one.scn", "// new", true)
         );
     }
-    let response = save(&mut other, json!("second.scn"));
-    assert_eq!(response["error"]["message"], "this scene is in new one.scn");
+    // Another new scene comes beside it, and over none that is there.
+    let response = save(&mut other, json!("there.scn"));
+    assert_eq!(response["error"]["code"], -32803);
+    assert_eq!(outer.text("inner/there.scn"), "// there");
+    assert_eq!(save(&mut other, json!("second.scn"))["result"], saved());
+    assert_eq!(outer.text("inner/second.scn"), "// new");
+    assert_eq!(outer.text("inner/new one.scn"), "// new");
     outer.write("inner/new one.scn", "// theirs");
     assert_eq!(page.told("studio/file")["text"], "// theirs");
     let params = json!({ "text": "// mine", "base": "// theirs" });

@@ -1,0 +1,152 @@
+//! A block that is new: one of a kind, in front of the camera, or one that stands there already, a
+//! little aside.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    camera::distance,
+    edits::{changes, edits},
+    handles::{Along, handles, moved},
+};
+use crate::{
+    diagnostic::{Edit, Fix, apply},
+    editor::Analysis,
+    numbers::{rounded, short, short_vector, significant},
+    projection::Projection,
+    scene::{Part, Scene, Shape},
+    schema,
+    source::SourceId,
+};
+
+/// A block that is new.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Added {
+    /// What writes it.
+    pub edit: Edit,
+    /// What it is called; a copy of what has no name has none.
+    pub name: Option<String>,
+    /// Where in the new text it begins, so many characters of UTF-16 from the start.
+    pub cursor: usize,
+}
+
+/// A block of a kind at the end of the text, in front of the camera: on a floor, if there is one
+/// below the eye, and beside what is there already. None if that is no kind of an object.
+pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option<Added> {
+    let row = schema::block(kind).filter(|row| row.is_object)?;
+    let (place, size) = scene.map_or((DVec3::Y, 1.0), free_place);
+    let across = scene.map_or(DVec3::Z, |scene| {
+        let from = scene.camera.eye - place;
+        match from.x.abs() > from.z.abs() {
+            true => DVec3::X * from.x.signum(),
+            false => DVec3::Z * from.z.signum(),
+        }
+    });
+    let (at, across, size) = (short_vector(place), short_vector(across), short(size));
+    let twice = short(2.0 * size.parse().unwrap_or(1.0));
+    let fields = match row.name {
+        "sphere" => format!("center {at}  radius {size}"),
+        "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})"),
+        "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
+        _ => format!("y {}", short(scene.map_or(0.0, free_height))),
+    };
+    let name = free_name(analysis, kind);
+    let text = analysis.text();
+    let end = text.trim_end().len();
+    let gap = if end == 0 { "" } else { "\n" };
+    Some(Added {
+        edit: Edit::insert(
+            SourceId::File,
+            end,
+            format!("{gap}{kind} {name} {{ {fields} }}"),
+        ),
+        name: Some(name),
+        cursor: text[..end].encode_utf16().count() + gap.len(),
+    })
+}
+
+/// An object's block another time on the next line, a twentieth of the picture to the right where
+/// its numbers are its own.
+pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
+    let object = scene.objects.get(index)?;
+    let block = analysis.blocks().find(|block| block.span == object.span)?;
+    let projection = Projection::new(&scene.camera, &scene.image);
+    let aside = || {
+        let (handle, at) = *handles(&object.shape, &projection, projection.right).first()?;
+        let to = projection.point(at?)? + DVec2::new(projection.size.x / 20.0, 0.0);
+        let moved = moved(object.shape, handle, to, Some(Along::Floor), &projection).ok()?;
+        edits(
+            analysis,
+            block,
+            &changes(block, Part::Shape(object.shape), moved),
+            1,
+        )
+    };
+    let is_own =
+        |edit: &Edit| block.span.start <= edit.span.start && edit.span.end <= block.span.end;
+    let mut edits = aside().unwrap_or_default();
+    edits.retain(is_own);
+    let name = block.name.map(|_| free_name(analysis, object.shape.kind()));
+    let written = block.name.zip(name.clone());
+    edits.extend(written.map(|(old, new)| Edit::new(old.span, new)));
+    edits.sort_by_key(|edit| edit.span);
+    let text = analysis.text();
+    let whole = apply(&Fix::new("", edits), SourceId::File, text);
+    let rest = text.len() - block.span.end;
+    let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest]);
+    Some(Added {
+        edit: Edit::insert(SourceId::File, block.span.end, copy),
+        name,
+        cursor: text[..block.span.end].encode_utf16().count() + 1,
+    })
+}
+
+/// The kind with the least number that makes a name which is nowhere in the text.
+fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
+    let capital = kind[..1].to_uppercase() + &kind[1..];
+    let names = (1..).map(|number| format!("{capital}{number}"));
+    let is_free = |name: &String| {
+        !analysis
+            .tokens()
+            .iter()
+            .any(|it| analysis.slice(it.span) == name)
+    };
+    names.into_iter().find(is_free).unwrap_or(capital)
+}
+
+/// The height of a board that is seen from above: the origin's, unless the eye is not above that.
+fn free_height(scene: &Scene) -> f64 {
+    match scene.camera.eye.y > 0.0 {
+        true => 0.0,
+        false => scene.camera.eye.y.floor() - 1.0,
+    }
+}
+
+/// A place in front of the camera where nothing is yet, and half of the size that something may
+/// have there.
+fn free_place(scene: &Scene) -> (DVec3, f64) {
+    let projection = Projection::new(&scene.camera, &scene.image);
+    let distance = distance(scene);
+    let size = significant(0.15 * projection.size.y * projection.pitch * distance, 1);
+    let floors = scene
+        .objects
+        .iter()
+        .filter_map(|object| match object.shape {
+            Shape::Checkerboard(board) => (board.y < projection.eye.y).then_some(board.y),
+            _ => None,
+        });
+    let floor = floors.reduce(f64::max);
+    let shapes = scene.objects.iter().map(|object| object.shape);
+    let shapes = shapes.filter(|shape| !matches!(shape, Shape::Checkerboard(_)));
+    let middles =
+        shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
+    let taken: Vec<DVec3> = middles.collect();
+    let place = |steps: i32| {
+        let aside = projection.right * (2.5 * size * f64::from(steps));
+        let at = projection.eye + projection.ahead * distance + aside;
+        let at = floor.map_or(at, |y| at.with_y(y + size));
+        DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)))
+    };
+    let is_free = |at: &DVec3| taken.iter().all(|it| it.distance(*at) > 1.5 * size);
+    let places = [0, 1, -1, 2, -2, 3, -3].map(place);
+    (places.into_iter().find(is_free).unwrap_or(places[0]), size)
+}

@@ -1,0 +1,297 @@
+// The page as a stranger meets it: scenes from the menu, objects that are added, sliders, the first problem, a second window.
+
+import assert from "node:assert/strict";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import path from "node:path";
+import { test } from "node:test";
+import { FIGURE, finished, hand, handle, host, launch, onPage, open, rested, site, text, type } from "./helpers.mjs";
+
+const { SITE } = process.env;
+
+/** Both hosts; the static page where there is one. */
+const HOSTS = [["served", t => host(t)], ...(SITE === undefined ? [] : [["static", t => site(t, SITE)]])];
+
+const menu = async (page, name, item) => {
+  await page.click(`summary:text("${name}")`);
+  await page.click(item);
+};
+
+const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
+
+for (const [name, start] of HOSTS) {
+  test(`an example comes, and goes again by Undo, and Save asks for a name: ${name}`, async t => {
+    const started = await start(t);
+    const page = await open(await launch(t), started);
+    await menu(page, "File", "text='farther is smaller'");
+    await rested(page);
+    const example = readFileSync(new URL("../../../examples/farther_is_smaller.scn", import.meta.url), "utf8");
+    assert.equal(await text(page), example);
+    assert.equal(await page.textContent("#file-name"), "farther_is_smaller.scn");
+    assert.equal(await page.textContent("#file-state"), "");
+    if (name === "served") {
+      await page.click("#save");
+      await page.fill("#name-field", "mine");
+      await page.keyboard.press("Enter");
+      await page.waitForFunction(() => /mine\.scn is saved/.test(document.querySelector("#said").textContent));
+      assert.equal(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), example);
+      // The new scene can be saved again, but no file that was there before.
+      await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere { center (0, 1, 0) }\n");
+      await page.keyboard.press("Control+s");
+      await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+      assert.match(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), /9/);
+      assert.equal(started.text(), FIGURE);
+      await page.keyboard.press("Control+z");
+    }
+    await page.click("#undo");
+    await rested(page);
+    assert.equal(await text(page), FIGURE);
+    assert.equal(await page.textContent("#file-name"), "scene.scn");
+    if (name === "served") {
+      await type(page, `${FIGURE}// more\n`);
+      await page.keyboard.press("Control+s");
+      await page.waitForFunction(() => /scene\.scn is saved/.test(document.querySelector("#said").textContent));
+      assert.equal(started.text(), `${FIGURE}// more\n`);
+    }
+    assert.deepEqual(page.complaints, []);
+  });
+
+  test(`from an empty scene, objects are added, dragged, duplicated and deleted: ${name}`, async t => {
+    const page = await open(await launch(t), await start(t));
+    await menu(page, "File", "#new");
+    await page.waitForFunction(() => !document.querySelector(".cm-content").textContent.includes("sphere"));
+    const added = [["checkerboard", /^checkerboard Checkerboard1 \{ y 0 \}$/m], ["sphere", /^sphere Sphere1 \{/m], ["triangle", /^triangle Triangle1 \{/m], ["box", /^box Box1 \{/m]];
+    for (const [kind, written] of added) {
+      await menu(page, "+ Add", `[data-kind=${kind}]`);
+      await rested(page);
+      assert.match(await text(page), written);
+      assert.match(await page.evaluate(() => document.querySelector("#objects").selectedOptions[0].text), new RegExp(kind));
+      assert.equal(await page.textContent("#problems"), "No problems");
+    }
+    // What is added is seen, and can be dragged at once.
+    for (const label of ["Box1: center", "Box1: max y"]) {
+      const before = await text(page);
+      await hand(page, await handle(page, label), [30, -20]);
+      await rested(page);
+      assert.notEqual(await text(page), before, label);
+    }
+    assert.equal(await page.isChecked('input[name=along][value="floor"]'), true);
+    await page.keyboard.press("Control+d");
+    await rested(page);
+    assert.match(await text(page), /^box Box2 \{/m);
+    assert.match(await page.evaluate(() => document.querySelector("#objects").selectedOptions[0].text), /^Box2/);
+    const two = /^box.*$/gm;
+    const [one, other] = (await text(page)).match(two).map(it => it.replace(/Box\d/, ""));
+    assert.notEqual(one, other, "the copy lies beside");
+    await page.click("#stage", { position: { x: 5, y: 5 } });
+    await page.selectOption("#objects", { label: "Box2 (box)" });
+    await menu(page, "+ Add", "#delete");
+    await rested(page);
+    assert.doesNotMatch(await text(page), /Box2/);
+    await page.click("#undo");
+    await rested(page);
+    assert.match(await text(page), /Box2/);
+    assert.deepEqual(page.complaints, []);
+  });
+}
+
+test("an opened file of this computer is a new scene, of a host, too", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const other = path.join(started.folder, "other.scn");
+  writeFileSync(other, "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\nsphere { center (0, 0, 0) }\n");
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), menu(page, "File", "#open")]);
+  await chooser.setFiles(other);
+  await page.waitForFunction(() => document.querySelector("#file-name").textContent === "other.scn");
+  await page.click("#save");
+  await page.waitForSelector("#name-dialog[open]");
+  await page.keyboard.press("Enter");
+  // There is such a file, which is not written over.
+  await page.waitForFunction(() => document.querySelector("#name-problem").textContent !== "");
+  await page.fill("#name-field", "third");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /third\.scn is saved/.test(document.querySelector("#said").textContent));
+  assert.ok(existsSync(path.join(started.folder, "third.scn")));
+  assert.equal(started.text(), FIGURE);
+});
+
+test("on a floor an object keeps its height; Shift frees it, and its numbers are short, unless Control is held", async t => {
+  const page = await open(await launch(t), await host(t));
+  const drag = async keys => {
+    for (const key of keys) await page.keyboard.down(key);
+    await hand(page, await onPage(page, [455, 320]), [47, -31]);
+    await rested(page);
+    for (const key of keys) await page.keyboard.up(key);
+    const found = /let ball = \((\S+), (\S+), (\S+)\)/.exec(await text(page)).slice(1);
+    await page.click("#undo");
+    await rested(page);
+    assert.equal(await text(page), FIGURE);
+    return found;
+  };
+  const decimals = number => (/\.(\d+)/.exec(number)?.[1] ?? "").length;
+  const [x, y, z] = await drag([]);
+  assert.equal(y, "1");
+  assert.ok(x !== "-1.6" && z !== "0", `${x} ${z}`);
+  for (const it of [x, z]) assert.ok(decimals(it) <= 1, it);
+  assert.notEqual((await drag(["Shift"]))[1], "1");
+  const free = await drag(["Control"]);
+  assert.equal(free[1], "1");
+  assert.ok(Math.max(...free.map(decimals)) > 1, String(free));
+});
+
+test("a handle that snaps is never far from the hand, and is back where it was pressed", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  await page.waitForSelector(".handle");
+  for (const label of ["Crate: max y", "Crate: max x", "Crate: center"]) {
+    const from = await handle(page, label);
+    await hand(page, from, [24, -37], { back: true, steps: 24 });
+    await rested(page);
+    assert.equal(await text(page), FIGURE, label);
+  }
+});
+
+test("the right button orbits, the middle one pans, Shift and the wheel dolly, and d stands beside fov and window", async t => {
+  const page = await open(await launch(t), await host(t));
+  const [x, y] = await onPage(page, [900, 600]);
+  for (const [button, changed] of [["right", /eye/], ["middle", /lookat/]]) {
+    const before = await text(page);
+    await page.mouse.move(x, y);
+    await page.mouse.down({ button });
+    for (let i = 1; i <= 12; i++) {
+      await page.mouse.move(x + 5 * i, y + 2 * i);
+      await page.waitForTimeout(16);
+    }
+    await page.mouse.up({ button });
+    await rested(page);
+    const line = pattern => text => text.split("\n").find(it => pattern.test(it));
+    assert.notEqual(line(changed)(await text(page)), line(changed)(before), button);
+    await page.click("#undo");
+    await rested(page);
+    assert.equal(await text(page), before, button);
+  }
+  await page.mouse.move(x, y);
+  await page.keyboard.down("Shift");
+  for (let i = 0; i < 4; i++) await page.mouse.wheel(0, 120);
+  await page.keyboard.up("Shift");
+  await page.waitForFunction(() => !document.querySelector(".cm-content").textContent.includes("(3, 3.5, 8)"));
+  await page.waitForTimeout(700);
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), FIGURE);
+  // Keys work wherever the focus is not in a text.
+  await page.focus("#save");
+  await page.keyboard.press("v");
+  assert.match(await page.textContent("#camera-menu summary"), /view distance/);
+  await hand(page, [x, y], [0, 60], { hold: true });
+  await page.waitForFunction(() => /camera\.d = .*d [\d.]+ = fov [\d.]+° of a window 2 high/.test(document.querySelector("#drag-note").textContent));
+  await page.mouse.up();
+});
+
+test("definitions have sliders with their ranges, which one undo takes back, and which play to and fro", async t => {
+  const scene = `let r = 1.5 // [0.5:0.25:2]\nlet turn = 30deg\nlet n = 9\n${FIGURE.replace("radius 1", "radius r").replace("roll   0deg", "roll turn").replace("per_pixel 16", "per_pixel n")}`;
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForSelector(".slider-row");
+  const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => {
+    const { min, max, step } = row.querySelector("input");
+    return [row.firstChild.textContent, min, max, step, row.querySelector("output").textContent];
+  }));
+  assert.deepEqual(rows[0], ["r", "0.5", "2", "0.25", "1.5"]);
+  assert.equal(rows[1][4], "30deg");
+  assert.equal(rows[2][1], "1", "there is no less than one sample");
+  const { x, y, width, height } = await page.locator(".slider-row input").first().boundingBox();
+  await hand(page, [x + width * 2 / 3, y + height / 2], [width / 4, 0]);
+  await rested(page);
+  assert.ok(number(await text(page), "let r =") > 1.5, await text(page));
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+  await page.click('[aria-label="Play r"]');
+  const seen = new Set();
+  for (let i = 0; i < 60 && seen.size < 4; i++) {
+    seen.add(number(await text(page), "let r ="));
+    await page.waitForTimeout(100);
+  }
+  await page.click('[aria-label="Stop r"]');
+  await rested(page);
+  assert.ok(seen.size >= 4, [...seen].join());
+  for (const it of seen) assert.ok(it >= 0.5 && it <= 2 && it % 0.25 === 0, `${it}`);
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+});
+
+test("the first problem stands under the text with its fix, before the sliders; the list holds a thousand", async t => {
+  const page = await open(await launch(t), await host(t, `let r = 1\n${FIGURE.replace("radius 1", "radius r")}`));
+  await page.waitForSelector("#sliders:not([hidden])");
+  await type(page, `let r = 1\n${FIGURE.replace("radius 1", "radios r")}`);
+  await page.waitForSelector("#problem-list .fix");
+  assert.ok(await page.isHidden("#sliders"));
+  assert.ok((await page.locator("#problem-list").boundingBox()).height < 60);
+  await page.click("#problem-list .fix");
+  await page.waitForSelector("#problem-list", { state: "hidden" });
+  assert.match(await text(page), /radius r/);
+  await page.waitForSelector("#sliders:not([hidden])");
+  await type(page, "sphere { radios 1 }\n".repeat(1000));
+  await page.waitForFunction(() => /^2001 problems/.test(document.querySelector("#problems").textContent));
+  await page.click("#problems");
+  await page.waitForFunction(() => document.querySelectorAll("#problem-list li").length >= 2001);
+  const [list, scrolled] = await page.locator("#problem-list").evaluate(it => [it.clientHeight, it.scrollHeight]);
+  assert.ok(list < 300 && scrolled > 10_000, `${list} ${scrolled}`);
+});
+
+test("vanishing points outside of the page are arrows with coordinates, and a layer that shows nothing says so", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.click("summary:text('Show')");
+  for (const name of ["vanishing", "grid"]) await page.check(`input[name=${name}]`);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.querySelectorAll("text.mark").length === 3);
+  const marks = await page.locator("text.mark").evaluateAll(all => all.map(it => [it.textContent, it.getBoundingClientRect().toJSON()]));
+  const stage = await page.locator("#stage").boundingBox();
+  for (const [label, { x, y, width, height }] of marks) {
+    assert.match(label, /^[xyz] \(-?\d+, -?\d+\)$/);
+    assert.ok(x >= stage.x && y >= stage.y && x + width <= stage.x + stage.width && y + height <= stage.y + stage.height, label);
+  }
+  assert.match(await page.textContent("#unseen"), /pixel grid/);
+  // Farther away, the point itself is seen.
+  for (let i = 0; i < 4; i++) await page.click("#zoom-out");
+  assert.equal(await page.locator("path.line.axis-y[transform^=translate]").count(), 0);
+});
+
+test("the picture has one row of tools above it at 1280, and a window of its own that asks no server", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.selectOption("#objects", { label: "Ball (sphere)" });
+  await page.waitForSelector("#along:not([hidden])");
+  assert.ok((await page.locator(".tools").boundingBox()).height < 50);
+  assert.ok(await page.isHidden("#dock"));
+  const [popup] = await Promise.all([page.waitForEvent("popup"), menu(page, "Help", "#projector")]);
+  let sockets = 0;
+  popup.on("websocket", () => sockets++);
+  await finished(popup);
+  assert.deepEqual(await popup.evaluate(() => [...document.querySelectorAll("body *")].filter(it => it.checkVisibility() && !["MAIN", "SECTION", "DIV"].includes(it.tagName)).map(it => it.tagName)), ["CANVAS"]);
+  const pixel = page => page.evaluate(() => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join());
+  const before = await pixel(popup);
+  assert.equal(before, await pixel(page));
+  await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
+  await rested(page);
+  await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
+  assert.equal(sockets, 0);
+});
+
+test("the reference of the language is in the page", async t => {
+  const page = await open(await launch(t), await host(t));
+  await menu(page, "Help", "#language");
+  const said = await page.textContent("#language-dialog");
+  for (const word of ["checkerboard", "centroid", "fov"]) assert.ok(said.includes(word), word);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("#language-dialog", { state: "hidden" });
+});
+
+test("at each size the picture takes what there is", async t => {
+  const [started, browser] = [await host(t), await launch(t)];
+  for (const [width, height, least] of [[1280, 800, 700], [1920, 1080, 1060], [820, 1180, 760]]) {
+    const page = await open(browser, started, { viewport: { width, height } });
+    assert.ok((await page.locator("canvas").boundingBox()).width >= least, `${width}`);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    await page.context().close();
+  }
+});
