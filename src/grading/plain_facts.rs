@@ -161,12 +161,13 @@ impl EmptyRows {
             let light = film.pixels()[at(0) * width];
             let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
             let count = (0..height).take_while(are_empty).count();
-            // A sky has one colour in any picture, be it the wrong one.
+            // A sky has one colour in any picture, be it the wrong one everywhere.
+            let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
             let is_told = |y: &usize| {
                 let own = row(exact, at(*y));
                 let has_several = own.iter().any(|pixel| !is_near(*pixel, own[0]));
                 let wrong = own.iter().filter(|pixel| !is_near(**pixel, light));
-                has_several && wrong.count() > width / 8
+                wrong.count() > width / 8 && (has_several || is_shown(own[0]))
             };
             let told = (0..count).filter(is_told).count();
             let ends = [at(0), at(count.max(1) - 1)];
