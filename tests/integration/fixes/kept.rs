@@ -184,16 +184,23 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     const WAYS: i32 = 1 << 4;
     let read = |text| [true, false].map(|is_two| Words::of(text, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
-    let pairs = before
-        .iter()
-        .flat_map(|before| after.iter().map(move |after| (before, after)));
-    let mut ways = pairs
-        .flat_map(|(before, after)| (0..WAYS).map(move |apart| of_names(before, after, !apart)));
+    let all = |apart| {
+        let read = before.iter().map(move |before| (apart, before));
+        let after = &after;
+        read.flat_map(move |(apart, before)| after.iter().map(move |it| (apart, before, it)))
+    };
     let size = |(lost, new): &(Vec<String>, Vec<String>)| lost.len() + new.len();
-    let first = ways.next().unwrap();
-    let is_kept = size(&first) == 0;
-    let least = if is_kept { None } else { ways.min_by_key(size) };
-    let (lost, new) = least.filter(|it| size(it) < size(&first)).unwrap_or(first);
+    let mut least: Option<(Vec<String>, Vec<String>)> = None;
+    for (apart, before, after) in (0..WAYS).flat_map(all) {
+        if least.as_ref().is_some_and(|least| size(least) == 0) {
+            break;
+        }
+        let way = of_names(before, after, !apart);
+        if least.as_ref().is_none_or(|least| size(&way) < size(least)) {
+            least = Some(way);
+        }
+    }
+    let (lost, new) = least.unwrap();
     let is_listed = has_removed && lost.iter().all(|name| after[0].contains(name));
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("names are lost: {lost:?}"));

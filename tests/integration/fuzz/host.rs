@@ -37,7 +37,7 @@ fn no_message_ends_the_conversation() {
                 params[key] = one(random, &any).clone();
             }
         }
-        // Nothing that is in the file is said to be known, so nothing is saved.
+        // Nothing that is in the file is said to be known, so nothing is saved over it.
         assert_ne!(params["base"], json!(before));
         let method = *one(random, &METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });
@@ -53,6 +53,8 @@ fn no_message_ends_the_conversation() {
         while page.read()["id"] != "last" {}
     });
     assert_eq!(folder.text("a.scn"), before);
-    assert_eq!(folder.names(), ["a.scn"]);
+    // What is saved under another name is a new scene beside it.
+    let names = folder.names();
+    assert!(names.iter().all(|name| name.ends_with(".scn")), "{names:?}");
     let _: Value = page.respond("studio/x", json!({}));
 }
