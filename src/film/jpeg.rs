@@ -1,7 +1,8 @@
 //! How a JPEG file is compressed, and what that does to another picture.
 //!
-//! In: a file. Out: its tables of luma and of chroma: the first two, as programs write them, or the only one for both; and how many pixels share a number of
-//! chroma. A lossy WebP is taken for a JPEG that shares them by fours, with steps that are large enough.
+//! In: a file. Out: its tables of luma and of chroma: the first two, as programs write them, or the
+//! only one for both; and how many pixels share a number of chroma. A lossy WebP is taken for a
+//! JPEG that shares them by fours, with steps that are large enough.
 
 use image::ImageFormat;
 use jpeg_encoder::{
@@ -82,7 +83,8 @@ impl Jpeg {
             let segment = rest.get(4..2 + length)?;
             match marker {
                 0xdb => read_tables(segment, &mut tables)?,
-                // The frame: of each component a number, how many of its numbers lie in a unit of pixels, across and down, and its table.
+                // The frame: of each component a number, how many of its numbers lie in a unit of
+                // pixels, across and down, and its table.
                 0xc0..=0xc2 => {
                     let components = segment.get(6..)?.chunks_exact(3);
                     let factors: Vec<[u8; 2]> = components
@@ -111,7 +113,8 @@ impl Jpeg {
 }
 
 impl Jpeg {
-    /// What becomes of a picture's bytes, red, green and blue in rows of a width, by this coding; none if it cannot be coded so.
+    /// What becomes of a picture's bytes, red, green and blue in rows of a width, by this coding;
+    /// none if it cannot be coded so.
     pub fn coded(&self, bytes: &[u8], [width, height]: [u32; 2]) -> Option<Vec<u8>> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, 100);

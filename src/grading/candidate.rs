@@ -190,6 +190,12 @@ impl Candidate {
             && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
     }
 
+    /// How far its samples lie from where they should, to the right and down, in pixels.
+    pub fn shift(&self) -> [f64; 2] {
+        let (halves, parts) = (self.layout.half_pixels, self.behaviour.offset);
+        [0, 1].map(|i| 0.5 * f64::from(halves[i]) + parts[i])
+    }
+
     /// How many numbers were fitted.
     pub fn fitted(&self) -> usize {
         self.mistakes.iter().map(Mistake::fitted).sum()

@@ -18,11 +18,26 @@ const CHANCE: f64 = 50.0;
 /// make it.
 const NONE: f64 = 0.06;
 
+/// What few samples add to it, for each share of a sample's variance that an error has, and at
+/// most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off the middle of a pixel, and so many
+/// points make less noise than as many random ones.
+const OFF_MIDDLE: f64 = 0.75;
+const MOST_OFF_MIDDLE: f64 = 0.15;
+
 /// The same of a single object, without and with one sample in a pixel: those of a regular grid
 /// move an edge that is parallel to it by up to half of their distance.
 const NONE_OF_OBJECT: [f64; 2] = [0.12, 0.5];
 
 const COUNT: usize = 6;
+
+/// A displacement that is no chance.
+#[derive(Clone, Copy, Debug)]
+pub struct Displacement {
+    /// How far edges are displaced, in pixels along their slope.
+    pub far: f64,
+    /// By how much the middle is, to the right and down.
+    pub by: [f64; 2],
+}
 
 /// The sums of a group of pixels.
 #[derive(Clone)]
@@ -33,8 +48,8 @@ struct Sums {
 }
 
 impl Sums {
-    /// The displacement in pixels, if it is no chance.
-    fn displacement(&self) -> Option<f64> {
+    /// The displacement, if it is no chance.
+    fn displacement(&self) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         // What no edge tells is taken for 0.
         let solved = |matrix: &[Vec<f64>]| {
@@ -48,8 +63,9 @@ impl Sums {
         let product = fitted.iter().zip(&self.normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Along the slope of edges.
-        let mean = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
-        (square > CHANCE).then_some(mean)
+        let far = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
+        let by = [fitted[0], fitted[3]];
+        (square > CHANCE).then_some(Displacement { far, by })
     }
 }
 
@@ -81,9 +97,9 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// How far, in pixels, each of some groups of pixels lies from where it should, if that is no
-    /// chance where an error has this share of a sample's variance.
-    pub fn displacements(&self, share: f64, groups: &[usize]) -> Vec<Option<f64>> {
+    /// How far each of some groups of pixels lies from where it should, if that is no chance where
+    /// an error has this share of a sample's variance.
+    fn displacements(&self, share: f64, groups: &[usize]) -> Vec<Option<Displacement>> {
         let (width, count) = (self.width, self.seen.len());
         let height = count / width;
         let mean = &self.moments.mean;
@@ -138,9 +154,9 @@ impl Prediction<'_> {
     }
 }
 
-/// How far an object, or the picture, lies from where a candidate shows it, in pixels; none if
-/// that may be chance.
-pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<f64> {
+/// How far the picture, or an object, lies from where a candidate shows it; none if that may be
+/// chance, or due to where few samples lie.
+pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<Displacement> {
     let level = &judge.fine;
     let judged = judge.judged(candidate, level)?;
     let labels = labels(judge, candidate, candidate.layout, &level.grid);
@@ -150,8 +166,11 @@ pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<f64> {
     let share = judged.score.samples.map_or(judged.score.share, |n| 1.0 / n);
     let beyond = |groups: &[usize], none: f64| {
         let all = prediction.displacements(share, groups).into_iter();
-        all.flatten().filter(|far| *far > none).reduce(f64::max)
+        let all = all.flatten().filter(|one| one.far > none);
+        all.max_by(|one, other| one.far.total_cmp(&other.far))
     };
+    let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
     let [none, more] = NONE_OF_OBJECT;
-    beyond(&vec![0; groups.len()], NONE).or_else(|| beyond(&groups, none + more * share.sqrt()))
+    beyond(&vec![0; groups.len()], NONE + off_middle)
+        .or_else(|| beyond(&groups, none + more * share.sqrt()))
 }

@@ -71,7 +71,8 @@ pub enum Rays {
     UpAsTop,
     /// The top of a rolled camera is made from the right that is rolled already.
     NewRight,
-    /// They are parallel, and leave from a window whose pixels have the size that they have at this distance.
+    /// They are parallel, and leave from a window whose pixels have the size that they have at this
+    /// distance.
     Parallel(f64),
 }
 
@@ -89,8 +90,11 @@ pub enum Hit {
 /// As far as a box without sides along an axis reaches.
 const FAR: f64 = 1e9;
 
-/// A cell that shows one colour near its corners and in the first samples shows no other: an edge that passes between them cuts off a corner
-/// of a thousandth of it.
+/// Of the samples of a cell each of so many is asked first, which lie all over it.
+const EACH: usize = 4;
+
+/// A cell that shows one colour near its corners and in these samples shows no other: an edge that
+/// passes between them cuts off a corner of a thousandth of it.
 const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
@@ -255,14 +259,21 @@ impl FaultyTracer {
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
         let places = lattice(samples);
         let count = places.len() as f64;
+        // Whether the cells of the row above show one colour, and of this row those to the left.
+        let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
             // From the first on, so that what shows one colour has just that, and no variance.
             let first = self.color(corner + places[0]);
-            // Squares of the size of half a cell show the same in all corners. To ask these first is more work than a few samples are.
-            let mut probes = CORNERS.iter().chain(places.iter().take(8));
+            let column = (x - part.x) as usize;
+            let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
+            // Squares of the size of half a cell may show the same in all of these places, which
+            // are asked only beside a cell of one colour. To ask them first is more work than a few
+            // samples are.
+            let mut probes = CORNERS.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
-            if places.len() > 8 && probes.all(is_first) {
+            if is_beside && places.len() > 8 && probes.all(is_first) {
+                is_flat[column] = true;
                 return (first, [0.0; 3]);
             }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
@@ -275,6 +286,7 @@ impl FaultyTracer {
                 }
             }
             let more = sums.map(|sum| sum / count);
+            is_flat[column] = squares == [0.0; 3];
             let variance = [0, 1, 2].map(|i| (squares[i] / count - more[i] * more[i]).max(0.0));
             ([0, 1, 2].map(|i| first[i] + more[i]), variance)
         };

@@ -6,7 +6,7 @@
 use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
-    candidate::{Candidate, Mistake, Row, Shows},
+    candidate::{Candidate, Mistake, Shows},
     displacement::displaced,
     joint,
     judge::{Judge, Judged},
@@ -27,7 +27,7 @@ const MOST_MISTAKES: usize = 4;
 const FINALISTS: usize = 3;
 
 /// So many programs that behave otherwise are looked at on the coarse grid.
-const BEHAVING: usize = 6;
+const BEHAVING: usize = 12;
 
 /// Rows that turn the picture or mirror it.
 const TURNS: [&str; 4] = ["mirrored", "upside_down", "turned_180", "up_negated"];
@@ -46,8 +46,13 @@ const SUSPECTS: usize = 12;
 const PART: f64 = 0.3;
 const SURE: f64 = 7.0;
 
-/// What lies farther off than so many pixels is not due to where samples lie.
-const FAR: f64 = 2.0;
+/// Half a pixel is looked for where the picture lies no farther than this from it, in pixels.
+const NEAR: f64 = 0.3;
+
+/// Of rows that show in areas, a tiny grid has to show so many standard deviations and such a part
+/// for them to be looked at where a picture is explained without.
+const HINTED: f64 = 3.0;
+const HINTED_PART: f64 = 0.3;
 
 /// The mistakes that explain a picture, from what a program without mistakes would have made.
 pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
@@ -121,31 +126,70 @@ fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Option<Mistake
         && judge.fine.jpeg.is_none();
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
-        Shows::AtEdges if row.id == "half_pixel" => may && off.is_some_and(|off| off < FAR),
+        Shows::AtEdges if row.id == "half_pixel" => may && off.is_some(),
         // What the faulty tracer makes is not known well enough at edges.
         Shows::AtEdges => may && are_areas_right && candidate.behaviour.is_right(),
         Shows::Everywhere => may && is_much_wrong,
     });
-    let told = |row: &'static Row| {
-        let mistake = Mistake::Row(row, None);
+    let rows = rows.map(|row| Mistake::Row(row, None));
+    let is_near = |with: &Candidate| {
+        let (shift, by) = (with.shift(), off.map_or([0.0; 2], |off| off.by));
+        shift == [0.0; 2] || (0..2).all(|i| (by[i] - shift[i]).abs() <= NEAR)
+    };
+    let is_explained = are_areas_right && off.is_none() && judge.is_even(candidate);
+    let hinted = match is_explained && may {
+        true => hinted(judge, candidate),
+        false => Vec::new(),
+    };
+    let told = |mistake: Mistake| {
+        judge.work.may_go_on().then_some(())?;
         let with = candidate.with(mistake.clone())?;
+        is_near(&with).then_some(())?;
         let rendering = judge.edges.render(&with, &judge.work)?;
         let [part, deviations] = predicted.part_seen(&null.score, &judge.edges.predict(&rendering));
         let is_told = (part - 1.0).abs() < PART && deviations > SURE;
-        let is_told = is_told || row.shows == Shows::Everywhere;
+        let is_told =
+            is_told || matches!(mistake, Mistake::Row(row, _) if row.shows == Shows::Everywhere);
         (is_told && judge.explains(&with)).then_some((deviations, mistake))
     };
-    let rows = rows.take_while(|_| judge.work.may_go_on());
     let best = rows
+        .chain(hinted)
         .filter_map(told)
         .max_by(|one, other| one.0.total_cmp(&other.0));
     match best {
         Some((_, row)) => Some(Some(row)),
-        None => {
-            let is_explained = are_areas_right && off.is_none() && judge.is_even(candidate);
-            is_explained.then_some(None)
-        }
+        None => is_explained.then_some(None),
     }
+}
+
+/// Rows that change so little that a candidate explains a picture without them, and of which a tiny
+/// grid shows a part: where all that is seen is a mixture, what is wrong may pass for noise.
+fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
+    let hinted = || {
+        let tiny = judge.tiny(candidate)?;
+        let null = judge.judged(candidate, &tiny)?;
+        let predicted = tiny.predict(&null.rendering);
+        let is_hinted = |mistake: &Mistake| {
+            let with = candidate.with(mistake.clone())?;
+            let rendering = tiny.render(&with, &judge.work)?;
+            let [part, deviations] = predicted.part_seen(&null.score, &tiny.predict(&rendering));
+            (part > HINTED_PART && deviations > HINTED).then_some(())
+        };
+        let all: Vec<usize> = (0..judge.scene.objects.len()).collect();
+        let rows = rows_in_areas(&all);
+        Some(rows.filter(|row| is_hinted(row).is_some()).collect())
+    };
+    hinted().unwrap_or_default()
+}
+
+/// The rows of the table that show in areas, those about an object of each of some objects.
+fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
+    let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
+    let of_objects = objects.iter().flat_map(|&object| {
+        let rows = OBJECT_ROWS.iter();
+        rows.map(move |row| Mistake::Row(row, Some(object)))
+    });
+    rows.map(|row| Mistake::Row(row, None)).chain(of_objects)
 }
 
 /// The same with as few mistakes as explain the picture.
@@ -278,13 +322,7 @@ fn refined(judge: &Judge, found: Judged) -> Option<Judged> {
 
 /// The rows of the table, and how much each leaves on the coarse grid.
 fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
-    let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
-    let rows = rows.map(|row| Mistake::Row(row, None));
-    let of_objects = suspects.iter().flat_map(|&object| {
-        let rows = OBJECT_ROWS.iter();
-        rows.map(move |row| Mistake::Row(row, Some(object)))
-    });
-    let candidates = rows.chain(of_objects);
+    let candidates = rows_in_areas(suspects);
     let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
     // What the faulty tracer makes takes most of the work: of that the tiny grid chooses.
     let behaviour = from.candidate().behaviour;

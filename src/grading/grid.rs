@@ -93,7 +93,8 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// The view of a scene whose pixels the cells are, with so many more columns and rows, half of them on each side.
+    /// The view of a scene whose pixels the cells are, with so many more columns and rows, half of
+    /// them on each side.
     pub fn view(&self, scene: &Scene, more: [u32; 2]) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
         if self.factor > 1 || more != [0, 0] {

@@ -1,7 +1,9 @@
-//! Rows of the table that were made together: how a picture is laid out, what is seen in it, the order of its channels, and how light is encoded.
+//! Rows of the table that were made together: how a picture is laid out, what is seen in it, the
+//! order of its channels, and how light is encoded.
 //!
-//! One of them alone may explain nothing: of a board whose squares are truncated nothing is seen in a picture that is upside down. On the tiny grid all of them are tried
-//! together, before any number is.
+//! One of them alone may explain nothing: of a board whose squares are truncated nothing is seen in
+//! a picture that is upside down. On the tiny grid all of them are tried together, before any
+//! number is.
 
 use super::{
     candidate::{Candidate, Mistake, Shows},
@@ -10,7 +12,8 @@ use super::{
     mistakes::ROWS,
 };
 
-/// So many that leave least are tried with what changes light otherwise, and are looked at on the coarse grid.
+/// So many that leave least are tried with what changes light otherwise, and are looked at on the
+/// coarse grid.
 const BEST: usize = 8;
 
 /// Another row has to leave less than this part of what is left without it.
@@ -65,7 +68,12 @@ pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> 
         all
     };
     let left = |candidate: Candidate| {
-        let left = absolute(&judge.differences(&candidate, &tiny)?);
+        judge.work.may_go_on().then_some(())?;
+        let shown = judge.predicted(&candidate, &tiny)?;
+        // A picture of one colour was told before.
+        let mean = &shown.moments.mean;
+        mean.iter().any(|one| *one != mean[0]).then_some(())?;
+        let left = absolute(&shown.differences());
         let count = i32::try_from(candidate.mistakes.len()).unwrap_or(i32::MAX);
         Some((left / libm::pow(WORTH, f64::from(count)), candidate))
     };

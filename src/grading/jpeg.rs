@@ -1,12 +1,15 @@
 //! What JPEG does to a picture.
 //!
-//! In: how a file is coded, and what a picture should show. Out: what it shows if it is coded as the file is, and the variance that this coding gives to each pixel, in
-//! linear light, as a picture with noise is coded a little otherwise.
+//! In: how a file is coded, and what a picture should show. Out: what it shows if it is coded as
+//! the file is, and the variance that this coding gives to each pixel, in linear light, as a
+//! picture with noise is coded a little otherwise.
 //!
-//! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of chroma, to multiples of the steps in its tables. The transform keeps
-//! squares, so the mean variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's square each. A block of one colour has one
-//! coefficient. Chroma is taken to be kept for each second column and row alone, as it is in most files, so that noise mixes with that up to two pixels
-//! away.
+//! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of
+//! chroma, to multiples of the steps in its tables. The transform keeps squares, so the mean
+//! variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's
+//! square each. A block of one colour has one coefficient. Chroma is taken to be kept for each
+//! second column and row alone, as it is in most files, so that noise mixes with that up to two
+//! pixels away.
 
 use super::{
     light::{Curve, STEP},
@@ -26,7 +29,8 @@ const BLOCK: usize = 16;
 /// How far colours mix, in pixels.
 const MIXED: usize = 2;
 
-/// What pixels show that should show something else, if that is coded as a file is; none if it cannot be.
+/// What pixels show that should show something else, if that is coded as a file is; none if it
+/// cannot be.
 pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<[f64; 3]>> {
     let byte = |light: f64| {
         let encoded = linear_to_srgb(prediction.curve.seen(light));

@@ -134,10 +134,17 @@ impl Prediction<'_> {
         }
     }
 
-    /// The part that is seen of what another prediction changes, and of how many standard deviations
-    /// that part is, where errors have the variances of this one, whose score this is.
+    /// The part that is seen of what another prediction changes, and of how many standard
+    /// deviations that part is, where errors have the greater variances of the two; this is the
+    /// score of this one.
     pub fn part_seen(&self, score: &Score, other: &Self) -> [f64; 2] {
-        let deviations = self.deviations();
+        let mut deviations = self.deviations();
+        // Light that is encoded otherwise has variances of its own.
+        let is_alike = self.curve == other.curve;
+        if is_alike {
+            let others = deviations.iter_mut().zip(other.deviations());
+            others.for_each(|(one, other)| *one = one.max(other));
+        }
         let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
         for (at, light) in self.seen.iter().enumerate() {
             let before = self.difference(at);
@@ -148,7 +155,11 @@ impl Prediction<'_> {
             if before == after || light[0].is_nan() {
                 continue;
             }
-            let error = self.error(at, score.share);
+            let mut error = self.error(at, score.share);
+            if is_alike {
+                let other = other.error(at, score.share);
+                error = [0, 1, 2].map(|i| error[i].max(other[i]));
+            }
             for i in 0..3 {
                 let (change, deviation) = (before[i] - after[i], deviations[3 * at + i]);
                 let weighted = change / (deviation * deviation);

@@ -8,7 +8,8 @@
 //!    change its scene, its `layout`, what it does to `light`, or how it behaves.
 //! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the `faulty_tracer` where it behaves as no
 //!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
-//! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains (`strays`), and whether it lies elsewhere (`displacement`).
+//! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains
+//!    (`strays`), and whether it lies elsewhere (`displacement`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
 //!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
@@ -298,7 +299,8 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// The verdict on a picture with mistakes: they are named if together they explain it, and else they are guesses.
+/// The verdict on a picture with mistakes: they are named if together they explain it, and else
+/// they are guesses.
 fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.

@@ -125,7 +125,8 @@ fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
     numbers.chunks_exact(3).flat_map(color).collect()
 }
 
-/// Where to look for a plane that clips: at depths around that of the nearest object and what is looked at, each a fifth more than the one before.
+/// Where to look for a plane that clips: at depths around that of the nearest object and what is
+/// looked at, each a fifth more than the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;

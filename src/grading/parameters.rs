@@ -37,7 +37,8 @@ pub struct Parameter {
 /// As far as is seen where a scene has no far plane.
 pub const NO_FAR: f64 = 1e9;
 
-/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height sizes it as d does, so these two are left to them.
+/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height
+/// sizes it as d does, so these two are left to them.
 pub fn fitted(scene: &Scene) -> Vec<Parameter> {
     let is_told = |parameter: &Parameter| !matches!(parameter.fields[0], "up" | "view_height");
     let mut fitted: Vec<Parameter> = all(scene).into_iter().filter(is_told).collect();

@@ -1,4 +1,5 @@
-//! What is plain to see in a picture, before any mistake is fitted to it: that nothing is in it, or that a part of it is empty.
+//! What is plain to see in a picture, before any mistake is fitted to it: that nothing is in it, or
+//! that a part of it is empty.
 
 use glam::DVec3;
 
@@ -15,7 +16,8 @@ use crate::{
     scene::{Lens, Scene, View},
 };
 
-/// Neighbours in a picture that are noise differ by as much as pixels far from each other, and by less than this part of it in one of a scene.
+/// Neighbours in a picture that are noise differ by as much as pixels far from each other, and by
+/// less than this part of it in one of a scene.
 const ALIKE: f64 = 0.8;
 
 /// The cells, along the longer side, in which it is looked at whether anything is seen.
@@ -31,7 +33,8 @@ fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
     }
 }
 
-/// What a picture of a part of a scene is that has nothing in it; none if it has. `exact` is what it should show.
+/// What a picture of a part of a scene is that has nothing in it; none if it has. `exact` is what
+/// it should show.
 pub fn nothing_in_it(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
@@ -143,7 +146,8 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// The rows at the top or at the bottom of a picture that have one colour and should not, at least two and not all.
+/// The rows at the top or at the bottom of a picture that have one colour and should not, at least
+/// two and not all.
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyRows {
     /// The first and the last.

@@ -1,7 +1,9 @@
-//! The plainest numbers that explain a picture as well as those that were fitted: the scene's own where that is so, and else short ones.
+//! The plainest numbers that explain a picture as well as those that were fitted: the scene's own
+//! where that is so, and else short ones.
 //!
-//! Whoever mistypes a scene changes one number of a vector, and to a short one. Among fits that are equally good, that one is told which has most of the scene's
-//! own numbers, and then the fewest digits.
+//! Whoever mistypes a scene changes one number of a vector, and to a short one. Among fits that are
+//! equally good, that one is told which has most of the scene's own numbers, and then the fewest
+//! digits.
 
 use super::{
     candidate::{Candidate, Mistake},
@@ -11,7 +13,8 @@ use super::{
 };
 use crate::{numbers::rounded, scene::Scene};
 
-/// No edge moves by more than this part of a pixel for a shorter number, and by a quarter of it in each round after that.
+/// No edge moves by more than this part of a pixel for a shorter number, and by a quarter of it in
+/// each round after that.
 const TENTH: f64 = 0.1;
 const QUARTERS: i32 = 5;
 
@@ -160,7 +163,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let most = long.cost + price(middle, free);
     let steps = leveled.steps(1.0);
     let rounded_to = |part: f64| {
-        // What a vector's length may be off is no matter, so that no error is more than a part of a step.
+        // What a vector's length may be off is no matter, so that no error is more than a part of a
+        // step.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));

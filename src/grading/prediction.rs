@@ -59,10 +59,15 @@ impl Prediction<'_> {
                 Look::Curve(curve) => {
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {
-                            // The slope over what noise of a sample or a step may reach.
-                            let by = variance[i].sqrt().max(STEP) / 4.0;
-                            let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
-                            let slope = (curve(high) - curve(low)) / (high - low);
+                            // The slope over what noise of a step, of many samples or of one may
+                            // reach, whichever is greater: light that is cut off has none beside
+                            // where it is.
+                            let slope = |part: f64| {
+                                let by = variance[i].sqrt().max(STEP) * part;
+                                let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
+                                (curve(high) - curve(low)) / (high - low)
+                            };
+                            let slope = slope(0.25).abs().max(slope(1.0).abs());
                             variance[i] *= slope * slope;
                             mean[i] = curve(mean[i]);
                         }

@@ -56,7 +56,8 @@ pub struct Verdict {
     pub mistakes: Vec<NamedMistake>,
     /// The mistakes that come nearest, where none that are known explain the picture.
     pub guesses: Vec<NamedMistake>,
-    /// The share of the squared difference beyond noise that mistakes or guesses leave, if it is more than noise.
+    /// The share of the squared difference beyond noise that mistakes or guesses leave, if it is
+    /// more than noise.
     pub rest: Option<f64>,
     /// The objects.
     pub objects: Vec<ObjectVerdict>,

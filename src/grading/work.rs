@@ -39,7 +39,8 @@ pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
 }
 
 impl<'a> Work<'a> {
-    /// What may be spent on a picture of so many pixels, so many times as much as usual, of which so much is spent.
+    /// What may be spent on a picture of so many pixels, so many times as much as usual, of which
+    /// so much is spent.
     pub fn new(pixels: u64, spent: f64, effort: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             spent: Cell::new(spent),

@@ -79,7 +79,10 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
     row("w_not_normalised", |p| p.axes = Axes::LongW),
     row("parallel_rays", |p| p.axes = Axes::Parallel),
-    row("eye_not_subtracted", |p| p.axes = Axes::WithoutEye),
+    // A camera that sees nothing of the scene is no more than that.
+    row("eye_not_subtracted|nothing_seen", |p| {
+        p.axes = Axes::WithoutEye
+    }),
     row("near_far_distance", |p| p.clips_distances = true),
     row("roll_sign|camera.roll", |p| p.roll = -p.roll),
     row("roll_unit|camera.roll", |p| {
