@@ -18,9 +18,9 @@ const CHANCE: f64 = 50.0;
 /// make it.
 const NONE: f64 = 0.06;
 
-/// What few samples add to it, for each share of a sample's variance that an error has, and at
-/// most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off the middle of a pixel, and so many
-/// points make less noise than as many random ones.
+/// How far few samples lie off the middles of all pixels alike, for each share of a sample's variance
+/// that an error has, and at most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off, and so
+/// many points make less noise than as many random ones.
 const OFF_MIDDLE: f64 = 0.75;
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
@@ -48,8 +48,8 @@ struct Sums {
 }
 
 impl Sums {
-    /// The displacement, if it is no chance.
-    fn displacement(&self) -> Option<Displacement> {
+    /// The displacement, if it is no chance, less what samples that lie so far off make of it.
+    fn displacement(&self, off_middle: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         // What no edge tells is taken for 0.
         let solved = |matrix: &[Vec<f64>]| {
@@ -59,12 +59,15 @@ impl Sums {
             solve(matrix, self.right.clone())
         };
         let square = dot(&self.right, &solved(&self.variance)?);
-        let fitted = solved(&self.normal)?;
+        let mut fitted = solved(&self.normal)?;
+        let by = [fitted[0], fitted[3]];
+        for at in [0, 3] {
+            fitted[at] -= fitted[at].clamp(-off_middle, off_middle);
+        }
         let product = fitted.iter().zip(&self.normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Along the slope of edges.
         let far = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
-        let by = [fitted[0], fitted[3]];
         (square > CHANCE).then_some(Displacement { far, by })
     }
 }
@@ -100,6 +103,7 @@ impl Prediction<'_> {
     /// How far each of some groups of pixels lies from where it should, if that is no chance where
     /// an error has this share of a sample's variance.
     fn displacements(&self, share: f64, groups: &[usize]) -> Vec<Option<Displacement>> {
+        let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
         let (width, count) = (self.width, self.seen.len());
         let height = count / width;
         let mean = &self.moments.mean;
@@ -150,7 +154,9 @@ impl Prediction<'_> {
                 }
             }
         }
-        sums.iter().map(Sums::displacement).collect()
+        sums.iter()
+            .map(|sums| sums.displacement(off_middle))
+            .collect()
     }
 }
 
@@ -169,8 +175,6 @@ pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<Displacement> {
         let all = all.flatten().filter(|one| one.far > none);
         all.max_by(|one, other| one.far.total_cmp(&other.far))
     };
-    let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
     let [none, more] = NONE_OF_OBJECT;
-    beyond(&vec![0; groups.len()], NONE + off_middle)
-        .or_else(|| beyond(&groups, none + more * share.sqrt()))
+    beyond(&vec![0; groups.len()], NONE).or_else(|| beyond(&groups, none + more * share.sqrt()))
 }

@@ -47,7 +47,7 @@ const PART: f64 = 0.3;
 const SURE: f64 = 7.0;
 
 /// Half a pixel is looked for where the picture lies no farther than this from it, in pixels.
-const NEAR: f64 = 0.3;
+const NEAR: f64 = 0.4;
 
 /// Of rows that show in areas, a tiny grid has to show so many standard deviations and such a part
 /// for them to be looked at where a picture is explained without.
@@ -137,7 +137,7 @@ fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Option<Mistake
         shift == [0.0; 2] || (0..2).all(|i| (by[i] - shift[i]).abs() <= NEAR)
     };
     let is_explained = are_areas_right && off.is_none() && judge.is_even(candidate);
-    let hinted = match is_explained && may {
+    let hinted = match is_explained && may && candidate.mistakes.is_empty() {
         true => hinted(judge, candidate),
         false => Vec::new(),
     };

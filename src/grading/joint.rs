@@ -10,11 +10,16 @@ use super::{
     judge::Judge,
     levenberg_marquardt::absolute,
     mistakes::ROWS,
+    prediction::Prediction,
 };
 
 /// So many that leave least are tried with what changes light otherwise, and are looked at on the
 /// coarse grid.
 const BEST: usize = 8;
+
+/// So many ways to see the scene and to lay it out are tried with what changes light, those of
+/// which the picture shows the same in other light.
+const ALIKE: usize = 32;
 
 /// Another row has to leave less than this part of what is left without it.
 const WORTH: f64 = 0.95;
@@ -39,6 +44,27 @@ fn changes(right: &Candidate, changed: &Candidate) -> Changes {
         }
         _ => Changes::Seen,
     }
+}
+
+/// How much what is seen and what is expected vary together, whatever was done to light: the
+/// correlation of the sums of their channels, or what that is if light and dark are exchanged.
+fn alike(shown: &Prediction) -> f64 {
+    let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
+    for (seen, mean) in shown.seen.iter().zip(&shown.moments.mean) {
+        let [a, b] = [seen, mean].map(|light| light.iter().sum::<f64>());
+        if !a.is_nan() {
+            count += 1.0;
+            sums = [sums[0] + a, sums[1] + b];
+            products = [
+                products[0] + a * a,
+                products[1] + a * b,
+                products[2] + b * b,
+            ];
+        }
+    }
+    let [aa, ab, bb] = [(0, 0, 0), (1, 0, 1), (2, 1, 1)]
+        .map(|(at, i, j)| products[at] - sums[i] * sums[j] / f64::max(count, 1.0));
+    ab.abs() / (aa * bb).sqrt().max(1e-12)
 }
 
 /// Several rows that together leave little, and how much each leaves on the coarse grid.
@@ -85,7 +111,15 @@ pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> 
     // What is seen first: the same is made only once.
     let seen = with(right, &[Changes::Seen]).into_iter();
     let laid_out = seen.flat_map(|candidate| with(&candidate, &[Changes::Layout]));
-    let lit = laid_out.flat_map(|candidate| with(&candidate, &[Changes::Channels, Changes::Light]));
+    let alike = laid_out.filter_map(|candidate| {
+        judge.work.may_go_on().then_some(())?;
+        Some((alike(&judge.predicted(&candidate, &tiny)?), candidate))
+    });
+    let mut alike: Vec<(f64, Candidate)> = alike.collect();
+    alike.sort_by(|one, other| other.0.total_cmp(&one.0));
+    alike.truncate(ALIKE);
+    let alike = alike.into_iter().map(|(_, candidate)| candidate);
+    let lit = alike.flat_map(|candidate| with(&candidate, &[Changes::Channels, Changes::Light]));
     let best = least_first(lit.filter_map(left).collect());
     let both = best.iter().flat_map(|(_, candidate)| {
         let has = |kind: Changes| {

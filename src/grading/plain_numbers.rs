@@ -174,7 +174,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     };
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, middle);
-        judged.is_some_and(|judged| judged.cost <= most)
+        // Noise that is no chance, as that of a regular grid, may be fitted by a long number.
+        judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =
         (0..QUARTERS).filter_map(|i| rounded_to(TENTH / libm::pow(4.0, f64::from(i))));
