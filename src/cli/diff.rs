@@ -103,7 +103,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             },
             cancel,
         };
-        Reference::new(&scene, part, a.rounding, &control)
+        let reference = Reference::new(&scene, part, a.rounding, &control);
+        reference.map(|reference| reference.with_effort(args.effort.effort))
     });
     let reference = match reference {
         Ok(reference) => reference,
@@ -113,7 +114,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let comparison = reference
         .compare(&a.film, steps)
         .map_err(|error| Trouble(error.to_string()))?;
-    let verdict = match reference.judge(&a.film, jpeg, &comparison, cancel) {
+    let verdict = match reference.judge(&a, jpeg, &comparison, cancel) {
         Ok(verdict) => verdict,
         Err(error) => return ended(error),
     };
@@ -387,9 +388,11 @@ pub fn json(
 
 /// What is wrong, mistake by mistake and object by object.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
-    for mistake in &verdict.mistakes {
+    let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
+    let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
+    for (title, mistake) in named.chain(guessed) {
         writeln!(out)?;
-        writeln!(out, "mistake   {}", visible(&mistake.message))?;
+        writeln!(out, "{title}   {}", visible(&mistake.message))?;
         writeln!(
             out,
             "          explains {} % of the squared difference beyond noise",
@@ -410,7 +413,7 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
         writeln!(out)?;
         writeln!(
             out,
-            "limit     the scene has so much in it that not all mistakes were tried"
+            "limit     the search came to its bound, and not all mistakes were tried: --effort 4 tries more"
         )?;
     }
     if matches!(verdict.kind, Kind::Wrong | Kind::Unknown) {

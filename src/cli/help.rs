@@ -84,9 +84,10 @@ a, b} (in steps), beyond {pixels, share}, undecided (so many pixels cannot be ju
 large there), tolerance (in steps), equal (whether no pixel is beyond it). Of two pictures of different sizes rmse, largest, beyond and \
 undecided are null. With a scene also verdict (right, noise, wrong, or unknown: wrong, and not by a mistake known here), line (the \
 verdict in words), samples_per_pixel (independent ones that make as much noise), mistakes [{id, message, help, set, explains}] \
-(explains is the share of the squared difference beyond noise, 0 to 1), rest (the share that mistakes leave, if that is more than \
-noise), objects [{index, name, right, off}] (off in pixels), limited (whether not all mistakes were tried, as the scene has too \
-much in it).
+(explains is the share of the squared difference beyond noise, 0 to 1; together they explain the picture), guesses (the same of an \
+unknown verdict: what comes nearest), rest (the share that mistakes or guesses leave, if that is more than noise), objects [{index, \
+name, right, off}] (off in pixels), limited (whether the search came to its bound before all mistakes were tried: --effort N \
+multiplies that).
 
 Exit status: 0 for pictures within the tolerance, and for one that is right, but for noise; 1 if not, or the scene has errors; \
 2 trouble, also where a picture has another size than the scene's.";

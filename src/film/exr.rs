@@ -196,6 +196,7 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         },
         coding: Coding::Exact,
         crop,
+        opacity: None,
     })
 }
 

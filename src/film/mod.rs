@@ -33,7 +33,7 @@ pub use self::{
     jpeg::{Jpeg, Table as JpegTable},
     mean::mean,
     memory::{TooLarge, reserve as reserve_memory},
-    picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable},
+    picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable},
     pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
     read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},

@@ -21,6 +21,17 @@ pub struct Picture {
     pub coding: Coding,
     /// The part of a whole picture that it is, if it says so.
     pub crop: Option<Area>,
+    /// How transparent it is, if it is.
+    pub opacity: Option<Opacity>,
+}
+
+/// How transparent a picture is.
+#[derive(Clone, Debug)]
+pub struct Opacity {
+    /// The least and the greatest of its pixels, from 0 to 1.
+    pub range: [f64; 2],
+    /// The picture as it would be if it were opaque.
+    pub film: Film,
 }
 
 /// What the numbers of a file are rounded to.

@@ -157,6 +157,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
         rounding,
         coding: if is_mended { Coding::TextMode } else { coding },
         crop: None,
+        opacity: None,
     })
 }
 

@@ -14,8 +14,9 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use png::{BitDepth, ColorType, DecodingError, Transformations};
 
 use super::{
-    exr, memory,
-    picture::{Coding, DECODED_LIMIT, Picture, Rounding, Unreadable, check_size, name},
+    exr,
+    memory::{self, TooLarge},
+    picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable, check_size, name},
     pixels::Film,
     png::read_recipe,
     pnm,
@@ -97,15 +98,15 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     memory::check(width, height, whole as u64)?;
     let mut film = Film::new(width, height)?;
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
-    match rounding {
+    let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
         // A byte k is the word 257 k, the same part of the whole.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
-            fill(&mut film, &image.into_rgba16(), light, part);
+            fill(&mut film, &image.into_rgba16(), light, part)
         }
-    }
+    };
     let is_lossy = match format {
         ImageFormat::WebP => {
             image_webp::WebPDecoder::new(Cursor::new(bytes)).is_ok_and(|mut webp| webp.is_lossy())
@@ -121,6 +122,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
             _ => Coding::Exact,
         },
         crop: None,
+        opacity: opacity?,
     })
 }
 
@@ -165,10 +167,9 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         // A byte k is the word 257 k, the same part of the whole.
         _ => 257 * u16::from(samples[index]),
     };
-    for (index, pixel) in film.pixels_mut().iter_mut().enumerate() {
-        let [r, g, b, a] = places.map(|place| word(channels * index + place));
-        *pixel = [r, g, b].map(|word| light[usize::from(word)] * part(a));
-    }
+    let count = film.pixels().len();
+    let pixels = (0..count).map(|index| places.map(|place| word(channels * index + place)));
+    let opacity = mix(&mut film, pixels, |word| light[usize::from(word)], part)?;
     Ok(Picture {
         film,
         rounding,
@@ -177,6 +178,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
             false => Coding::Exact,
         },
         crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
+        opacity,
     })
 }
 
@@ -232,10 +234,37 @@ fn fill<T: Copy>(
     samples: &[T],
     light: impl Fn(T) -> f64,
     opacity: impl Fn(T) -> f64,
-) {
-    for (pixel, &[r, g, b, a]) in film.pixels_mut().iter_mut().zip(samples.as_chunks().0) {
-        *pixel = [r, g, b].map(|sample| light(sample) * opacity(a));
+) -> Result<Option<Opacity>, TooLarge> {
+    mix(film, samples.as_chunks().0.iter().copied(), light, opacity)
+}
+
+/// Fills a film with pixels of red, green, blue and opacity, on black.
+fn mix<T: Copy>(
+    film: &mut Film,
+    pixels: impl Iterator<Item = [T; 4]>,
+    light: impl Fn(T) -> f64,
+    opacity: impl Fn(T) -> f64,
+) -> Result<Option<Opacity>, TooLarge> {
+    let mut opaque: Option<Opacity> = None;
+    for (at, [r, g, b, a]) in pixels.enumerate() {
+        let (light, part) = ([r, g, b].map(&light), opacity(a));
+        if part < 1.0 && opaque.is_none() {
+            let (width, height) = (film.width(), film.height());
+            memory::check(width, height, size_of::<[f64; 3]>() as u64)?;
+            let before = if at == 0 { part } else { 1.0 };
+            opaque = Some(Opacity {
+                range: [part, before],
+                film: film.clone(),
+            });
+        }
+        if let Some(opaque) = &mut opaque {
+            let [least, most] = opaque.range;
+            opaque.range = [least.min(part), most.max(part)];
+            opaque.film.pixels_mut()[at] = light;
+        }
+        film.pixels_mut()[at] = light.map(|light| light * part);
     }
+    Ok(opaque)
 }
 
 fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {

@@ -185,9 +185,15 @@ impl Candidate {
         one.camera == two.camera
             && one.image == two.image
             && self.averaged == other.averaged
-            && self.layout.is_shifted() == other.layout.is_shifted()
+            && self.layout.more() == other.layout.more()
             && self.is_drawn == other.is_drawn
             && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
+    }
+
+    /// How far its samples lie from where they should, to the right and down, in pixels.
+    pub fn shift(&self) -> [f64; 2] {
+        let (halves, parts) = (self.layout.half_pixels, self.behaviour.offset);
+        [0, 1].map(|i| 0.5 * f64::from(halves[i]) + parts[i])
     }
 
     /// How many numbers were fitted.

@@ -4,7 +4,7 @@
 //! sees, from so many at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
 //! can be wrong in the ways in which a program can.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::{light::Curve, moments::Moments};
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
     color::Color,
     projection::Projection,
     scene::{Checkerboard, Cuboid, Scene, Shape},
-    textbook::{by_vertices, corners, crossings, vertices},
+    textbook::{by_vertices, corners, crossings, radians, vertices},
 };
 
 /// Which of the surfaces that a ray crosses is seen.
@@ -45,10 +45,56 @@ pub enum Squares {
     SignedSum,
     /// Those where the remainders of floor(x) and floor(z), which may be −1, are equal.
     SignedParts,
+    /// Those where round(x) + round(z) is even.
+    Rounded,
+    /// Those where trunc(x) + floor(z) is even.
+    TruncatedX,
+    /// Those where floor(x) + trunc(z) is even.
+    TruncatedZ,
+    /// Those where floor(x + z) is even.
+    Sum,
+    /// Those where floor(x) is even.
+    StripesX,
+    /// Those where floor(z) is even.
+    StripesZ,
+    /// Those where sin(x) sin(z) is not less than 0.
+    Sines,
 }
 
-/// A cell that shows one colour near its corners and in the first samples shows no other: an edge that passes between them cuts off a corner
-/// of a thousandth of it.
+/// How rays are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Rays {
+    /// As they should be.
+    #[default]
+    Right,
+    /// Up is taken for the picture's top.
+    UpAsTop,
+    /// The top of a rolled camera is made from the right that is rolled already.
+    NewRight,
+    /// They are parallel, and leave from a window whose pixels have the size that they have at this
+    /// distance.
+    Parallel(f64),
+}
+
+/// What is wrong with how a shape is hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hit {
+    /// One of the tests of a triangle's three edges is missing.
+    WithoutEdge(usize),
+    /// A triangle is taken for the parallelogram of its first two sides.
+    Parallelogram,
+    /// A box has no sides along an axis.
+    WithoutAxis(usize),
+}
+
+/// As far as a box without sides along an axis reaches.
+const FAR: f64 = 1e9;
+
+/// Of the samples of a cell each of so many is asked first, which lie all over it.
+const EACH: usize = 4;
+
+/// A cell that shows one colour near its corners and in these samples shows no other: an edge that
+/// passes between them cuts off a corner of a thousandth of it.
 const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
@@ -57,20 +103,54 @@ const CORNERS: [DVec2; 4] = [
 ];
 
 /// How a program behaves; one without mistakes by default.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Behaviour {
     /// Which surface is seen.
     pub visible: Visible,
     /// How squares are told.
     pub squares: Squares,
-    /// Whether the window is as wide as it is high, though the picture is not.
-    pub is_squeezed: bool,
+    /// How many times as wide as it is tall a pixel is.
+    pub aspect: f64,
+    /// How far apart samples lie, and how far from where they should, in pixels.
+    pub spread: [f64; 2],
+    pub offset: [f64; 2],
+    /// How rays are made.
+    pub rays: Rays,
+    /// Whether near and far are distances from the eye, not depths.
+    pub clips_distances: bool,
+    /// An object that is hit wrongly.
+    pub hit: Option<(usize, Hit)>,
+}
+
+impl Default for Behaviour {
+    fn default() -> Self {
+        Self {
+            visible: Visible::default(),
+            squares: Squares::default(),
+            aspect: 1.0,
+            spread: [1.0; 2],
+            offset: [0.0; 2],
+            rays: Rays::default(),
+            clips_distances: false,
+            hit: None,
+        }
+    }
 }
 
 impl Behaviour {
     /// Whether it is that of a program without mistakes.
     pub fn is_right(self) -> bool {
         self == Self::default()
+    }
+
+    /// Whether objects are seen only where a right program shows them, or not at all.
+    pub fn is_in_place(self) -> bool {
+        let is_shifted = self.offset != [0.0; 2] || self.spread != [1.0; 2];
+        !is_shifted
+            && !self.sees_behind()
+            && self.aspect == 1.0
+            && self.rays == Rays::Right
+            && self.hit.is_none()
     }
 
     /// Whether what lies behind the eye is seen, too.
@@ -91,6 +171,13 @@ impl Squares {
             Self::Truncated => trunc(x).wrapping_add(trunc(z)) & 1 == 0,
             Self::SignedSum => floor(x).wrapping_add(floor(z)) % 2 != 1,
             Self::SignedParts => floor(x) % 2 == floor(z) % 2,
+            Self::Rounded => floor(x + 0.5).wrapping_add(floor(z + 0.5)) & 1 == 0,
+            Self::TruncatedX => trunc(x).wrapping_add(floor(z)) & 1 == 0,
+            Self::TruncatedZ => floor(x).wrapping_add(trunc(z)) & 1 == 0,
+            Self::Sum => floor(x + z) & 1 == 0,
+            Self::StripesX => floor(x) & 1 == 0,
+            Self::StripesZ => floor(z) & 1 == 0,
+            Self::Sines => libm::sin(x) * libm::sin(z) >= 0.0,
         }
     }
 }
@@ -98,6 +185,8 @@ impl Squares {
 /// An object prepared.
 struct Traced {
     shape: Shape,
+    /// What is wrong with how it is hit.
+    hit: Option<Hit>,
     /// The rectangle of the picture that it lies in, or all of it.
     bounds: [DVec2; 2],
     /// What is averaged of its first and its second colour.
@@ -118,14 +207,41 @@ pub struct FaultyTracer {
 impl FaultyTracer {
     /// Prepares a scene, and what is averaged.
     pub fn new(scene: &Scene, behaviour: Behaviour, averaged: Curve) -> Self {
-        let projection = Projection::quick(&scene.camera, &scene.image);
+        let mut projection = Projection::quick(&scene.camera, &scene.image);
         let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
+        let right_projection = projection;
+        let is_in_place = matches!(behaviour.rays, Rays::Right) && behaviour.aspect == 1.0;
+        let angle = radians(scene.camera.roll);
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let unrolled = cos * projection.right + sin * projection.top;
+        let top = cos * projection.top - sin * projection.right;
+        match behaviour.rays {
+            Rays::Right | Rays::Parallel(_) => {}
+            Rays::UpAsTop => {
+                let up = scene.camera.up.normalize_or(top);
+                projection.right = cos * unrolled - sin * up;
+                projection.top = sin * unrolled + cos * up;
+            }
+            Rays::NewRight => projection.top = sin * projection.right + cos * top,
+        }
         let averaged = |color: Color| color.to_linear().map(|light| averaged.light(light));
-        let objects = scene.objects.iter().map(|object| {
-            let shape = by_vertices(object.shape);
+        let objects = scene.objects.iter().enumerate().map(|(at, object)| {
+            let mut shape = by_vertices(object.shape);
+            let hit = behaviour
+                .hit
+                .filter(|(own, _)| *own == at)
+                .map(|(_, hit)| hit);
+            if let (Some(Hit::WithoutAxis(axis)), Shape::Box(cuboid)) = (hit, &mut shape) {
+                (cuboid.min[axis], cuboid.max[axis]) = (-FAR, FAR);
+            }
+            let bounds = match is_in_place && hit.is_none() {
+                true => bounds(&shape, &right_projection),
+                false => None,
+            };
             Traced {
                 shape,
-                bounds: bounds(&shape, &projection).unwrap_or(everywhere),
+                hit,
+                bounds: bounds.unwrap_or(everywhere),
                 colors: shape.colors().map(averaged),
             }
         });
@@ -143,14 +259,21 @@ impl FaultyTracer {
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
         let places = lattice(samples);
         let count = places.len() as f64;
+        // Whether the cells of the row above show one colour, and of this row those to the left.
+        let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
             // From the first on, so that what shows one colour has just that, and no variance.
             let first = self.color(corner + places[0]);
-            // Squares of the size of half a cell show the same in all corners. To ask these first is more work than a few samples are.
-            let mut probes = CORNERS.iter().chain(places.iter().take(8));
+            let column = (x - part.x) as usize;
+            let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
+            // Squares of the size of half a cell may show the same in all of these places, which
+            // are asked only beside a cell of one colour. To ask them first is more work than a few
+            // samples are.
+            let mut probes = CORNERS.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
-            if places.len() > 8 && probes.all(is_first) {
+            if is_beside && places.len() > 8 && probes.all(is_first) {
+                is_flat[column] = true;
                 return (first, [0.0; 3]);
             }
             let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
@@ -163,6 +286,7 @@ impl FaultyTracer {
                 }
             }
             let more = sums.map(|sum| sum / count);
+            is_flat[column] = squares == [0.0; 3];
             let variance = [0, 1, 2].map(|i| (squares[i] / count - more[i] * more[i]).max(0.0));
             ([0, 1, 2].map(|i| first[i] + more[i]), variance)
         };
@@ -170,28 +294,42 @@ impl FaultyTracer {
     }
 
     fn color(&self, place: DVec2) -> [f64; 3] {
-        let size = self.projection.size;
-        let moved = match self.behaviour.is_squeezed {
-            true => {
-                let middle = size.x / 2.0;
-                DVec2::new(middle + (place.x - middle) * size.y / size.x, place.y)
-            }
-            false => place,
+        let [spread, offset] = [self.behaviour.spread, self.behaviour.offset].map(DVec2::from);
+        let place = place * spread + offset;
+        let middle = self.projection.size.x / 2.0;
+        let x = match self.behaviour.aspect {
+            1.0 => place.x,
+            aspect => middle + (place.x - middle) * aspect,
         };
+        let moved = DVec2::new(x, place.y);
         self.seen(moved).unwrap_or(self.background)
     }
 
     /// The colour of the object that is seen at a place.
     fn seen(&self, place: DVec2) -> Option<[f64; 3]> {
-        let (eye, ray) = (self.projection.eye, self.projection.ray(place));
+        let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
+        if let Rays::Parallel(distance) = self.behaviour.rays {
+            let ahead = self.projection.ahead;
+            (eye, ray) = (eye + distance * (ray - ahead), ahead);
+        }
+        let length = match self.behaviour.clips_distances {
+            true => ray.length(),
+            false => 1.0,
+        };
         let mut best: Option<(&Traced, f64, f64)> = None;
         for (at, object) in self.objects.iter().enumerate() {
             let [least, most] = object.bounds;
             if place.x < least.x || place.x > most.x || place.y < least.y || place.y > most.y {
                 continue;
             }
-            let crossings = crossings(&object.shape, eye, ray, 0.0);
-            let Some(t) = crossings.and_then(|crossings| self.first(crossings)) else {
+            let crossings = match (object.hit, &object.shape) {
+                (Some(hit), Shape::Triangle(triangle)) => {
+                    on_plane(&vertices(&triangle.outline), hit, eye, ray)
+                }
+                _ => crossings(&object.shape, eye, ray, 0.0),
+            };
+            let first = |crossings| self.first(crossings, length);
+            let Some(t) = crossings.and_then(first) else {
                 continue;
             };
             let order = match self.behaviour.visible {
@@ -221,9 +359,9 @@ impl FaultyTracer {
         Some(object.colors[color])
     }
 
-    /// Whether a crossing counts.
-    fn counts(&self, t: f64) -> bool {
-        let is_ahead = t > self.near && t < self.far;
+    /// Whether a crossing counts, at so many lengths of a ray.
+    fn counts(&self, t: f64, length: f64) -> bool {
+        let is_ahead = t > 0.0 && t * length > self.near && t * length < self.far;
         is_ahead || (self.behaviour.sees_behind() && t < 0.0 && -t < self.far)
     }
 
@@ -236,13 +374,32 @@ impl FaultyTracer {
     }
 
     /// The one of two crossings, in order, that is seen, of those that count.
-    fn first(&self, crossings: [f64; 2]) -> Option<f64> {
-        let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t)));
+    fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
+        let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {
             [Some(one), Some(other)] if self.order(other) < self.order(one) => Some(other),
             [one, other] => one.or(other),
         }
     }
+}
+
+/// Where a ray meets a triangle's plane, if that lies within the edges that are asked.
+fn on_plane([a, b, c]: &[DVec3; 3], hit: Hit, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
+    let (one, other) = (b - a, c - a);
+    let normal = one.cross(other);
+    let t = (a - eye).dot(normal) / ray.dot(normal);
+    let point = eye + t * ray - a;
+    let x = point.cross(other).dot(normal) / normal.length_squared();
+    let y = one.cross(point).dot(normal) / normal.length_squared();
+    let is_within = match hit {
+        Hit::Parallelogram => (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y),
+        Hit::WithoutEdge(edge) => {
+            let inside = [x, y, 1.0 - x - y];
+            (0..3).all(|i| i == edge || inside[i] >= 0.0)
+        }
+        Hit::WithoutAxis(_) => false,
+    };
+    is_within.then_some([t; 2])
 }
 
 /// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind it.

@@ -1,18 +1,24 @@
 //! What JPEG does to a picture.
 //!
-//! In: how a file is coded, and what a picture should show. Out: the variance that the file's coding gives to each pixel, in linear light.
+//! In: how a file is coded, and what a picture should show. Out: what it shows if it is coded as
+//! the file is, and the variance that this coding gives to each pixel, in linear light, as a
+//! picture with noise is coded a little otherwise.
 //!
-//! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of chroma, to multiples of the steps in its tables. The transform keeps
-//! squares, so the mean variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's square each. A block of one colour has one
-//! coefficient. Chroma is taken to be kept for each second column and row alone, as it is in most files, so that colours mix with those up to two pixels
-//! away.
+//! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of
+//! chroma, to multiples of the steps in its tables. The transform keeps squares, so the mean
+//! variance of a block's numbers is the mean of those of the coefficients, a twelfth of a step's
+//! square each. A block of one colour has one coefficient. Chroma is taken to be kept for each
+//! second column and row alone, as it is in most files, so that noise mixes with that up to two
+//! pixels away.
 
 use super::{
-    light::STEP,
+    light::{Curve, STEP},
     moments::{Moments, range},
+    prediction::Prediction,
     strays::DEVIATIONS,
 };
 use crate::{
+    area::Area,
     color::{linear_to_srgb, srgb_to_linear},
     film::{Jpeg, JpegTable},
 };
@@ -22,6 +28,31 @@ const BLOCK: usize = 16;
 
 /// How far colours mix, in pixels.
 const MIXED: usize = 2;
+
+/// What pixels show that should show something else, if that is coded as a file is; none if it
+/// cannot be.
+pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<[f64; 3]>> {
+    let byte = |light: f64| {
+        let encoded = linear_to_srgb(prediction.curve.seen(light));
+        (255.0 * encoded).round().clamp(0.0, 255.0) as u8
+    };
+    let light: Vec<f64> = (0..=255).map(light_of(prediction.curve)).collect();
+    let mean = prediction.moments.mean.iter();
+    let bytes: Vec<u8> = mean.flat_map(|pixel| pixel.map(byte)).collect();
+    let coded = jpeg.coded(&bytes, [part.width, part.height])?;
+    let (pixels, _) = coded.as_chunks::<3>();
+    Some(
+        pixels
+            .iter()
+            .map(|pixel| pixel.map(|byte| light[usize::from(byte)]))
+            .collect(),
+    )
+}
+
+/// The light of a byte.
+fn light_of(curve: Curve) -> impl Fn(u8) -> f64 {
+    move |byte| curve.light(srgb_to_linear(f64::from(byte) / 255.0))
+}
 
 /// The variances that a file's coding gives to the cells of so many pixels each way, in so many columns, of a picture that should show something.
 pub fn variances(jpeg: &Jpeg, moments: &Moments, width: usize, factor: usize) -> Vec<[f64; 3]> {

@@ -1,18 +1,15 @@
 //! A picture under judgement: its grids, its work, and how well candidates explain it.
 
-use std::{
-    iter,
-    sync::{Arc, atomic::AtomicBool},
-};
+use std::sync::{Arc, atomic::AtomicBool};
 
 use super::{
     Reference,
-    candidate::{Candidate, Mistake, Shows},
+    candidate::Candidate,
+    displacement::displaced,
     grid::Grid,
     level::Level,
     levenberg_marquardt::{Fitted, fit},
     likelihood::Score,
-    mistakes::ROWS,
     prediction::Prediction,
     rendering::Rendering,
     work::{self, Work},
@@ -84,7 +81,7 @@ impl<'a> Judge<'a> {
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             edges: level(central(part), u32::MAX, None),
-            work: Work::new(part.pixels(), reference.work, cancel),
+            work: Work::new(part.pixels(), reference.work, reference.effort, cancel),
             cancel,
         };
         for level in [&judge.coarse, &judge.middle, &judge.fine, &judge.edges] {
@@ -140,20 +137,20 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// How much likelier than a null model another one is that was judged on the same level, less what the numbers cost that it has more.
-    pub fn gain(&self, level: &Level, null: &Judged, other: &Judged) -> f64 {
-        let [one, two] = [null, other].map(|found| level.predict(&found.rendering));
-        let more = other.candidate().fitted() - null.candidate().fitted();
-        one.gain(&null.score, &two) - price(level, more)
+    /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
+    /// edges show lies where it should.
+    pub fn explains(&self, candidate: &Candidate) -> bool {
+        self.explains_all(candidate)
+            && displaced(self, candidate).is_none()
+            && self.is_even(candidate)
     }
 
-    /// Whether a candidate explains all pixels of one colour, or one does that has a mistake more that shows at edges, too, and is told by them.
-    pub fn is_explained(&self, candidate: &Candidate) -> bool {
-        let rows = ROWS.iter().filter(|row| row.shows == Shows::Everywhere);
-        let rows = rows.take_while(|_| self.work.may_go_on());
-        let mut all = iter::once(candidate.clone())
-            .chain(rows.filter_map(|row| candidate.with(Mistake::Row(row, None))));
-        all.any(|candidate| self.explains_all(&candidate))
+    /// Whether what a candidate does not explain is noise wherever it is seen.
+    pub fn is_even(&self, candidate: &Candidate) -> bool {
+        // What samples make, or a JPEG, is never exact.
+        let is_exact = candidate.behaviour.is_right() && self.fine.jpeg.is_none();
+        let predicted = self.predicted(candidate, &self.fine);
+        !is_exact || predicted.is_some_and(|predicted| predicted.is_even())
     }
 
     /// Whether it is known that nothing shows something else than a candidate for certain.
@@ -166,22 +163,9 @@ impl<'a> Judge<'a> {
             predicted.is_some_and(|predicted| predicted.strays().is_empty())
         };
         let is_exact = candidate.behaviour.is_right()
-            && !candidate.layout.is_shifted()
+            && candidate.layout.more() == [0, 0]
             && self.fine.jpeg.is_none();
         (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
-    }
-
-    /// Whether what was found beside another candidate can be seen.
-    pub fn is_seen(&self, found: &Judged, beside: &Candidate) -> bool {
-        let count = f64::from(self.middle.grid.factor * self.middle.grid.factor);
-        let samples = found.score.samples.unwrap_or(f64::INFINITY) / count;
-        self.work
-            .spend(work::of_exact(0, 0, 2 * self.fine.grid.count()));
-        let predicted = |candidate| self.predicted(candidate, &self.fine);
-        let (Some(one), Some(other)) = (predicted(found.candidate()), predicted(beside)) else {
-            return false;
-        };
-        one.is_seen_beside(&other, samples.max(1.0))
     }
 
     /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change the picture by about so much of a cell.
@@ -193,15 +177,45 @@ impl<'a> Judge<'a> {
         cells: f64,
         rounds: [usize; 2],
     ) -> Option<(Candidate, Fitted)> {
-        let start = candidate.numbers();
-        let (fixed, start) = start.split_at(start.len() - free);
+        let count = candidate.numbers().len();
+        let free: Vec<usize> = (count - free..count).collect();
+        self.fit_numbers(candidate, &free, level, cells, rounds)
+    }
+
+    /// The numbers of a candidate at these places, fitted on the middle grid.
+    pub fn fit_some(
+        &self,
+        candidate: &Candidate,
+        free: &[usize],
+        cells: f64,
+        rounds: usize,
+    ) -> Option<Candidate> {
+        let fitted = self.fit_numbers(candidate, free, &self.middle, cells, [0, rounds]);
+        fitted.map(|(candidate, _)| candidate)
+    }
+
+    fn fit_numbers(
+        &self,
+        candidate: &Candidate,
+        free: &[usize],
+        level: &Level,
+        cells: f64,
+        rounds: [usize; 2],
+    ) -> Option<(Candidate, Fitted)> {
+        let all = candidate.numbers();
         let steps = candidate.steps(cells * f64::from(level.grid.factor));
-        let with = |free: &[f64]| candidate.with_numbers(self.scene, &[fixed, free].concat());
+        let of = |all: &[f64]| free.iter().map(|&at| all[at]).collect::<Vec<f64>>();
+        let with = |numbers: &[f64]| {
+            let mut changed = all.clone();
+            free.iter()
+                .zip(numbers)
+                .for_each(|(&at, x)| changed[at] = *x);
+            candidate.with_numbers(self.scene, &changed)
+        };
         let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level);
         let start_on_level = level.render(candidate, &self.work)?;
         let deviations = || level.predict(&start_on_level).deviations();
-        let steps = &steps[fixed.len()..];
-        let fitted = fit(start.to_vec(), steps, rounds, &deviations, &trial)?;
+        let fitted = fit(of(&all), &of(&steps), rounds, &deviations, &trial)?;
         Some((with(&fitted.numbers)?, fitted))
     }
 }

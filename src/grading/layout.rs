@@ -11,14 +11,14 @@ pub struct Layout {
     pub is_upside_down: bool,
     /// Then rows and columns are, in a square picture.
     pub is_transposed: bool,
-    /// Then so many half pixels to the right and down of each place are shown: −1, 0 or 1; both, or none.
+    /// Then so many half pixels to the right and down of each place are shown.
     pub half_pixels: [i32; 2],
 }
 
 impl Layout {
-    /// Whether it shows what lies between pixels.
-    pub fn is_shifted(self) -> bool {
-        self.half_pixels != [0, 0]
+    /// How many more pixels the picture has that it is taken from, half of them on each side.
+    pub fn more(self) -> [u32; 2] {
+        self.half_pixels.map(i32::unsigned_abs)
     }
 
     /// The pixel that is shown in the place of one, in a picture of a size.
@@ -30,14 +30,13 @@ impl Layout {
         } else {
             y
         };
-        // In a picture with half a pixel more on each side.
-        let [right, down] = self.half_pixels.map(|half| u32::from(half > 0));
+        let [right, down] = self.half_pixels.map(|half| half.max(0).unsigned_abs());
         (x + right, y + down)
     }
 
     /// The part of a picture of a size that is shown in the place of a part; where it is shifted, all that any shift shows.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
-        let more = u32::from(self.is_shifted());
+        let [wider, taller] = self.more();
         let layout = Self {
             half_pixels: [0, 0],
             ..self
@@ -48,8 +47,8 @@ impl Layout {
         Area {
             x: ax.min(bx),
             y: ay.min(by),
-            width: ax.abs_diff(bx) + 1 + more,
-            height: ay.abs_diff(by) + 1 + more,
+            width: ax.abs_diff(bx) + 1 + wider,
+            height: ay.abs_diff(by) + 1 + taller,
         }
     }
 }

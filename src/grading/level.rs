@@ -7,8 +7,14 @@ use std::{
 };
 
 use super::{
-    candidate::Candidate, grid::Grid, jpeg::variances, light::Curve, moments::Moments,
-    prediction::Prediction, rendering::Rendering, work::Work,
+    candidate::Candidate,
+    grid::Grid,
+    jpeg::{coded, variances},
+    light::Curve,
+    moments::Moments,
+    prediction::Prediction,
+    rendering::Rendering,
+    work::Work,
 };
 use crate::film::{Film, Jpeg};
 
@@ -143,7 +149,15 @@ impl<'a> Level<'a> {
         if let Some(jpeg) = self.jpeg {
             let factor = self.grid.factor as usize;
             let variances = variances(&jpeg, &prediction.moments, prediction.width, factor);
-            Arc::make_mut(&mut prediction.moments).add_doubt(&variances);
+            let coded = match factor {
+                1 => coded(&jpeg, &prediction, self.grid.cells),
+                _ => None,
+            };
+            let moments = Arc::make_mut(&mut prediction.moments);
+            moments.add_doubt(&variances);
+            if let Some(coded) = coded {
+                moments.mean = coded;
+            }
         }
         prediction
     }

@@ -162,7 +162,7 @@ fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64])
 }
 
 /// Solves a small system of linear equations by elimination with the largest pivot.
-fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+pub fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let count = right.len();
     for i in 0..count {
         let pivot = (i..count).max_by(|&a, &b| rows[a][i].abs().total_cmp(&rows[b][i].abs()))?;

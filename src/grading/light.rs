@@ -53,17 +53,28 @@ impl Curve {
 
     /// The light of a step of the encoding of what is seen in its place.
     pub fn step(self, light: f64) -> f64 {
+        self.table(light)[0]
+    }
+
+    /// How much more light is seen for a little more light.
+    pub fn stretch(self, light: f64) -> f64 {
+        self.table(light)[1]
+    }
+
+    fn table(self, light: f64) -> [f64; 2] {
         /// So many lights are told apart.
         const LIGHTS: usize = 4096;
-        static STEPS: [OnceLock<Vec<f64>>; Curve::COUNT] =
+        static TABLES: [OnceLock<Vec<[f64; 2]>>; Curve::COUNT] =
             [const { OnceLock::new() }; Curve::COUNT];
         let of = |at: usize| {
             let encoded = linear_to_srgb(self.seen(at as f64 / LIGHTS as f64));
-            let light = |encoded: f64| self.light(srgb_to_linear(encoded.max(0.0)));
-            light(encoded + STEP / 2.0) - light(encoded - STEP / 2.0)
+            let [low, high] = [-0.5, 0.5].map(|by| (encoded + by * STEP).max(0.0));
+            let step =
+                |curve: Self| curve.light(srgb_to_linear(high)) - curve.light(srgb_to_linear(low));
+            [step(self), step(Self::Right) / step(self)]
         };
-        let steps = STEPS[self as usize].get_or_init(|| (0..=LIGHTS).map(of).collect());
-        steps[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
+        let table = TABLES[self as usize].get_or_init(|| (0..=LIGHTS).map(of).collect());
+        table[(light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize]
     }
 }
 

@@ -4,9 +4,7 @@
 //! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
 //! errors are taken to have Student's distribution with two degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
 //! 1989). Of two candidates that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
-//! Estimating the dimension of a model, 1978. Where no pixel is wrong for certain, the likelihoods have to differ by the errors that noise alone may make (`gain`).
-
-use std::collections::BTreeMap;
+//! Estimating the dimension of a model, 1978.
 
 use super::{
     light::Curve,
@@ -18,9 +16,6 @@ const FREEDOM: f64 = 2.0;
 
 /// Fitting goes on for so many rounds: each leaves less than half of what is missing.
 const ROUNDS: usize = 8;
-
-/// Means are the same that differ by less, which is what rounding leaves of them.
-const SAME: f64 = 1e-9;
 
 /// How well a prediction fits.
 #[derive(Clone, Debug)]
@@ -36,7 +31,7 @@ pub struct Score {
     /// The part of it that noise of so many samples makes.
     pub noise: f64,
     /// The share of a sample's variance that a pixel's error has: 1/n.
-    share: f64,
+    pub share: f64,
 }
 
 /// The error of a pixel, the variance of a sample in it, and that of rounding and of what is expected itself.
@@ -139,16 +134,18 @@ impl Prediction<'_> {
         }
     }
 
-    /// How much likelier a picture is by the means of another prediction than by those of this null model, of which this is the score, if errors have the
-    /// variances of the null model. A candidate with variances of its own gains by those alone where few samples happen to show one colour. An error of so many
-    /// standard deviations has the probability 1/(1 + deviations²) at most, whatever its distribution (Cantelli's inequality), and just that one if it has two
-    /// values, as one sample has.
-    ///
-    /// Pixels in which the null model has the same mean of several colours count as one: along an edge that is parallel to the pixels any sampling but a random
-    /// one errs by the same in all of them.
-    pub fn gain(&self, score: &Score, other: &Self) -> f64 {
-        let mut mixed: BTreeMap<[i64; 3], (f64, f64)> = BTreeMap::new();
-        let mut gain = 0.0;
+    /// The part that is seen of what another prediction changes, and of how many standard
+    /// deviations that part is, where errors have the greater variances of the two; this is the
+    /// score of this one.
+    pub fn part_seen(&self, score: &Score, other: &Self) -> [f64; 2] {
+        let mut deviations = self.deviations();
+        // Light that is encoded otherwise has variances of its own.
+        let is_alike = self.curve == other.curve;
+        if is_alike {
+            let others = deviations.iter_mut().zip(other.deviations());
+            others.for_each(|(one, other)| *one = one.max(other));
+        }
+        let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
         for (at, light) in self.seen.iter().enumerate() {
             let before = self.difference(at);
             let after = match other.curve {
@@ -158,22 +155,25 @@ impl Prediction<'_> {
             if before == after || light[0].is_nan() {
                 continue;
             }
-            let (variance, rounding) = (self.moments.variance[at], rounding(self, at));
-            let off = |difference: [f64; 3]| -> f64 {
-                let square = |i: usize| difference[i] * difference[i];
-                let channel = |i: usize| square(i) / (variance[i] * score.share + rounding[i]);
-                (0..3).map(channel).fold(0.0, f64::max)
-            };
-            let more = libm::log1p(off(before)) - libm::log1p(off(after));
-            if self.is_flat(at) {
-                gain += more;
-            } else {
-                let mean = self.moments.mean[at];
-                let key = mean.map(|light| (light / SAME).round() as i64);
-                let (sum, count) = mixed.entry(key).or_default();
-                (*sum, *count) = (*sum + more, *count + 1.0);
+            let mut error = self.error(at, score.share);
+            if is_alike {
+                let other = other.error(at, score.share);
+                error = [0, 1, 2].map(|i| error[i].max(other[i]));
+            }
+            for i in 0..3 {
+                let (change, deviation) = (before[i] - after[i], deviations[3 * at + i]);
+                let weighted = change / (deviation * deviation);
+                seen += weighted * before[i];
+                all += weighted * change;
+                variance += weighted * weighted * error[i];
             }
         }
-        gain + mixed.values().map(|(sum, count)| sum / count).sum::<f64>()
+        [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
+    }
+
+    /// The variances of the errors of a pixel that have this share of a sample's.
+    pub fn error(&self, at: usize, share: f64) -> [f64; 3] {
+        let error = Error::of(self, at);
+        [0, 1, 2].map(|i| error.variance[i] * share + error.rounding[i])
     }
 }

@@ -9,7 +9,7 @@ use super::{
         Candidate, Row,
         Shows::{self, AtEdges, Everywhere, InAreas},
     },
-    faulty_tracer::{Squares, Visible},
+    faulty_tracer::{Hit, Rays, Squares, Visible},
     light::{Curve, Look},
 };
 use crate::{
@@ -31,6 +31,11 @@ const MIDDLE: &str = "the middle of the pixel in column x and row y is at (x + 1
 const ORDER: &str = "a picture's channels are in the order red, green, blue";
 const CHANNELS: &str = "write each channel";
 const UP: &str = "u = (up × w)/|up × w|";
+const DIVIDE: &str = "a pixel's light is the sum of its samples divided by their number";
+const EDGES: &str =
+    "a point of a triangle's plane lies in it if it is on the inner side of all three edges";
+const SLABS: &str =
+    "a ray hits a box if it enters the slabs of all three axes before it leaves one of them";
 const BOX: &str = "a box reaches from center − size/2 to center + size/2";
 const FACES: &str = "the first of the colors is that of the faces across x, the second across y, the third across z";
 
@@ -66,13 +71,39 @@ pub const ROWS: &[Row] = &[
         "a pixel's index is row · width + column",
         |c, _| c.layout.is_transposed ^= c.scene.image.width == c.scene.image.height),
     row("squeezed", InAreas, "the picture is stretched: its window is as wide as it is high, though the picture is not", WINDOW,
-        |c, _| c.behaviour.is_squeezed = c.scene.image.width != c.scene.image.height),
+        |c, _| widen(c, 1.0)),
+    row("aspect", InAreas, "the picture is stretched: its window is 4:3, though the picture is not", WINDOW,
+        |c, _| widen(c, 4.0 / 3.0)),
+    row("aspect", InAreas, "the picture is stretched: its window is 3:2, though the picture is not", WINDOW,
+        |c, _| widen(c, 1.5)),
+    row("aspect", InAreas, "the picture is stretched: its window is 16:10, though the picture is not", WINDOW,
+        |c, _| widen(c, 1.6)),
+    row("aspect", InAreas, "the picture is stretched: its window is 16:9, though the picture is not", WINDOW,
+        |c, _| widen(c, 16.0 / 9.0)),
+    row("aspect", InAreas, "the picture is stretched: its window is 2:1, though the picture is not", WINDOW,
+        |c, _| widen(c, 2.0)),
+    row("aspect", InAreas, "the picture is stretched: its window's width is view_height · height/width", WINDOW,
+        |c, _| { let [width, height] = sides(c); widen(c, height / width); }),
+    row("aspect", InAreas, "the picture is stretched: its window is twice as wide as it should be", WINDOW,
+        |c, _| { let [width, height] = sides(c); widen(c, 2.0 * width / height); }),
+    row("aspect", InAreas, "the picture is stretched: its window is half as wide as it should be", WINDOW,
+        |c, _| { let [width, height] = sides(c); widen(c, 0.5 * width / height); }),
     row("half_pixel", AtEdges, "samples lie half a pixel too far up and left: around a pixel's corner, not its middle", MIDDLE,
-        |c, _| c.layout.half_pixels = [-1, -1]),
+        |c, _| halves(c, [-1, -1])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and right", MIDDLE,
-        |c, _| c.layout.half_pixels = [1, 1]),
+        |c, _| halves(c, [1, 1])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and left", MIDDLE,
-        |c, _| c.layout.half_pixels = [-1, 1]),
+        |c, _| halves(c, [-1, 1])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far left", MIDDLE, |c, _| halves(c, [-1, 0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far right", MIDDLE, |c, _| halves(c, [1, 0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far up", MIDDLE, |c, _| halves(c, [0, -1])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far down", MIDDLE, |c, _| halves(c, [0, 1])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far up and left", MIDDLE, |c, _| halves(c, [-2, -2])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far down and right", MIDDLE, |c, _| halves(c, [2, 2])),
+    row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
+    row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
+    row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE,
+        |c, _| c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 })),
     row("channels", InAreas, "the colour channels are in the order blue, green, red", ORDER,
         |c, _| c.looks.push(Look::Channels([2, 1, 0]))),
     row("channels", InAreas, "the colour channels are in the order red, blue, green", ORDER,
@@ -102,6 +133,20 @@ pub const ROWS: &[Row] = &[
         |c, _| encode(c, Curve::Power22)),
     row("gamma_2", InAreas, "the colours were encoded with a square root, which is near sRGB but not it", ENCODE,
         |c, _| encode(c, Curve::Root)),
+    row("not_decoded", InAreas, "a scene's sRGB numbers are taken for light, and their square root is written: the colours are too bright",
+        AVERAGE, |c, _| look(c, |light| srgb_to_linear(linear_to_srgb(light).sqrt()))),
+    row("inverted", InAreas, "the colours are inverted: each channel is 255 less what it should be", CHANNELS,
+        |c, _| look(c, |light| srgb_to_linear(1.0 - linear_to_srgb(light.min(1.0))))),
+    row("not_divided", InAreas, "the light is twice what it should be: the sum of samples is divided by half their number", DIVIDE,
+        |c, _| look(c, |light| (2.0 * light).min(1.0))),
+    row("not_divided", InAreas, "the light is four times what it should be: the sum of samples is divided by a quarter of their number", DIVIDE,
+        |c, _| look(c, |light| (4.0 * light).min(1.0))),
+    row("not_divided", InAreas, "the light is sixteen times what it should be: the sum of samples is not divided by their number", DIVIDE,
+        |c, _| look(c, |light| (16.0 * light).min(1.0))),
+    row("not_divided", InAreas, "the light is half of what it should be: the sum of samples is divided by twice their number", DIVIDE,
+        |c, _| look(c, |light| 0.5 * light)),
+    row("not_divided", InAreas, "the light is a quarter of what it should be: the sum of samples is divided by their number once more", DIVIDE,
+        |c, _| look(c, |light| 0.25 * light)),
     row("averaged_encoded", AtEdges,
         "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark", AVERAGE,
         |c, _| average(c, Curve::Missing)),
@@ -127,6 +172,20 @@ pub const ROWS: &[Row] = &[
     row("board_truncated", InAreas,
         "coordinates on the checkerboard are truncated towards 0, so the squares on both sides of an axis are one", SQUARES,
         |c, _| tell_squares(c, Squares::Truncated)),
+    row("board_truncated", InAreas, "the coordinate x on the checkerboard is truncated towards 0", SQUARES,
+        |c, _| tell_squares(c, Squares::TruncatedX)),
+    row("board_truncated", InAreas, "the coordinate z on the checkerboard is truncated towards 0", SQUARES,
+        |c, _| tell_squares(c, Squares::TruncatedZ)),
+    row("board_rounded", InAreas, "coordinates on the checkerboard are rounded to the nearest whole number, not down", SQUARES,
+        |c, _| tell_squares(c, Squares::Rounded)),
+    row("board_sum", InAreas, "the checkerboard's coordinates are added before they are rounded down: its squares are diagonal stripes", SQUARES,
+        |c, _| tell_squares(c, Squares::Sum)),
+    row("board_stripes", InAreas, "the checkerboard has stripes: of its coordinates x alone counts (or y in the place of z)", SQUARES,
+        |c, _| tell_squares(c, Squares::StripesX)),
+    row("board_stripes", InAreas, "the checkerboard has stripes: of its coordinates z alone counts (or y in the place of x)", SQUARES,
+        |c, _| tell_squares(c, Squares::StripesZ)),
+    row("board_sines", InAreas, "the checkerboard's squares are told by sin x · sin z, and have a side of π squares", SQUARES,
+        |c, _| tell_squares(c, Squares::Sines)),
     row("board_remainder", InAreas, "a negative odd sum of a checkerboard's coordinates is taken for an even one", SQUARES,
         |c, _| tell_squares(c, Squares::SignedSum)),
     row("board_remainder", InAreas,
@@ -141,6 +200,28 @@ pub const ROWS: &[Row] = &[
     row("roll_unit", InAreas, "the roll's degrees are taken for radians", "sin and cos take radians: 180 degrees are π",
         // As a number of degrees again, which is what a scene says.
         |c, _| c.scene.camera.roll = Angle::from_degrees(c.scene.camera.roll.degrees.to_degrees() % 360.0)),
+    row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed",
+        "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one",
+        |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
+    row("up_not_orthogonal", InAreas, "up itself is taken for v, though it is not at right angles to the view direction", "v = w × u, both of length 1",
+        |c, _| c.behaviour.rays = Rays::UpAsTop),
+    row("w_not_normalised", InAreas, "w is not divided by its length, so the view plane is |eye − lookat| times as far", "w = (eye − lookat)/|eye − lookat|",
+        |c, _| if let View::Lookat(point) = c.scene.camera.view { zoom(c, point.distance(c.scene.camera.eye)) }),
+    row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", "all rays leave from the eye, along x u + y v − d w",
+        |c, _| {
+            let height = c.scene.camera.view_height;
+            let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
+            let [width, tall] = sides(c);
+            c.behaviour.rays = Rays::Parallel(match c.scene.camera.lens {
+                Lens::Distance(d) => d,
+                Lens::Fov(angle) => height / (2.0 * half(angle)),
+                Lens::HorizontalFov(angle) => height * width / tall / (2.0 * half(angle)),
+            });
+        }),
+    row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|",
+        |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
+    row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED,
+        |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
     row("up_negated", InAreas, "up has the wrong sign", UP,
         // Without −0.
         |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
@@ -180,6 +261,14 @@ pub const OBJECT_ROWS: &[Row] = &[
         |c, object| exchange_faces(c, object, [1, 0, 2])),
     row("faces_exchanged", InAreas, "has the colours of its faces across y and z exchanged", FACES,
         |c, object| exchange_faces(c, object, [0, 2, 1])),
+    row("triangle_parallelogram", InAreas, "is a parallelogram: that its two coordinates add to no more than 1 is not asked", EDGES,
+        |c, object| hit(c, object, Hit::Parallelogram)),
+    row("triangle_edge", InAreas, "has no edge against its second vertex", EDGES, |c, object| hit(c, object, Hit::WithoutEdge(0))),
+    row("triangle_edge", InAreas, "has no edge against its third vertex", EDGES, |c, object| hit(c, object, Hit::WithoutEdge(1))),
+    row("triangle_edge", InAreas, "has no edge against its first vertex", EDGES, |c, object| hit(c, object, Hit::WithoutEdge(2))),
+    row("box_axis", InAreas, "has no sides across x", SLABS, |c, object| hit(c, object, Hit::WithoutAxis(0))),
+    row("box_axis", InAreas, "has no sides across y", SLABS, |c, object| hit(c, object, Hit::WithoutAxis(1))),
+    row("box_axis", InAreas, "has no sides across z", SLABS, |c, object| hit(c, object, Hit::WithoutAxis(2))),
 ];
 
 /// Gray by a mean of encoded values.
@@ -189,6 +278,48 @@ fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
         Look::Gray(weights),
         Look::Curve(srgb_to_linear),
     ]);
+}
+
+/// Each channel's light becomes another one, once.
+fn look(c: &mut Candidate, curve: fn(f64) -> f64) {
+    if c.looks.is_empty() {
+        c.looks.push(Look::Curve(curve));
+    }
+}
+
+/// Samples lie elsewhere, by so many half pixels to the right and down.
+fn halves(c: &mut Candidate, by: [i32; 2]) {
+    c.layout.half_pixels = by;
+}
+
+/// The same by parts of a pixel.
+fn shift(c: &mut Candidate, by: [f64; 2]) {
+    c.behaviour.offset = by;
+}
+
+fn sides(c: &Candidate) -> [f64; 2] {
+    [c.scene.image.width, c.scene.image.height].map(f64::from)
+}
+
+/// The window has other proportions than the picture.
+fn widen(c: &mut Candidate, aspect: f64) {
+    let [width, height] = sides(c);
+    let by = aspect * height / width;
+    if c.behaviour.aspect == 1.0 && (by - 1.0).abs() > 1e-3 {
+        c.behaviour.aspect = by;
+    }
+}
+
+/// An object is hit wrongly.
+fn hit(c: &mut Candidate, object: usize, hit: Hit) {
+    let is_about = match (hit, c.scene.objects[object].shape) {
+        (Hit::WithoutAxis(_), Shape::Box(_)) => true,
+        (Hit::WithoutAxis(_), _) => false,
+        (_, shape) => matches!(shape, Shape::Triangle(_)),
+    };
+    if is_about && c.behaviour.hit.is_none() {
+        c.behaviour.hit = Some((object, hit));
+    }
 }
 
 /// Light is encoded otherwise, once.

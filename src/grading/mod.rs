@@ -8,16 +8,19 @@
 //!    change its scene, its `layout`, what it does to `light`, or how it behaves.
 //! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the `faulty_tracer` where it behaves as no
 //!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
-//! 4. A prediction says how likely what is seen is (`likelihood`), and what no sampling explains (`strays`).
+//! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains
+//!    (`strays`), and whether it lies elsewhere (`displacement`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
 //!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
 
 mod candidate;
+mod displacement;
 mod empty_pixels;
 mod faulty_tracer;
 mod forward_selection;
 mod grid;
+mod joint;
 mod jpeg;
 mod judge;
 mod layout;
@@ -31,6 +34,8 @@ mod numeric_mistakes;
 mod objects;
 mod parameters;
 mod patch;
+mod plain_facts;
+mod plain_numbers;
 mod prediction;
 mod rendering;
 mod strays;
@@ -48,7 +53,9 @@ use crate::{
     cancel,
     color::srgb_to_linear,
     exact::Integrator,
-    film::{self, Comparison, Film, Jpeg, Rounding, SizesDiffer, Tolerance, reserve_memory},
+    film::{
+        self, Comparison, Film, Jpeg, Picture, Rounding, SizesDiffer, Tolerance, reserve_memory,
+    },
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -60,6 +67,7 @@ use self::{
     judge::{Judge, Judged},
     light::Curve,
     moments::Moments,
+    plain_facts::EmptyRows,
     rendering::Rendering,
     strays::WRONG,
 };
@@ -80,6 +88,8 @@ pub struct Reference<'a> {
     rounding: Rounding,
     /// The work of making it.
     work: f64,
+    /// What the work is multiplied by that may be spent on a picture.
+    effort: f64,
 }
 
 /// What a reference takes for each pixel: the exact mean, and the mean, its doubt and the variance,
@@ -125,6 +135,7 @@ impl<'a> Reference<'a> {
                 Arc::new(moments),
             )),
             work,
+            effort: 1.0,
         })
     }
 
@@ -150,6 +161,12 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// The same, which multiplies by this what work may be spent on a picture.
+    #[must_use]
+    pub fn with_effort(self, effort: f64) -> Self {
+        Self { effort, ..self }
+    }
+
     /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
     ///
     /// # Errors
@@ -157,7 +174,7 @@ impl<'a> Reference<'a> {
     /// It is not wanted any more.
     pub fn judge(
         &self,
-        film: &Film,
+        picture: &Picture,
         jpeg: Option<Jpeg>,
         comparison: &Comparison,
         cancel: &AtomicBool,
@@ -165,6 +182,62 @@ impl<'a> Reference<'a> {
         if comparison.is_equal() {
             return Ok(Verdict::of(Kind::Right, self.scene));
         }
+        let Some(opacity) = &picture.opacity else {
+            return self.judge_opaque(&picture.film, jpeg, cancel);
+        };
+        // What is transparent is seen on black: that may be right if nothing else is transparent,
+        // and else its colours are judged as they are without alpha.
+        let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
+        let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
+        if is_right && opacity.range[1] == 1.0 {
+            return Ok(verdict);
+        }
+        let told = plain_facts::transparent(opacity.range);
+        if opacity.range[1] == 0.0 {
+            return Ok(Verdict::of(Kind::Right, self.scene).beside(told));
+        }
+        let steps = picture.rounding.steps();
+        let is_equal = self.compare(&opacity.film, steps);
+        let verdict = match is_equal.is_ok_and(|comparison| comparison.is_equal()) {
+            true => Verdict::of(Kind::Right, self.scene),
+            false => self.judge_opaque(&opacity.film, jpeg, cancel)?,
+        };
+        Ok(verdict.beside(told))
+    }
+
+    fn judge_opaque(
+        &self,
+        film: &Film,
+        jpeg: Option<Jpeg>,
+        cancel: &AtomicBool,
+    ) -> Result<Verdict, RenderError> {
+        let exact = &self.exact.film;
+        if let Some(fact) = plain_facts::nothing_in_it(film, exact, self.scene) {
+            let mut verdict = Verdict::of(Kind::Wrong, self.scene).beside(fact);
+            verdict
+                .objects
+                .iter_mut()
+                .for_each(|one| one.is_right = false);
+            return Ok(verdict);
+        }
+        let Some(empty) = EmptyRows::of(film, exact) else {
+            return self.judge_full(film, jpeg, cancel);
+        };
+        // Rows of one colour may be those of a camera that looks elsewhere.
+        let rest = self.judge_full(&empty.left_out(film), jpeg, cancel)?;
+        match rest.kind {
+            Kind::Right | Kind::Noise => Ok(rest.beside(empty.told())),
+            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, cancel),
+        }
+    }
+
+    /// Judges a picture that has something in it.
+    fn judge_full(
+        &self,
+        film: &Film,
+        jpeg: Option<Jpeg>,
+        cancel: &AtomicBool,
+    ) -> Result<Verdict, RenderError> {
         let empties = [self.scene.image.background.to_linear(), [0.0; 3]];
         let mut without = empties
             .iter()
@@ -174,7 +247,8 @@ impl<'a> Reference<'a> {
         let judge = Judge::new(self, &film, jpeg, cancel);
         let found = forward_selection::run(&judge)?;
         // What was found is told, however much work that is.
-        let verdict = judge.work.without_limit(|| told(&judge, &film, found));
+        let tell = || told(&judge, &film, found);
+        let verdict = judge.work.without_limit(tell);
         Ok(cancel::unless_set(cancel, verdict)?)
     }
 }
@@ -182,9 +256,11 @@ impl<'a> Reference<'a> {
 fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
+    // What is told takes work, too.
+    let is_cut = judge.work.is_cut();
     let mut verdict = match found {
-        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found),
-        _ if judge.explains_all(&right) && !has_other_colors(film, scene, jpeg) => {
+        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found, is_cut),
+        _ if judge.explains(&right) && !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
@@ -196,12 +272,12 @@ fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
             Verdict {
                 objects,
                 is_background_right,
+                is_cut,
                 ..Verdict::of(Kind::Unknown, scene)
             }
         }
     };
     verdict.is_coded = jpeg.is_some();
-    verdict.is_cut = judge.work.is_cut();
     verdict
 }
 
@@ -223,11 +299,13 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// The verdict on a picture with mistakes.
-fn wrong(judge: &Judge, found: &Judged) -> Verdict {
+/// The verdict on a picture with mistakes: they are named if together they explain it, and else
+/// they are guesses.
+fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
-    let level = match last.layout.is_shifted() {
+    let is_shifted = last.layout.more() != [0, 0] || last.behaviour.offset != [0.0; 2];
+    let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
         true => &judge.edges,
         false => &judge.middle,
     };
@@ -240,11 +318,18 @@ fn wrong(judge: &Judge, found: &Judged) -> Verdict {
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    for mistake in &last.mistakes {
-        let Some(after) = before.with(mistake.clone()) else {
-            continue;
+    // The one first that leaves least: one may make more difference where another hides it.
+    let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
+    while !others.is_empty() {
+        let with = |(at, mistake): (usize, &&Mistake)| {
+            let after = before.with((*mistake).clone())?;
+            Some((beyond(&after), at, after))
         };
-        let now = beyond(&after);
+        let with = others.iter().enumerate().filter_map(with);
+        let Some((now, at, after)) = with.min_by(|one, other| one.0.total_cmp(&other.0)) else {
+            break;
+        };
+        let mistake = others.remove(at);
         let set = parameters::arguments(&before.scene, &after.scene);
         let mut message = mistake.message(scene);
         if let (Mistake::Row(..), [_]) = (mistake, &set[..])
@@ -264,15 +349,33 @@ fn wrong(judge: &Judge, found: &Judged) -> Verdict {
         });
         (left, before) = (now, after);
     }
-    let rest = (!judge.explains_all(last)).then(|| (left / all).min(1.0));
-    let (objects, is_background_right) = objects::judged(judge, last);
+    let square = |candidate: &Candidate| {
+        let shown = judge.predicted(candidate, &judge.fine);
+        shown.map_or(f64::INFINITY, |shown| shown.strays().square())
+    };
+    let is_explained = judge.explains(last);
+    let rest = (!is_explained).then(|| square(last) / square(&Candidate::right(scene)));
+    let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
+    mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);
+    let is_told = !is_cut && !mistakes.is_empty() && is_explained;
+    let (kind, mistakes, guesses) = match is_told {
+        true => (Kind::Wrong, mistakes, Vec::new()),
+        false => (Kind::Unknown, Vec::new(), mistakes),
+    };
+    // Of a guess nothing is known of single objects.
+    let (objects, is_background_right) = match is_told {
+        true => objects::judged(judge, last),
+        false => objects::judged(judge, &Candidate::right(scene)),
+    };
     Verdict {
         samples: found.score.samples,
-        rest: rest.filter(|rest| *rest > 0.0),
+        rest,
         mistakes,
+        guesses,
         objects,
         is_background_right,
-        ..Verdict::of(Kind::Wrong, scene)
+        is_cut,
+        ..Verdict::of(kind, scene)
     }
 }
 

@@ -10,10 +10,19 @@ use super::{
     parameters::{self, Owner, Parameter},
     prediction::Prediction,
 };
-use crate::color::{Color, linear_to_srgb};
+use crate::{
+    color::{Color, linear_to_srgb},
+    scene::View,
+};
 
 /// From so many starts numbers are fitted on the tiny grid.
-const STARTS: usize = 3;
+const STARTS: usize = 2;
+
+/// So many parameters are fitted there, those that start best.
+const STARTED: usize = 20;
+
+/// What leaves so many times as much as the best on the tiny grid is not fitted on the coarse one.
+const FAR: f64 = 2.0;
 
 /// So many parameters of objects and so many others are fitted on the coarse grid.
 const FITTED: usize = 4;
@@ -42,7 +51,10 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
             false => {
                 let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
                 let steps = parameter.steps(&candidate.scene, pixels);
-                starts(&parameter, &numbers, &steps)
+                match parameter.fields[..] {
+                    ["near" | "far"] => planes(judge, numbers),
+                    _ => starts(&parameter, &numbers, &steps),
+                }
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
@@ -63,17 +75,21 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
         Some((fitted.left, candidate))
     };
     // Those first that start best: work may end before all are fitted.
-    let on_tiny = least_first(started).filter_map(|(parameter, tried)| {
-        let fitted = tried.iter();
-        let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
-        let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        Some((left, (parameter, best)))
-    });
+    let on_tiny = least_first(started)
+        .take(STARTED)
+        .filter_map(|(parameter, tried)| {
+            let fitted = tried.iter();
+            let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
+            let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
+            Some((left, (parameter, best)))
+        });
     let (local, others): (Vec<_>, Vec<_>) =
         on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
     let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
         fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
         fitted.truncate(FITTED);
+        let most = FAR * fitted.first().map_or(0.0, |best| best.0);
+        fitted.retain(|one| one.0 <= most);
         fitted
     });
     least_first(on_coarse)
@@ -110,6 +126,20 @@ fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
     numbers.chunks_exact(3).flat_map(color).collect()
+}
+
+/// Where to look for a plane that clips: at depths around that of the nearest object and what is
+/// looked at, each a fifth more than the one before.
+fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
+    const FROM: i32 = -12;
+    const TO: i32 = 24;
+    let camera = &judge.scene.camera;
+    let middle = match camera.view {
+        View::Lookat(point) => point.distance(camera.eye),
+        View::Direction(_) => camera.eye.length().max(1.0),
+    };
+    let depths = (FROM..TO).map(|i| vec![middle * libm::pow(1.2, f64::from(i))]);
+    std::iter::once(numbers).chain(depths).collect()
 }
 
 /// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.

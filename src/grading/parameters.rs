@@ -10,7 +10,7 @@ use crate::{
     color::Color,
     math::Angle,
     projection::Projection,
-    scene::{Object, Part, Scene, Shape, View},
+    scene::{Camera, Object, Part, Scene, Shape, View},
     schema::{self, Field, Value},
 };
 
@@ -34,15 +34,21 @@ pub struct Parameter {
     pub fields: Vec<&'static str>,
 }
 
-/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height sizes it as d does, so these two are left to them. A plane that is not
-/// there may be anywhere that nothing is.
+/// As far as is seen where a scene has no far plane.
+pub const NO_FAR: f64 = 1e9;
+
+/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height
+/// sizes it as d does, so these two are left to them.
 pub fn fitted(scene: &Scene) -> Vec<Parameter> {
-    let is_told = |parameter: &Parameter| match parameter.fields[0] {
-        "up" | "view_height" => false,
-        "near" => scene.camera.near > 0.0,
-        _ => true,
-    };
-    all(scene).into_iter().filter(is_told).collect()
+    let is_told = |parameter: &Parameter| !matches!(parameter.fields[0], "up" | "view_height");
+    let mut fitted: Vec<Parameter> = all(scene).into_iter().filter(is_told).collect();
+    if scene.camera.far.is_none() {
+        fitted.push(Parameter {
+            owner: Owner::Camera,
+            fields: vec!["far"],
+        });
+    }
+    fitted
 }
 
 /// All of a scene.
@@ -175,6 +181,9 @@ impl Parameter {
             Value::FaceColors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
             Value::Method(_) => Vec::new(),
         };
+        if self.fields == ["far"] && scene.camera.far.is_none() {
+            return vec![NO_FAR];
+        }
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
@@ -202,7 +211,10 @@ impl Parameter {
         let mut part = self.owner.part(&changed);
         let mut rest = numbers;
         for field in &self.fields {
-            let before = part.value(field)?;
+            let before = match part.value(field) {
+                None if *field == "far" => Value::Number(NO_FAR),
+                before => before?,
+            };
             let (own, others) = rest.split_at(match before {
                 Value::Vector(_) | Value::Color(_) => 3,
                 Value::Colors(_) => 6,
@@ -221,7 +233,13 @@ impl Parameter {
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
-            part = part.with(field, after)?;
+            part = match (part, *field, after) {
+                (Part::Camera(camera), "far", Value::Number(far)) => Part::Camera(Camera {
+                    far: Some(far),
+                    ..camera
+                }),
+                (part, field, after) => part.with(field, after)?,
+            };
         }
         part.is_possible().then(|| {
             match (part, self.owner) {

@@ -11,8 +11,16 @@ use super::{
 /// Fewer pixels than this are not taken for something too many.
 const SMALLEST: usize = 4;
 
+/// A piece is compact: it fills at least this part of its rectangle, and at most that of the
+/// picture. Something that takes all of it in explains nothing.
+const FILLED: f64 = 0.25;
+const MOST: f64 = 0.2;
+
 /// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
+    let mut others = from.candidate().mistakes.iter();
+    let has_one = others.any(|one| matches!(one, Mistake::Patch(..)));
+    (!has_one).then_some(())?;
     let grid = &judge.fine.grid;
     let shown = judge.predicted(from.candidate(), &judge.fine)?;
     let (seen, strays) = (shown.seen, shown.strays().pixels);
@@ -40,10 +48,20 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         }
     }
     let light = seen[*largest.first()?];
+    // What has a colour of the scene is rather something of it that is elsewhere.
+    let scene = &from.candidate().scene;
+    let objects = scene.objects.iter();
+    let mut own = objects.flat_map(|object| object.shape.colors());
+    let is_own = own.any(|color| is_near(color.to_linear(), light));
+    let is_background = is_near(scene.image.background.to_linear(), light);
+    (!is_own && !is_background).then_some(())?;
     let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for place in largest.iter().map(|&at| grid.middle(at)) {
         (least, most) = (least.min(place), most.max(place));
     }
+    let rectangle = most - least + 1.0;
+    let [own, all] = [rectangle.x * rectangle.y, grid.count() as f64];
+    (largest.len() as f64 >= FILLED * own && own <= MOST * all).then_some(())?;
     let reach = f64::from(grid.factor);
     let area = [(least - reach).to_array(), (most + reach).to_array()];
     Some(Mistake::Patch(light, area))

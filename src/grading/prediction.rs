@@ -9,7 +9,7 @@ use super::{
     light::{Curve, Look, STEP, is_near},
     moments::{Moments, range},
 };
-use crate::color::linear_to_srgb;
+use crate::color::{linear_to_srgb, srgb_to_linear};
 
 /// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
 pub const FLAT: f64 = 1e-9;
@@ -59,10 +59,15 @@ impl Prediction<'_> {
                 Look::Curve(curve) => {
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {
-                            // The slope over what noise of a sample or a step may reach.
-                            let by = variance[i].sqrt().max(STEP) / 4.0;
-                            let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
-                            let slope = (curve(high) - curve(low)) / (high - low);
+                            // The slope over what noise of a step, of many samples or of one may
+                            // reach, whichever is greater: light that is cut off has none beside
+                            // where it is.
+                            let slope = |part: f64| {
+                                let by = variance[i].sqrt().max(STEP) * part;
+                                let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
+                                (curve(high) - curve(low)) / (high - low)
+                            };
+                            let slope = slope(0.25).abs().max(slope(1.0).abs());
                             variance[i] *= slope * slope;
                             mean[i] = curve(mean[i]);
                         }
@@ -107,7 +112,6 @@ impl Prediction<'_> {
             return [0, 1, 2].map(|i| seen[i] - mean[i]);
         }
         let is_flat = self.is_flat(at);
-        let steps = self.steps(at);
         let encoded = |light| linear_to_srgb(self.curve.seen(light));
         [0, 1, 2].map(|i| {
             let by = (encoded(seen[i]) - encoded(mean[i])) / STEP;
@@ -116,14 +120,21 @@ impl Prediction<'_> {
                 true => by.clamp(2.0 * CUT_OFF, 0.0),
                 false => CUT_OFF,
             };
-            (by - expected) * steps[i]
+            let cut = encoded(mean[i]) + expected * STEP;
+            seen[i] - self.curve.light(srgb_to_linear(cut.max(0.0)))
         })
     }
 
-    /// The differences of all cells, channel by channel.
+    /// The differences of all cells, channel by channel, in the picture's own light.
     pub fn differences(&self) -> Vec<f64> {
-        let cells = 0..self.seen.len();
-        cells.flat_map(|at| self.difference(at)).collect()
+        let own = |at: usize| match self.curve {
+            Curve::Right => self.difference(at),
+            curve => {
+                let (difference, mean) = (self.difference(at), self.moments.mean[at]);
+                [0, 1, 2].map(|i| difference[i] * curve.stretch(mean[i]))
+            }
+        };
+        (0..self.seen.len()).flat_map(own).collect()
     }
 
     /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.

@@ -29,6 +29,8 @@ pub struct Rendering {
     pub right: Arc<Moments>,
     /// What it makes, if it behaves otherwise.
     behaved: Option<Arc<Moments>>,
+    /// What as many samples show of a right program, if that was needed.
+    sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
@@ -39,6 +41,7 @@ impl Rendering {
             part,
             right: moments,
             behaved: None,
+            sampled: None,
         }
     }
 
@@ -61,7 +64,7 @@ impl Rendering {
 impl Candidate {
     /// The scene that a grid's cells are pixels of, without what it does not draw.
     pub fn drawn(&self, grid: &Grid) -> Scene {
-        let (camera, image) = grid.view(&self.scene, self.layout.is_shifted());
+        let (camera, image) = grid.view(&self.scene, self.layout.more());
         let mut scene = Scene {
             camera,
             image,
@@ -98,6 +101,14 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
+            // Objects are told by their place among those that are drawn.
+            let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
+            let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
+            let behaviour = Behaviour {
+                hit: hit.map(|(at, hit)| (drawn(at), hit)),
+                offset: behaviour.offset.map(|by| by / f64::from(grid.factor)),
+                ..behaviour
+            };
             let tracer = FaultyTracer::new(scene(), behaviour, self.averaged);
             Some(tracer.moments(area, samples))
         };
@@ -108,18 +119,25 @@ impl Candidate {
         let right = nearest.map(|(one, area)| (&one.right, area));
         let right = completed(right, part, traced)?;
         let mut behaved = None;
+        let is_same = |one: &&Arc<Rendering>| one.part == part && one.candidate.traces_as(self);
+        let mut same = known.iter().filter(is_same);
+        let mut of_right = same.find_map(|one| one.sampled.clone());
         if samples.is_none() && !self.behaviour.is_right() {
             let nearest = nearest.filter(|(one, _)| one.candidate.behaviour == self.behaviour);
             let nearest = nearest.and_then(|(one, area)| Some((one.behaved.as_ref()?, area)));
             behaved = Some(completed(nearest, part, |area| {
-                let own = sampled(Behaviour::default(), area, SAMPLES)?;
-                let other = sampled(self.behaviour, area, SAMPLES)?;
                 let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
-                Some(replaced_where_they_differ(
-                    right.select(&indices),
-                    &own,
-                    &other,
-                ))
+                let own = match &of_right {
+                    Some(known) => known.select(&indices),
+                    None => sampled(Behaviour::default(), area, SAMPLES)?,
+                };
+                let other = sampled(self.behaviour, area, SAMPLES)?;
+                let right = right.select(&indices);
+                let replaced = replaced_where_they_differ(right, &own, &other);
+                if area == part {
+                    of_right = Some(Arc::new(own));
+                }
+                Some(replaced)
             })?);
         }
         Some(Rendering {
@@ -127,6 +145,7 @@ impl Candidate {
             part,
             right,
             behaved,
+            sampled: of_right,
         })
     }
 
@@ -142,12 +161,12 @@ impl Candidate {
         }
         let (one, two) = (&self.scene, &other.scene);
         // Objects are seen only where they are.
-        let is_in_place = !self.behaviour.sees_behind() && !self.behaviour.is_squeezed;
+        let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.averaged != other.averaged {
             return part;
         }
-        let (camera, image) = grid.view(one, self.layout.is_shifted());
+        let (camera, image) = grid.view(one, self.layout.more());
         let projection = Projection::quick(&camera, &image);
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for object in 0..one.objects.len() {

@@ -1,4 +1,4 @@
-//! What is wrong in a picture for certain, however it was sampled, and what can be seen.
+//! What is wrong in a picture for certain, however it was sampled.
 
 use super::{moments::range, prediction::Prediction};
 
@@ -13,11 +13,23 @@ pub const WRONG: f64 = 0.75;
 pub struct Strays {
     /// The pixels of one colour that show another, by more than an edge brings into them that is half a pixel off.
     pub pixels: Vec<usize>,
+    /// Their squared difference.
+    square: f64,
     /// The pixels of several colours, their squared difference, and that which is expected of one sample in each.
     edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
+    /// The squared difference of the pixels of one colour, and of the others what is more than one
+    /// sample in each makes.
+    pub fn square(&self) -> f64 {
+        let beyond = self
+            .edges
+            .iter()
+            .map(|(_, square, variance)| square - variance);
+        self.square + beyond.sum::<f64>().max(0.0)
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.are_empty(1, |_| Some(0)) == [true]
@@ -60,6 +72,7 @@ impl Prediction<'_> {
                     let reach = self.reach(at);
                     if (0..3).any(|i| beyond(i) > reach[i]) {
                         strays.pixels.push(at);
+                        strays.square += difference.iter().map(|d| d * d).sum::<f64>();
                     }
                 }
             } else {
@@ -70,25 +83,6 @@ impl Prediction<'_> {
             }
         }
         strays
-    }
-
-    /// Whether this and another prediction differ by something that can be seen, where a pixel shows so many samples: in a pixel by more than edges that move by
-    /// half a pixel. A few samples move them themselves: a regular grid of n by up to half of 1/√n, so that a pixel with a corner changes by up to three quarters
-    /// with one.
-    pub fn is_seen_beside(&self, other: &Self, samples: f64) -> bool {
-        let more = 1.0 + 0.5 / samples.sqrt();
-        (0..self.seen.len()).any(|at| {
-            let both = [self, other];
-            if both[0].moments.mean[at] == both[1].moments.mean[at] && self.curve == other.curve {
-                return false;
-            }
-            let shown = both.map(|one| one.moments.mean[at].map(|light| one.curve.seen(light)));
-            let reaches = both.map(|one| {
-                let (reach, allowed) = (one.reach(at), one.allowed(at));
-                [0, 1, 2].map(|i| more * reach[i] + allowed[i])
-            });
-            (0..3).any(|i| (shown[0][i] - shown[1][i]).abs() > reaches[0][i].max(reaches[1][i]))
-        })
     }
 
     /// How much the light of a pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a

@@ -52,9 +52,12 @@ pub struct Verdict {
     pub kind: Kind,
     /// How many independent samples in a pixel leave as much noise; none where it is not known.
     pub samples: Option<f64>,
-    /// The mistakes.
+    /// The mistakes: together they explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The share of the squared difference beyond noise that mistakes leave, if it is more than noise.
+    /// The mistakes that come nearest, where none that are known explain the picture.
+    pub guesses: Vec<NamedMistake>,
+    /// The share of the squared difference beyond noise that mistakes or guesses leave, if it is
+    /// more than noise.
     pub rest: Option<f64>,
     /// The objects.
     pub objects: Vec<ObjectVerdict>,
@@ -73,12 +76,25 @@ impl Verdict {
             kind,
             samples: None,
             mistakes: Vec::new(),
+            guesses: Vec::new(),
             rest: None,
             objects: objects::right(scene),
             is_background_right: true,
             is_coded: false,
             is_cut: false,
         }
+    }
+
+    /// The same of a picture of which something else is plain to see: it is told first.
+    pub fn beside(mut self, fact: NamedMistake) -> Self {
+        match self.kind {
+            Kind::Unknown => self.guesses.insert(0, fact),
+            Kind::Right | Kind::Noise | Kind::Wrong => {
+                self.kind = Kind::Wrong;
+                self.mistakes.insert(0, fact);
+            }
+        }
+        self
     }
 
     /// The verdict in one line.
@@ -97,26 +113,33 @@ impl Verdict {
                 "right but for sampling noise and what JPEG changes".to_owned()
             }
             (Kind::Noise, None) => "right but for sampling noise".to_owned(),
-            (Kind::Wrong, _) => {
-                let messages = self.mistakes.iter();
-                let messages: Vec<_> = messages.map(|mistake| &mistake.message[..]).collect();
-                format!("wrong: {}", messages.join("; "))
+            (Kind::Wrong, _) => format!("wrong: {}", messages(&self.mistakes)),
+            (Kind::Unknown, _) => {
+                let nearest = match &self.guesses[..] {
+                    [] => String::new(),
+                    guesses => {
+                        format!("; this comes nearest{}: {}", self.left(), messages(guesses))
+                    }
+                };
+                let limit = match self.is_cut {
+                    true => "; the search came to its bound (--effort 4 goes on)",
+                    false => "",
+                };
+                format!("wrong, and not by a mistake known here{nearest}{limit}")
             }
-            (Kind::Unknown, _) => "wrong, and not by a mistake known here".to_owned(),
+        }
+    }
+
+    /// What guesses leave, in words.
+    fn left(&self) -> String {
+        match self.rest.map(|rest| (100.0 * rest).round()) {
+            Some(percent) if percent > 0.0 => format!(", and leaves {percent} % unexplained"),
+            _ => String::new(),
         }
     }
 
     /// The same for programs, field by field.
     pub fn to_json(&self) -> Map<String, Value> {
-        let mistakes = self.mistakes.iter().map(|mistake| {
-            json!({
-                "id": mistake.id,
-                "message": mistake.message,
-                "help": mistake.help,
-                "set": mistake.set,
-                "explains": mistake.explains,
-            })
-        });
         let objects = self.objects.iter().map(|object| {
             json!({ "index": object.index, "name": object.name, "right": object.is_right, "off": object.off })
         });
@@ -124,7 +147,8 @@ impl Verdict {
             ("verdict", json!(self.kind.word())),
             ("line", json!(self.line())),
             ("samples_per_pixel", json!(self.samples)),
-            ("mistakes", mistakes.collect()),
+            ("mistakes", json_of(&self.mistakes)),
+            ("guesses", json_of(&self.guesses)),
             ("objects", objects.collect()),
         ];
         let rest = self.rest.map(|rest| ("rest", json!(rest)));
@@ -134,4 +158,23 @@ impl Verdict {
             .map(|(name, value)| (name.to_owned(), value))
             .collect()
     }
+}
+
+/// What mistakes are, one after the other.
+fn messages(mistakes: &[NamedMistake]) -> String {
+    let messages: Vec<_> = mistakes.iter().map(|one| &one.message[..]).collect();
+    messages.join("; ")
+}
+
+fn json_of(mistakes: &[NamedMistake]) -> Value {
+    let fields = |mistake: &NamedMistake| {
+        json!({
+            "id": mistake.id,
+            "message": mistake.message,
+            "help": mistake.help,
+            "set": mistake.set,
+            "explains": mistake.explains,
+        })
+    };
+    mistakes.iter().map(fields).collect()
 }

@@ -25,6 +25,9 @@ impl Mistake {
         match self {
             Self::Row(row, _) => row.help.to_owned(),
             Self::Numbers(parameter, _) => match parameter.arguments(scene).join(" and ") {
+                none if none.is_empty() && parameter.fields == ["far"] => {
+                    "nothing is too far to be seen".to_owned()
+                }
                 none if none.is_empty() => "compare it with the scene".to_owned(),
                 set => format!("the scene says {set}"),
             },
@@ -56,6 +59,10 @@ impl Mistake {
         let ([field], [is], [should]) =
             (&parameter.fields[..], &is[..], &parameter.values(scene)[..])
         else {
+            if let ["far"] = parameter.fields[..] {
+                let far = short(numbers[0]);
+                return format!("the camera has a far plane at {far}, and the scene has none");
+            }
             let places: Vec<_> = is.iter().map(ToString::to_string).collect();
             return format!(
                 "{name} stands and looks elsewhere: at {}",

@@ -277,7 +277,7 @@ impl Graded {
             text += &format!("\n{} of the difference is something else.", percent(rest));
         }
         if judged.is_limited() {
-            text.push_str("\nThe scene has so much in it that not all mistakes were tried.");
+            text.push_str("\nNot all mistakes were tried.");
         }
         text
     }

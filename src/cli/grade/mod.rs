@@ -275,7 +275,8 @@ fn graded(
             },
             cancel,
         };
-        Reference::new(scene, whole, Rounding::Byte, &control)
+        let reference = Reference::new(scene, whole, Rounding::Byte, &control);
+        reference.map(|reference| reference.with_effort(args.effort.effort))
     });
     let reference = match reference {
         Ok(reference) => reference,
@@ -365,7 +366,8 @@ fn grade(
             progress: &|_| {},
             cancel,
         };
-        own = Reference::new(scene, part, picture.rounding, &control)?;
+        let made = Reference::new(scene, part, picture.rounding, &control)?;
+        own = made.with_effort(args.effort.effort);
         &own
     };
     let steps = picture.rounding.steps();
@@ -373,7 +375,7 @@ fn grade(
         Ok(comparison) => comparison,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let verdict = reference.judge(&picture.film, Jpeg::of(&bytes), &comparison, cancel)?;
+    let verdict = reference.judge(&picture, Jpeg::of(&bytes), &comparison, cancel)?;
     let pictures = args.output.is_some().then(|| {
         let is_whole = part == whole.part;
         let tolerance = reference.tolerance(steps);

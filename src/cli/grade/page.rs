@@ -185,7 +185,7 @@ fn verdict(one: &Graded) -> String {
             );
         }
         if judged.is_limited() {
-            html += "<p>Not all mistakes were tried, as the scene has so much in it.</p>";
+            html += "<p>The search came to its bound before all mistakes were tried: --effort 4 tries more.</p>";
         }
         if !judged.is_right() {
             html += &objects(judged);

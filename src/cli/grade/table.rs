@@ -49,7 +49,9 @@ pub fn table(graded: &[Graded]) -> String {
                 ));
             }
             if judged.is_limited() {
-                text += &more("not all mistakes were tried, as the scene has so much in it");
+                text += &more(
+                    "the search came to its bound before all mistakes were tried: --effort 4 tries more",
+                );
             }
         }
         if !one.equal_to.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use image::{Rgb, codecs::jpeg::JpegEncoder};
+use image::{Rgb, Rgba, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
 
 use super::{folder, json, open, render, save};
@@ -69,7 +69,7 @@ fn a_mistake_is_what_can_be_set() {
     assert_eq!(
         keys.join(" "),
         "a b width height size_b rmse largest beyond undecided tolerance equal \
-         verdict line samples_per_pixel mistakes objects limited"
+         verdict line samples_per_pixel mistakes guesses objects limited"
     );
     let (mistake, object) = (&found["mistakes"][0], &found["objects"][0]);
     for (is, expected) in [
@@ -154,4 +154,63 @@ fn no_known_mistake_explains_a_blot() {
     let text = folder.told("diff b.png a.scn", 1);
     assert!(text.starts_with("wrong"), "{text}");
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
+}
+
+/// Changes a pixel of a row.
+type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
+
+/// What is plain to see in a picture, and what is said of it.
+const PLAIN: [(&str, Change); 7] = [
+    ("black", |_, _| Rgba([0, 0, 0, 255])),
+    ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
+    ("transparent", |_, _| Rgba([0; 4])),
+    ("alpha", |Rgba([r, g, b, _]), _| Rgba([r, g, b, 254])),
+    ("alpha", |Rgba([r, g, b, _]), _| Rgba([r, g, b, 1])),
+    ("rows_missing", |pixel, y| match y < 30 {
+        true => pixel,
+        false => Rgba([0, 0, 0, 255]),
+    }),
+    ("inverted", |Rgba([r, g, b, a]), _| {
+        Rgba([255 - r, 255 - g, 255 - b, a])
+    }),
+];
+
+#[test]
+fn what_is_plain_to_see_is_said_and_nothing_else() {
+    let folder = folder();
+    render(&folder, "-o blue.png --set image.background=navy");
+    let blue = "b.png a.scn --set image.background=navy";
+    for (id, change) in PLAIN {
+        let mut picture = open(&folder, "blue.png").to_rgba8();
+        for (_, y, pixel) in picture.enumerate_pixels_mut() {
+            *pixel = change(*pixel, y);
+        }
+        save(&folder, "b.png", picture);
+        let found = json(&folder, blue);
+        let mistakes = found["mistakes"].as_array().unwrap();
+        let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
+        assert_eq!(ids, [id], "{found:#}");
+    }
+    // Of a background that is all there is the camera tells.
+    render(
+        &folder,
+        "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",
+    );
+    let found = json(&folder, blue);
+    assert_eq!(found["mistakes"][0]["id"], "nothing_seen", "{found:#}");
+}
+
+#[test]
+fn where_work_ends_nothing_is_said_for_certain() {
+    let folder = folder();
+    render(
+        &folder,
+        "-o b.png --set Ball.radius=1.2 --set 'camera.lookat=(0, 1, 0)'",
+    );
+    let found = json(&folder, "b.png a.scn --effort 0.1");
+    assert_eq!(found["limited"], true, "{found:#}");
+    assert_eq!(found["verdict"], "unknown", "{found:#}");
+    assert_eq!(found["mistakes"].as_array().unwrap().len(), 0);
+    let text = folder.told("diff b.png a.scn --effort 0.1", 1);
+    assert!(text.contains("--effort"), "{text}");
 }

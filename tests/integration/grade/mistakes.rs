@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec3};
 use image::imageops;
 
-use super::textbook::{Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible};
+use super::textbook::{Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible};
 
 /// A mistake.
 pub struct Mistake {
@@ -59,11 +59,31 @@ const OF_THE_PICTURE: &[Mistake] = &[
     row("gamma_22_averaged", |p| p.encoding = Encoding::Power(2.2)),
     row("averaged_encoded", |p| p.averages_encoded = true),
     row("cut_off", |p| p.cuts_bytes = true),
+    row("inverted", |p| {
+        p.change = |color| color.map(|byte| 255 - byte)
+    }),
+    row("not_decoded", |p| {
+        p.change =
+            |color| color.map(|byte| (255.0 * (f64::from(byte) / 255.0).sqrt()).round() as u8)
+    }),
+    row("not_divided twice", |p| p.gain = 2.0),
+    row("not_divided half", |p| p.gain = 0.5),
     row("half_pixel", |p| p.offset = 0.5),
 ];
 
 /// Of the camera.
 const OF_THE_CAMERA: &[Mistake] = &[
+    row("aspect its window is 4:3", |p| p.aspect = 0.75),
+    row("aspect twice as wide", |p| p.aspect = 2.0),
+    row("roll_new_u", |p| p.axes = Axes::NewU),
+    row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
+    row("w_not_normalised", |p| p.axes = Axes::LongW),
+    row("parallel_rays", |p| p.axes = Axes::Parallel),
+    // A camera that sees nothing of the scene is no more than that.
+    row("eye_not_subtracted|nothing_seen", |p| {
+        p.axes = Axes::WithoutEye
+    }),
+    row("near_far_distance", |p| p.clips_distances = true),
     row("roll_sign|camera.roll", |p| p.roll = -p.roll),
     row("roll_unit|camera.roll", |p| {
         p.roll = p.roll.to_degrees().round()
@@ -81,6 +101,10 @@ const OF_THE_CAMERA: &[Mistake] = &[
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
+    row("board_rounded", |p| p.squares = Squares::Rounded),
+    row("board_sum", |p| p.squares = Squares::Sum),
+    row("board_stripes", |p| p.squares = Squares::Stripes),
+    row("board_sines", |p| p.squares = Squares::Sines),
     row("Floor.square", |p| board(p, |_, square, _| *square *= 2.0)),
     row("Floor.y", |p| board(p, |y, _, _| *y -= 0.3)),
     row("Floor.colors", |p| {
@@ -109,6 +133,12 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
         });
     }),
     row("depth_ignored", |p| p.visible = Visible::Last),
+    row("triangle_parallelogram Sail", |p| p.is_parallelogram = true),
+    row("triangle_edge Sail", |p| p.misses_edge = true),
+    row("box_axis x|box_axis y|box_axis z", |p| p.misses_axis = true),
+    row("faces_exchanged across x and y", |p| exchange(p, [1, 0, 2])),
+    row("faces_exchanged across x and z", |p| exchange(p, [2, 1, 0])),
+    row("faces_exchanged across y and z", |p| exchange(p, [0, 2, 1])),
     row("box_corner|Crate.center", |p| stretch(p, [0.5, 0.5])),
     row("Ball.color", |p| color(p, "Ball", [128, 0, 0])),
     row("Sail.color", |p| color(p, "Sail", [0, 64, 255])),
@@ -184,7 +214,7 @@ const OTHERS: &[Mistake] = &[
 ];
 
 /// The scenes: the picture of the assignment, turned a little; another one with the same names, seen from closer by, with a far plane, and more objects; and
-/// what some mistakes need to show: a near plane that cuts objects off, a low window, and the floor as the first object.
+/// what some mistakes need to show: a near plane that cuts objects off, a low window, a box whose faces have colours of their own, and the floor as the first object.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -198,6 +228,10 @@ pub fn scene(name: &str) -> (Program, String) {
         "low" => {
             program.view_height = 1.6;
             text = text.replace("d 2.75", "d 2.75  view_height 1.6");
+        }
+        "painted" => {
+            program.faces = Some([[210, 180, 140], [245, 222, 179], [205, 133, 63]]);
+            text = text.replace("-0.5) }", "-0.5)  colors (tan, wheat, peru) }");
         }
         "backwards" => {
             program.objects.reverse();
@@ -275,6 +309,14 @@ fn figure() -> Program {
         samples: 1,
         is_wide: false,
         is_squeezed: false,
+        aspect: 1.0,
+        axes: Axes::Right,
+        gain: 1.0,
+        clips_distances: false,
+        misses_edge: false,
+        is_parallelogram: false,
+        misses_axis: false,
+        faces: None,
         offset: 0.0,
         behind: Behind::Unseen,
         visible: Visible::Nearest,
@@ -365,4 +407,9 @@ fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
 
 fn color(program: &mut Program, name: &str, color: [u8; 3]) {
     program.object(name).color = color;
+}
+
+fn exchange(program: &mut Program, order: [usize; 3]) {
+    let faces = program.faces.expect("faces with colours");
+    program.faces = Some(order.map(|axis| faces[axis]));
 }

@@ -82,6 +82,31 @@ pub enum Squares {
     Remainder,
     /// By whether their two remainders differ.
     Remainders,
+    /// By the sum of two that are rounded to the nearest.
+    Rounded,
+    /// By their sum, rounded down.
+    Sum,
+    /// By the first one, rounded down.
+    Stripes,
+    /// By the sign of the product of their sines.
+    Sines,
+}
+
+/// What is wrong with the camera's axes and rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axes {
+    /// Nothing.
+    Right,
+    /// The new u stands for the old one in the roll.
+    NewU,
+    /// Up stands for v.
+    UpAsV,
+    /// w has not the length 1.
+    LongW,
+    /// w is made of lookat alone.
+    WithoutEye,
+    /// All rays have the direction −w.
+    Parallel,
 }
 
 /// Where the samples of a pixel lie.
@@ -129,6 +154,20 @@ pub struct Program {
     pub is_wide: bool,
     /// Whether the window is as wide as it is tall.
     pub is_squeezed: bool,
+    /// The window is so many times as wide as it should be.
+    pub aspect: f64,
+    pub axes: Axes,
+    /// What light is multiplied by.
+    pub gain: f64,
+    /// Whether near and far are distances.
+    pub clips_distances: bool,
+    /// Whether one test of a triangle is missing: of an edge's side, or that the point is on this side of the third edge.
+    pub misses_edge: bool,
+    pub is_parallelogram: bool,
+    /// Whether boxes have no sides across z.
+    pub misses_axis: bool,
+    /// The colours of a box's faces across x, y and z, in the place of its own.
+    pub faces: Option<[[u8; 3]; 3]>,
     /// Added to each sample's place, in pixels.
     pub offset: f64,
     pub behind: Behind,
@@ -163,15 +202,27 @@ impl Program {
     /// The picture.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
-        let w = (self.eye - self.lookat).normalize();
+        let backward = match self.axes {
+            Axes::WithoutEye => -self.lookat,
+            _ => self.eye - self.lookat,
+        };
+        let mut w = backward.normalize();
         let u = self.up.cross(w).normalize();
-        let v = w.cross(u);
+        let v = match self.axes {
+            Axes::UpAsV => self.up.normalize(),
+            _ => w.cross(u),
+        };
         let (sin, cos) = libm::sincos(self.roll);
-        let (u, v) = (cos * u - sin * v, sin * u + cos * v);
+        let new = cos * u - sin * v;
+        let old = if self.axes == Axes::NewU { new } else { u };
+        let (u, v) = (new, sin * old + cos * v);
+        if self.axes == Axes::LongW {
+            w = backward;
+        }
         let pixel = self.view_height / f64::from(if self.is_wide { width } else { height });
         let across = match self.is_squeezed {
             true => self.view_height / f64::from(width),
-            false => pixel,
+            false => self.aspect * pixel,
         };
         let light: [f64; 256] = array::from_fn(|byte| match byte as f64 / 255.0 {
             part if self.averages_encoded => part,
@@ -185,10 +236,14 @@ impl Program {
                 let x = across * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
                 let y = pixel * (f64::from(height) / 2.0 - f64::from(row) - dy - self.offset);
                 let ray = (x * u + y * v - self.distance * w).normalize();
-                let color = self.trace(ray, -w);
+                let (from, ray) = match self.axes {
+                    Axes::Parallel => (self.eye + x * u + y * v, -w),
+                    _ => (self.eye, ray),
+                };
+                let color = self.trace(from, ray, -w.normalize());
                 sum += DVec3::from(color.map(|byte| light[usize::from(byte)]));
             }
-            let mean = (sum / f64::from(self.samples)).to_array();
+            let mean = (self.gain * sum / f64::from(self.samples)).to_array();
             let bytes = mean.map(|part| {
                 let encoded = match self.averages_encoded {
                     true => part,
@@ -243,7 +298,7 @@ impl Program {
     }
 
     /// The colour in a direction.
-    fn trace(&self, ray: DVec3, view: DVec3) -> [u8; 3] {
+    fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
         // What lies behind the eye is before everything, or counts as far away as it is.
         let order = |t: f64| {
             if self.behind == Behind::First {
@@ -253,13 +308,18 @@ impl Program {
             }
         };
         let counts = |t: &f64| {
-            let depth = t.abs() * ray.dot(view);
+            let along = if self.clips_distances {
+                1.0
+            } else {
+                ray.dot(view)
+            };
+            let depth = t.abs() * along;
             let is_before = self.behind != Behind::Unseen || *t > 1e-9;
             is_before && depth > self.near && depth < self.far
         };
         let mut seen: Option<(f64, &Object)> = None;
         for object in &self.objects {
-            let hits = self.hits(&object.shape, ray).into_iter().flatten();
+            let hits = self.hits(&object.shape, from, ray).into_iter().flatten();
             let first = hits
                 .filter(counts)
                 .min_by(|a, b| order(*a).total_cmp(&order(*b)));
@@ -277,21 +337,30 @@ impl Program {
             }
         }
         seen.map_or(self.background, |(t, object)| {
-            self.color(object, self.eye + t * ray)
+            self.color(object, from + t * ray)
         })
     }
 
     fn color(&self, object: &Object, at: DVec3) -> [u8; 3] {
-        let Shape::Board(_, square, second) = object.shape else {
-            return object.color;
+        let (square, second) = match (&object.shape, self.faces) {
+            (Shape::Board(_, square, second), _) => (*square, *second),
+            (Shape::Box(least, greatest), Some(faces)) => {
+                let off = (at - least).abs().min((at - greatest).abs());
+                return faces[off.min_position()];
+            }
+            _ => return object.color,
         };
         let number = |x: f64| match self.squares {
             Squares::Truncated => (x / square) as i64,
+            Squares::Rounded => (x / square).round() as i64,
             _ => (x / square).floor() as i64,
         };
         let (i, k) = (number(at.x), number(at.z) + self.parity);
         let is_second = match self.squares {
-            Squares::Floored | Squares::Truncated => (i + k) % 2 != 0,
+            Squares::Floored | Squares::Truncated | Squares::Rounded => (i + k) % 2 != 0,
+            Squares::Sum => ((at.x + at.z) / square).floor() as i64 % 2 != 0,
+            Squares::Stripes => i % 2 != 0,
+            Squares::Sines => libm::sin(at.x / square) * libm::sin(at.z / square) < 0.0,
             Squares::Remainder => (i + k) % 2 == 1,
             Squares::Remainders => i % 2 != k % 2,
         };
@@ -299,10 +368,10 @@ impl Program {
     }
 
     /// The distances at which a ray meets a shape.
-    fn hits(&self, shape: &Shape, ray: DVec3) -> [Option<f64>; 2] {
+    fn hits(&self, shape: &Shape, eye: DVec3, ray: DVec3) -> [Option<f64>; 2] {
         match *shape {
             Shape::Sphere(center, radius) => {
-                let from = self.eye - center;
+                let from = eye - center;
                 let (b, c) = (from.dot(ray), from.length_squared() - radius * radius);
                 let root = (b * b - c).sqrt();
                 [Some(-b + root), Some(-b - root)].map(|t| t.filter(|t| !t.is_nan()))
@@ -310,21 +379,30 @@ impl Program {
             Shape::Triangle([a, b, c]) => {
                 let (ab, ac) = (b - a, c - a);
                 let normal = ab.cross(ac);
-                let t = (a - self.eye).dot(normal) / ray.dot(normal);
-                let at = self.eye + t * ray - a;
+                let t = (a - eye).dot(normal) / ray.dot(normal);
+                let at = eye + t * ray - a;
                 let area = normal.length_squared();
                 let beta = at.cross(ac).dot(normal) / area;
                 let gamma = ab.cross(at).dot(normal) / area;
-                let is_in = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+                let is_within = match self.is_parallelogram {
+                    true => beta <= 1.0 && gamma <= 1.0,
+                    false => beta + gamma <= 1.0,
+                };
+                let is_in = beta >= 0.0 && (gamma >= 0.0 || self.misses_edge) && is_within;
                 [Some(t).filter(|_| is_in), None]
             }
             Shape::Box(least, greatest) => {
-                let (a, b) = ((least - self.eye) / ray, (greatest - self.eye) / ray);
+                let far = if self.misses_axis {
+                    1e9 * DVec3::Z
+                } else {
+                    DVec3::ZERO
+                };
+                let (a, b) = ((least - far - eye) / ray, (greatest + far - eye) / ray);
                 let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
                 [leave, enter].map(|t| Some(t).filter(|_| enter <= leave))
             }
             Shape::Board(y, ..) => {
-                let t = (y - self.eye.y) / ray.y;
+                let t = (y - eye.y) / ray.y;
                 [Some(t).filter(|t| t.is_finite()), None]
             }
         }

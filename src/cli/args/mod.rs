@@ -1,5 +1,7 @@
 //! What users type.
 
+mod judging;
+
 use std::{num::NonZero, path::PathBuf};
 
 use clap::{
@@ -10,7 +12,9 @@ use clap::{
 use clap_complete::Shell;
 
 use super::help;
-use crate::{area::Area, film::DECODED_LIMIT, scene::Method};
+use crate::{area::Area, scene::Method};
+
+pub use self::judging::{DiffArgs, GradeArgs, GradeFormat, LargeArgs};
 
 /// Renders small declarative scene files through a virtual pinhole camera
 #[derive(Debug, Parser)]
@@ -285,100 +289,6 @@ pub struct FmtArgs {
     pub check: bool,
 }
 
-/// Arguments of `diff`.
-#[derive(Debug, clap::Args)]
-pub struct DiffArgs {
-    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input;
-    /// whole numbers count as sRGB and floats as linear light, and what is transparent is seen on
-    /// black
-    pub a: PathBuf,
-    /// Another picture, or a scene whose exact picture A is compared with
-    pub b: PathBuf,
-    /// Write a heat map of the differences to this PNG file: black, red, yellow, white, linear in
-    /// steps of sRGB
-    #[arg(short, long = "output", value_name = "HEATMAP")]
-    pub output: Option<PathBuf>,
-    /// How much a pixel may differ, in steps of 8-bit sRGB [default: what rounding explains, 0.5
-    /// for each picture of 8 bits, 0.002 for one of 16, 0.06 for an EXR of half floats and next to
-    /// nothing for one of floats; the exact picture's own bound, as good as nothing, always comes
-    /// on top]
-    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
-    pub tolerance: Option<f64>,
-    /// The part of the scene that A shows, where it does not say so itself
-    #[arg(long, value_name = "X,Y,W,H")]
-    pub crop: Option<Area>,
-    /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance
-    /// implies it
-    #[arg(long)]
-    pub strict: bool,
-    #[command(flatten)]
-    pub large: LargeArgs,
-    #[command(flatten)]
-    pub overrides: Overrides,
-    #[command(flatten)]
-    pub threads: ThreadArgs,
-    #[command(flatten)]
-    pub format: FormatArgs,
-}
-
-/// Arguments of `grade`.
-#[derive(Debug, clap::Args)]
-pub struct GradeArgs {
-    /// The scene: a .scn file, or a PNG that Pinhole wrote
-    pub scene: PathBuf,
-    /// The pictures, or folders or zip files with a folder or a file a student, as Moodle,
-    /// Gradescope and GitHub Classroom hand them out
-    #[arg(required = true, value_name = "PICTURE")]
-    pub pictures: Vec<PathBuf>,
-    /// The folder for index.html, its pictures, grade.csv and grade.jsonl; it is made if it is
-    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way is
-    /// refused
-    #[arg(short, long = "output", value_name = "DIR")]
-    pub output: Option<PathBuf>,
-    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of several
-    /// the newest is [default: all that are named as pictures are]
-    #[arg(long, value_name = "GLOB")]
-    pub picture: Option<String>,
-    /// The part of the scene that pictures of its size show, where they do not say it themselves
-    #[arg(long, value_name = "X,Y,W,H")]
-    pub crop: Option<Area>,
-    /// A JSON file that says what a right picture gets and what each mistake takes off
-    #[arg(long, value_name = "FILE")]
-    pub points: Option<PathBuf>,
-    /// Moodle's worksheet of grades, to be filled in by --format moodle
-    #[arg(long, value_name = "FILE")]
-    pub worksheet: Option<PathBuf>,
-    /// How a column of the worksheet is called there, such as `Grade=Bewertung`; repeatable
-    #[arg(long, value_name = "COLUMN=HEADING")]
-    pub columns: Vec<String>,
-    #[command(flatten)]
-    pub large: LargeArgs,
-    #[command(flatten)]
-    pub overrides: Overrides,
-    #[command(flatten)]
-    pub threads: ThreadArgs,
-    /// For people, on standard error, or for programs, on standard output
-    #[arg(long, value_enum, default_value_t = GradeFormat::Human)]
-    pub format: GradeFormat,
-}
-
-/// For whom a class is graded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum GradeFormat {
-    /// Text for people
-    Human,
-    /// JSON for programs, a line a student
-    Json,
-    /// A table for other programs
-    Csv,
-    /// JUnit XML, as systems of continuous integration show it
-    Junit,
-    /// Gradescope's results.json: of one student on standard output, of several in DIR/STUDENT/
-    Gradescope,
-    /// Moodle's worksheet, filled in: on standard output, or in DIR
-    Moodle,
-}
-
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
@@ -386,43 +296,6 @@ pub struct ExplainArgs {
     /// language, or `language` [default: list all codes]
     #[arg(value_name = "WORD")]
     pub word: Option<String>,
-}
-
-/// How large pictures may be.
-#[derive(Debug, clap::Args)]
-pub struct LargeArgs {
-    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
-    /// long as there is memory for them
-    #[arg(long)]
-    pub large: bool,
-}
-
-impl LargeArgs {
-    /// Maximum length of a picture's file, in bytes.
-    pub fn file_limit(&self) -> u64 {
-        match self.large {
-            true => 4 << 30,
-            false => 256 << 20,
-        }
-    }
-
-    /// Maximum length of a decoded picture, in bytes.
-    pub fn decoded_limit(&self) -> u64 {
-        match self.large {
-            true => u64::MAX,
-            false => DECODED_LIMIT,
-        }
-    }
-
-    /// Says that a picture has more than that, and what to do.
-    pub fn hint(&self, what: &str, limit: u64) -> String {
-        let way_out = if self.large {
-            ""
-        } else {
-            ": `--large` reads it"
-        };
-        format!("it has more than {limit} {what}{way_out}")
-    }
 }
 
 /// For whom the answer is.
@@ -447,13 +320,6 @@ fn finite(text: &str) -> Result<f64, String> {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err("not a finite number".to_owned()),
         Err(_) => Err("not a number".to_owned()),
-    }
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    match finite(text)? {
-        number if number >= 0.0 => Ok(number),
-        _ => Err("a tolerance is not negative".to_owned()),
     }
 }
 

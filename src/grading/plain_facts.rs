@@ -1,0 +1,221 @@
+//! What is plain to see in a picture, before any mistake is fitted to it: that nothing is in it, or
+//! that a part of it is empty.
+
+use glam::DVec3;
+
+use super::{
+    candidate::Candidate,
+    faulty_tracer::{Behaviour, FaultyTracer},
+    grid::Grid,
+    light::{Curve, is_near},
+    verdict::NamedMistake,
+};
+use crate::{
+    area::Area,
+    film::Film,
+    scene::{Lens, Scene, View},
+};
+
+/// Neighbours in a picture that are noise differ by as much as pixels far from each other, and by
+/// less than this part of it in one of a scene.
+const ALIKE: f64 = 0.8;
+
+/// The cells, along the longer side, in which it is looked at whether anything is seen.
+const CELLS: u32 = 32;
+
+fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
+    NamedMistake {
+        id,
+        message,
+        help,
+        set: Vec::new(),
+        explains: 1.0,
+    }
+}
+
+/// What a picture of a part of a scene is that has nothing in it; none if it has. `exact` is what
+/// it should show.
+pub fn nothing_in_it(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
+    let first = film.pixels()[0];
+    if film.pixels().iter().all(|pixel| *pixel == first) {
+        // That would be all that there is to see.
+        let is_right = exact.pixels().iter().all(|pixel| is_near(*pixel, first));
+        (!is_right).then_some(())?;
+        let background = scene.image.background;
+        if is_near(first, background.to_linear()) {
+            let message = format!(
+                "nothing of the scene is seen: the picture has the colour of the background, {background}, all over"
+            );
+            return Some(fact("nothing_seen", message, causes(scene)));
+        }
+        if first == [0.0; 3] {
+            let help = "nothing was written into it, or zeros: a colour from 0 to 1 as a whole number is 0, and is multiplied by 255 before it becomes one";
+            let message = "the picture is black all over".to_owned();
+            return Some(fact("black", message, help.to_owned()));
+        }
+        let help = "a ray leaves through its own pixel: its direction has to be made anew for each";
+        let message = "the picture has one colour all over".to_owned();
+        return Some(fact("one_colour", message, help.to_owned()));
+    }
+    is_noise(film).then_some(())?;
+    (!is_noise(exact)).then(|| {
+        let message = "the picture is noise: it is no more like this scene than noise is";
+        let help = "look at the file: a header with another size or another number of bytes in a pixel, or memory that was never written";
+        fact("noise", message.to_owned(), help.to_owned())
+    })
+}
+
+/// Whether pixels side by side have no more in common than others.
+fn is_noise(film: &Film) -> bool {
+    let width = film.width() as usize;
+    let pixels = film.pixels();
+    let count = pixels.len() as f64;
+    let mean = [0, 1, 2].map(|i| pixels.iter().map(|pixel| pixel[i]).sum::<f64>() / count);
+    let square = |one: &[f64; 3], other: &[f64; 3]| -> f64 {
+        (0..3)
+            .map(|i| (one[i] - other[i]) * (one[i] - other[i]))
+            .sum()
+    };
+    let far: f64 = pixels.iter().map(|pixel| square(pixel, &mean)).sum::<f64>() / count;
+    let pairs = pixels.iter().zip(&pixels[width.min(pixels.len())..]);
+    let below = pairs.map(|(one, other)| square(one, other)).sum::<f64>() / count;
+    let rows = pixels.chunks_exact(width).flat_map(|row| row.windows(2));
+    let beside = rows.map(|pair| square(&pair[0], &pair[1])).sum::<f64>() / count;
+    far > 0.0 && below.min(beside) > 2.0 * ALIKE * far
+}
+
+/// What usually has a camera see nothing, of that what would in this scene.
+fn causes(scene: &Scene) -> String {
+    let camera = scene.camera;
+    let with = |change: &dyn Fn(&mut Scene)| {
+        let mut other = scene.clone();
+        change(&mut other);
+        other
+    };
+    let looking = |view: View| with(&|scene: &mut Scene| scene.camera.view = view);
+    let mut tried = vec![(
+        "the camera looks the other way (w = (eye − lookat)/|eye − lookat|, and rays leave along −d w)",
+        match camera.view {
+            View::Lookat(point) => looking(View::Lookat(2.0 * camera.eye - point)),
+            View::Direction(direction) => looking(View::Direction(-direction)),
+        },
+    )];
+    if let View::Lookat(point) = camera.view
+        && point != DVec3::ZERO
+    {
+        tried.push((
+            "lookat is taken for a direction (the eye has to be subtracted)",
+            looking(View::Direction(point)),
+        ));
+    }
+    if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = camera.lens {
+        let distance = camera.view_height / (2.0 * libm::tan(angle.in_degrees() / 2.0));
+        let narrow = with(&|scene: &mut Scene| scene.camera.lens = Lens::Distance(distance.abs()));
+        let radians = match (distance > 0.0, camera.view) {
+            (true, _) => narrow,
+            (false, View::Lookat(point)) => {
+                let mut back = narrow;
+                back.camera.view = View::Lookat(2.0 * camera.eye - point);
+                back
+            }
+            (false, View::Direction(direction)) => {
+                let mut back = narrow;
+                back.camera.view = View::Direction(-direction);
+                back
+            }
+        };
+        tried.push(("fov is in degrees, and tan takes radians", radians));
+    }
+    let shows_nothing = |scene: &Scene| {
+        let part = Area::whole(scene.image.width, scene.image.height);
+        let grid = Grid::new(&scene.image, part, CELLS);
+        let drawn = Candidate::right(scene).drawn(&grid);
+        let background = scene.image.background.to_linear();
+        let tracer = FaultyTracer::new(&drawn, Behaviour::default(), Curve::Right);
+        let cells = tracer.moments(grid.cells, 1).mean;
+        cells.iter().all(|cell| *cell == background)
+    };
+    let found: Vec<&str> = tried
+        .iter()
+        .filter(|(_, scene)| shows_nothing(scene))
+        .map(|(cause, _)| *cause)
+        .collect();
+    match &found[..] {
+        [] => "print the direction of one ray, and ask one object for its hit by hand".to_owned(),
+        found => format!("in this scene it would be so if {}", found.join(", or if ")),
+    }
+}
+
+/// The rows at the top or at the bottom of a picture that have one colour and should not, at least
+/// two and not all.
+#[derive(Clone, Copy, Debug)]
+pub struct EmptyRows {
+    /// The first and the last.
+    rows: [usize; 2],
+}
+
+impl EmptyRows {
+    /// Those of a picture, beside the exact one.
+    pub fn of(film: &Film, exact: &Film) -> Option<Self> {
+        let width = film.width() as usize;
+        let height = film.pixels().len() / width;
+        let row = |film: &'_ Film, y: usize| film.pixels()[y * width..][..width].to_vec();
+        let from_below = |is_below: bool| {
+            let at = |y: usize| if is_below { height - 1 - y } else { y };
+            let light = film.pixels()[at(0) * width];
+            let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
+            let count = (0..height).take_while(are_empty).count();
+            // A sky has one colour in any picture, be it the wrong one everywhere.
+            let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
+            let is_told = |y: &usize| {
+                let own = row(exact, at(*y));
+                let has_several = own.iter().any(|pixel| !is_near(*pixel, own[0]));
+                let wrong = own.iter().filter(|pixel| !is_near(**pixel, light));
+                wrong.count() > width / 8 && (has_several || is_shown(own[0]))
+            };
+            let told = (0..count).filter(is_told).count();
+            let ends = [at(0), at(count.max(1) - 1)];
+            let rows = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            (told >= 2 && count + 2 <= height).then_some(Self { rows })
+        };
+        from_below(true).or_else(|| from_below(false))
+    }
+
+    /// A picture in which these rows have no numbers.
+    pub fn left_out(&self, film: &Film) -> Film {
+        let width = film.width() as usize;
+        let mut left = film.clone();
+        let [first, last] = self.rows;
+        left.pixels_mut()[first * width..(last + 1) * width].fill([f64::NAN; 3]);
+        left
+    }
+
+    /// It, told.
+    pub fn told(&self) -> NamedMistake {
+        let [first, last] = self.rows;
+        let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";
+        let message = format!("rows {first} to {last} are empty: they have one colour");
+        fact("rows_missing", message, help.to_owned())
+    }
+}
+
+/// That a picture is not opaque; `opacity` is the least and the greatest of its alpha, from 0 to 1.
+pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
+    let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
+    let byte = |part: f64| (255.0 * part).round();
+    let (id, message) = match [least, most].map(byte) {
+        [0.0, 0.0] => (
+            "transparent",
+            "the picture is transparent all over: its alpha is 0".to_owned(),
+        ),
+        [one, two] if one == two => (
+            "alpha",
+            format!("the picture is not opaque: its alpha is {one} of 255"),
+        ),
+        [one, two] => (
+            "alpha",
+            format!("the picture is not opaque: its alpha is {one} to {two} of 255"),
+        ),
+    };
+    fact(id, message, help.to_owned())
+}
