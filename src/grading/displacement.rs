@@ -18,9 +18,9 @@ const CHANCE: f64 = 50.0;
 /// make it.
 const NONE: f64 = 0.06;
 
-/// How far few samples lie off the middles of all pixels alike, for each share of a sample's variance
-/// that an error has, and at most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off, and so
-/// many points make less noise than as many random ones.
+/// How far few samples lie off the middles of all pixels alike, for each share of a sample's
+/// variance that an error has, and at most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off,
+/// and so many points make less noise than as many random ones.
 const OFF_MIDDLE: f64 = 0.75;
 const MOST_OFF_MIDDLE: f64 = 0.15;
 

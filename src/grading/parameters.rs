@@ -1,6 +1,8 @@
-//! The numbers of a scene, each of which may be another one in somebody's picture, and writes itself as a `--set`.
+//! The numbers of a scene, each of which may be another one in somebody's picture, and writes
+//! itself as a `--set`.
 //!
-//! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and the scene with others in their place.
+//! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and
+//! the scene with others in their place.
 
 use std::{ops::Range, sync::Arc};
 
@@ -187,8 +189,8 @@ impl Parameter {
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
-    /// A scene with other numbers, if they can be. Those of the other objects of a block differ from
-    /// them as much as before.
+    /// A scene with other numbers, if they can be. Those of the other objects of a block differ
+    /// from them as much as before.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
         let mut changed = self.put_one(scene.clone(), numbers)?;
         let before = self.numbers(scene);
@@ -286,7 +288,8 @@ impl Parameter {
             .collect()
     }
 
-    /// By how much each number changes the picture by about so many pixels, or a colour by a few steps.
+    /// By how much each number changes the picture by about so many pixels, or a colour by a few
+    /// steps.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         let projection = Projection::quick(&scene.camera, &scene.image);
         // How large a pixel is at a point, in metres.

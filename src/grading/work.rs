@@ -1,6 +1,7 @@
 //! How much work may be spent on a picture.
 //!
-//! Work is counted where it arises, not timed: the same picture gets the same verdict. A unit is that of the exact picture, some 30 ns.
+//! Work is counted where it arises, not timed: the same picture gets the same verdict. A unit is
+//! that of the exact picture, some 30 ns.
 
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
@@ -10,19 +11,21 @@ use super::{
 };
 use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 
-/// Units for a picture, and for each of its pixels: together a second and a quarter for one of
-/// 320 × 180 pixels, so that two mistakes in four objects are found, and three for one of 1280 × 720.
+/// Units for a picture, and for each of its pixels: together a second and a quarter for one of 320
+/// × 180 pixels, so that two mistakes in four objects are found, and three for one of 1280 × 720.
 const PICTURE: f64 = 4e7;
 const PIXEL: f64 = 41.0;
 
-/// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking whether it hits a shape, and of comparing a cell.
+/// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking
+/// whether it hits a shape, and of comparing a cell.
 const WORLD_OBJECT: f64 = 20.0;
 const OBJECT: f64 = 6.0;
 const RAY: f64 = 0.3;
 const TEST: f64 = 0.1;
 const CELL: f64 = 2.0;
 
-/// To within so much of the light of white an exact picture is known that judges bytes: a three hundredth of the smallest step of sRGB.
+/// To within so much of the light of white an exact picture is known that judges bytes: a three
+/// hundredth of the smallest step of sRGB.
 pub const KNOWN: f64 = 1e-6;
 
 /// The work that was spent, and how much may be.
@@ -90,7 +93,8 @@ impl<'a> Work<'a> {
         (self.most.get() - self.spent.get()).max(0.0)
     }
 
-    /// The exact means and variances of what a part of a scene's picture shows; none if they take too much.
+    /// The exact means and variances of what a part of a scene's picture shows; none if they take
+    /// too much.
     pub fn exact_moments(&self, scene: &Scene, averaged: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
         let integrator = Integrator::of(&world, numbers(averaged))
@@ -105,7 +109,8 @@ impl<'a> Work<'a> {
         Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
-    /// A part of a picture of so many objects is to be sampled; none if that takes more than is left, which is spent then.
+    /// A part of a picture of so many objects is to be sampled; none if that takes more than is
+    /// left, which is spent then.
     pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;

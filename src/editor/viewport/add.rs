@@ -118,8 +118,8 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// The height of a board that is seen from above: the origin's, unless the eye is not above that, or
-/// something reaches below it; and no other board's.
+/// The height of a board that is seen from above: the origin's, unless the eye is not above that,
+/// or something reaches below it; and no other board's.
 fn free_height(scene: &Scene) -> f64 {
     let below_eye = match scene.camera.eye.y > 0.0 {
         true => 0.0,

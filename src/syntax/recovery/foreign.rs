@@ -107,11 +107,8 @@ impl Recovery<'_, '_> {
             return false;
         };
         let outer = comment.get(..second).unwrap_or_default();
-        let is_end = |ahead: &usize| self.is(*ahead, "*") && self.is(ahead + 1, "/");
-        let ahead = (0..ENOUGH)
-            .find(is_end)
-            .filter(|ahead| self.is_adjacent(ahead + 1));
-        let Some(ahead) = ahead.filter(|_| outer.contains("/*")) else {
+        let is_end = |i: &usize| self.is(*i, "*") && self.is(i + 1, "/") && self.is_adjacent(i + 1);
+        let Some(ahead) = (0..ENOUGH).find(is_end).filter(|_| outer.contains("/*")) else {
             return false;
         };
         let close = self.peek(ahead).start;

@@ -2,8 +2,9 @@
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
 //! each slip. A reader by recursive descent over the lexer's tokens: items stand in `items`, fields
-//! in `fields`, indices in `repetition`, values in `values`, `joined` and `lists`, numbers in `numbers`, and what other
-//! languages write in `foreign`. A right item is read as pest reads it. Three rules:
+//! in `fields`, indices in `repetition`, values in `values`, `joined` and `lists`, numbers in
+//! `numbers`, and what other languages write in `foreign`. A right item is read as pest reads it.
+//! Three rules:
 //!
 //! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
 //!   (`resync`).
@@ -292,8 +293,8 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for i`. Behind
-    /// any other word than a kind, a kind on a new line starts a block of its own.
+    /// Whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for i`.
+    /// Behind any other word than a kind, a kind on a new line starts a block of its own.
     fn is_head(&mut self, ahead: usize) -> bool {
         let name = ahead + 1;
         let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);

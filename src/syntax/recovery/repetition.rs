@@ -20,8 +20,8 @@ impl<'s> Recovery<'_, 's> {
             && (self.is_name(next) || self.is(next, "(") || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads `for i < 8, j < i`. In what other languages write for it there is one mistake, whatever
-    /// stands before the `{`.
+    /// Reads `for i < 8, j < i`. In what other languages write for it there is one mistake,
+    /// whatever stands before the `{`.
     pub(super) fn repetition(&mut self) -> Result<Repetition<'s>, Span> {
         let told = self.problems.len();
         let (is_for, keyword) = (self.is(0, "for"), self.bump());

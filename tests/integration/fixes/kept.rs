@@ -31,8 +31,8 @@ struct Words {
 }
 
 impl Words {
-    /// A field's name with its value right behind it, as in `radius2`, or in `centerball` where `all`
-    /// has such a word, is two words or one.
+    /// A field's name with its value right behind it, as in `radius2`, or in `centerball` where
+    /// `all` has such a word, is two words or one.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         let mut rest = text;
