@@ -58,7 +58,7 @@ impl<'s> Recovery<'_, 's> {
             (None | Some(Type::Number), _) if numbers && commas == 0 && are_thousands(whole) => {
                 let label = "no spaces stand in a number";
                 let fix = replace(span, whole.replace(' ', ""));
-                self.report(&say::BAD_NUMBER, span, &[whole, label], fix);
+                self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
             // `2 ball`, where a vector should stand: times whatever it is.
             (Some(Type::Vector), 2) if commas == 0 && is_named_factor(&first, &second) => {
