@@ -50,7 +50,7 @@ pub(super) struct Reported {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Defined {
+pub(in crate::scene) struct Defined {
     /// None if it failed.
     pub value: Option<Value>,
     /// The name in the definition.
@@ -95,6 +95,23 @@ impl<'s> Names<'s> {
         let from = SourceId::File;
         self.defined
             .insert(name.text, Defined { value, place, from });
+    }
+
+    /// Takes away what an index hides: a definition of its name that stands further down, and is
+    /// known already where values are set.
+    pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
+        let place = self.place(index.text)?;
+        let is_below = place.source == index.span.source && place.start > index.span.start;
+        if is_below {
+            self.defined.remove_entry(index.text)
+        } else {
+            None
+        }
+    }
+
+    /// Has what was hidden known again.
+    pub fn restore(&mut self, hidden: Vec<(&'s str, Defined)>) {
+        self.defined.extend(hidden);
     }
 
     /// Forgets an index behind its block.

@@ -216,12 +216,16 @@ impl Lowering<'_> {
     /// Warns of boards whose squares samples cannot tell apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);
+        // Of those of one block the first one is told.
+        let mut told = None;
         for (board, place) in boards {
             let is_lost =
                 |square| are_squares_lost(camera, image, &Checkerboard { square, ..board });
-            if board.colors[0] == board.colors[1] || !is_lost(board.square) {
+            let is_new = board.colors[0] != board.colors[1] && told != Some(place);
+            if !is_new || !is_lost(board.square) {
                 continue;
             }
+            told = Some(place);
             // As many squares as people can see: of a metre, or of the eye's height over the board.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));

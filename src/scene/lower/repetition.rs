@@ -25,6 +25,10 @@ impl<'s> Lowering<'s> {
         block: &Block<'s>,
         repetition: &Repetition<'s>,
     ) {
+        let hidden = repetition.indices.iter();
+        let hidden: Vec<_> = hidden
+            .filter_map(|index| self.names.hide_below(index.name))
+            .collect();
         let indices = repetition.indices.iter().take(NESTING_LIMIT);
         let are_right = indices.fold(true, |so_far, index| {
             self.unused_index(index.name, block);
@@ -38,6 +42,7 @@ impl<'s> Lowering<'s> {
         for index in &repetition.indices {
             self.names.forget_index(index.name);
         }
+        self.names.restore(hidden);
     }
 
     /// The combinations of the indices' values, in order: each of those of the indices before one
@@ -86,6 +91,14 @@ impl<'s> Lowering<'s> {
             changes(field.value.span, field_row.takes).then_some((place, field_row, &field.value))
         });
         let changing: Vec<_> = fields.collect();
+        if combinations.is_empty() {
+            // What is wrong in it is told, whatever its indices would be.
+            for index in &repetition.indices {
+                self.names.set_index(index.name, None);
+            }
+            self.is_odd = Some(false);
+            self.lowered(row, block);
+        }
         let mut lowered = None;
         let mut has_warned = false;
         for values in combinations {

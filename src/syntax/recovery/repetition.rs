@@ -41,7 +41,10 @@ impl<'s> Recovery<'_, 's> {
                 None => break,
             }
         }
-        while !matches!(self.word(0), "{" | "}" | "let") && self.kind(0) != TokenKind::End {
+        while !matches!(self.word(0), "{" | "}" | "let")
+            && self.kind(0) != TokenKind::End
+            && !(self.is_on_new_line(0) && self.is_head(0))
+        {
             self.bump();
         }
         let span = keyword.to(self.behind());

@@ -216,7 +216,7 @@ class Files {
       else this.ask(answer.text);
     } catch (error) {
       // A host that was started anew does not know what it has made: Save asks for another name.
-      scene.isNew ||= scene !== hosts && error instanceof Refusal;
+      scene.isNew ||= scene !== hosts && error instanceof Refusal && error.code !== 0;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
   }

@@ -101,6 +101,7 @@ fn a_mistake_of_many_objects_is_reported_once() {
         sphere for i < 9, j < 9 { center (1 / (i - j), 1, 0) } -> not_finite: /, for i < 9, j < 9 here i = 0, j = 0
         sphere for i < 9 { center (i, 1, 0) radius 0 } -> out_of_range: 0
         sphere for i < 9 { center (i, 1, 0) radus 3 } -> unknown_field: radus
+        sphere for i < 0 { center (i, 1, 0) radus 3 } -> unknown_field: radus
         sphere for i < 9 { center (i, 1, x) radius x } -> unknown_name: x, x and here
         triangle for i < 9 { v0 (0, 0, 0) v1 (1, 1, i) v2 (2, 2, 8) } -> on_one_line: (2, 2, 8), (1, 1, i) the second, (0, 0, 0) the first, for i < 9 here i = 4
         sphere for i < 9 { center (i, 1, 0) radius max(1e-999, i + 1) } -> number_underflow: 1e-999, for i < 9 here i = 0
@@ -135,6 +136,37 @@ fn a_mistake_of_many_objects_is_reported_once() {
             })
             .collect();
         assert_eq!(found.join("; "), expected, "{text}");
+    }
+}
+
+/// A head that is not written so leaves the next block alone; a board that is repeated is one
+/// warning; a `let` further down is another name, also where something is set.
+#[test]
+fn what_stands_around_a_repetition_stays() {
+    for (text, set, expected) in [
+        (
+            "sphere for i in 5\nbox { min (0, 0, 0) max (1, 1, 1) }",
+            None,
+            "bad_repetition",
+        ),
+        (
+            "checkerboard for i < 9 { y -i square 1e-200 }",
+            None,
+            "squares_too_small",
+        ),
+        (
+            "sphere for i < 3 { center (i, 0, 0) }\nlet i = 5\nsphere B { center (i, 1, 0) }",
+            Some("B.color=red"),
+            "",
+        ),
+    ] {
+        let mut sources = sources(&(CAMERA.to_owned() + text));
+        set.into_iter().for_each(|set| sources.push_set(set));
+        let found = scene::read(&sources).diagnostics;
+        let codes = found
+            .iter()
+            .map(|it| it.code.trim_start_matches("pinhole::"));
+        assert_eq!(Vec::from_iter(codes).join(" "), expected, "{text}");
     }
 }
 
