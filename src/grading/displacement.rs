@@ -160,6 +160,16 @@ impl Prediction<'_> {
     }
 }
 
+impl Judge<'_> {
+    /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
+    /// edges show lies where it should.
+    pub fn explains(&self, candidate: &Candidate) -> bool {
+        self.explains_all(candidate)
+            && displaced(self, candidate).is_none()
+            && self.is_even(candidate)
+    }
+}
+
 /// How far the picture, or an object, lies from where a candidate shows it; none if that may be
 /// chance, or due to where few samples lie.
 pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<Displacement> {

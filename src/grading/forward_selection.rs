@@ -9,7 +9,7 @@ use super::{
     candidate::{Candidate, Mistake, Shows},
     displacement::displaced,
     joint,
-    judge::{Judge, Judged},
+    judge::{CELL_STEP, Judge, Judged},
     levenberg_marquardt::absolute,
     light::{Curve, Look},
     mistakes::{OBJECT_ROWS, ROWS},
@@ -34,9 +34,6 @@ const TURNS: [&str; 4] = ["mirrored", "upside_down", "turned_180", "up_negated"]
 
 /// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier ones from this.
 const ROUNDS: usize = 4;
-
-/// By how much of a cell numbers are varied on the middle grid.
-pub const CELL_STEP: f64 = 0.25;
 
 /// So many objects are looked at, those in and beside which most is wrong.
 const SUSPECTS: usize = 12;

@@ -5,7 +5,6 @@ use std::sync::{Arc, atomic::AtomicBool};
 use super::{
     Reference,
     candidate::Candidate,
-    displacement::displaced,
     grid::Grid,
     level::Level,
     levenberg_marquardt::{Fitted, fit},
@@ -24,6 +23,9 @@ use crate::{
 const TINY: u32 = 32;
 const COARSE: u32 = 48;
 const MIDDLE: u32 = 96;
+
+/// By how much of a cell numbers are varied on the middle grid.
+pub const CELL_STEP: f64 = 0.25;
 
 /// The samples in a cell of the tiny grid, on which starts are looked for.
 const SAMPLES: usize = 5;
@@ -135,14 +137,6 @@ impl<'a> Judge<'a> {
             score,
             cost,
         })
-    }
-
-    /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
-    /// edges show lies where it should.
-    pub fn explains(&self, candidate: &Candidate) -> bool {
-        self.explains_all(candidate)
-            && displaced(self, candidate).is_none()
-            && self.is_even(candidate)
     }
 
     /// Whether what a candidate does not explain is noise wherever it is seen.

@@ -7,8 +7,7 @@
 
 use super::{
     candidate::{Candidate, Mistake},
-    forward_selection::CELL_STEP,
-    judge::{Judge, price},
+    judge::{CELL_STEP, Judge, price},
     parameters::Parameter,
 };
 use crate::{numbers::rounded, scene::Scene};

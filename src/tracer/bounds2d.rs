@@ -31,7 +31,8 @@ const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 const LEAST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or a face of a box, with its bounds if it may be seen at all through the window.
+    /// Prepares an object, or a face of a box, with its bounds if it may be seen at all through the
+    /// window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,

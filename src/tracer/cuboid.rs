@@ -16,7 +16,8 @@ use crate::{
     scene,
 };
 
-/// Prepares a box, or one of its faces as a flat object. The number of a face's plane is twice its axis, and one more for the greater coordinate.
+/// Prepares a box, or one of its faces as a flat object. The number of a face's plane is twice its
+/// axis, and one more for the greater coordinate.
 pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<u8>) -> Convex<T> {
     let (mut fronts, mut backs, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for plane in 0..6_u8 {
@@ -52,7 +53,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     let Some(only) = only else {
         return Convex::new(edges, fronts, backs);
     };
-    // A ray enters through the farthest of the planes before it, and leaves through the nearest of the others.
+    // A ray enters through the farthest of the planes before it, and leaves through the nearest of
+    // the others.
     let of_sides = [(fronts, false), (backs, true)].into_iter();
     for (mut faces, is_nearest) in of_sides {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {

@@ -213,8 +213,10 @@ const OTHERS: &[Mistake] = &[
     }),
 ];
 
-/// The scenes: the picture of the assignment, turned a little; another one with the same names, seen from closer by, with a far plane, and more objects; and
-/// what some mistakes need to show: a near plane that cuts objects off, a low window, a box whose faces have colours of their own, and the floor as the first object.
+/// The scenes: the picture of the assignment, turned a little; another one with the same names,
+/// seen from closer by, with a far plane, and more objects; and what some mistakes need to show: a
+/// near plane that cuts objects off, a low window, a box whose faces have colours of their own, and
+/// the floor as the first object.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),

@@ -161,7 +161,8 @@ pub struct Program {
     pub gain: f64,
     /// Whether near and far are distances.
     pub clips_distances: bool,
-    /// Whether one test of a triangle is missing: of an edge's side, or that the point is on this side of the third edge.
+    /// Whether one test of a triangle is missing: of an edge's side, or that the point is on this
+    /// side of the third edge.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
     /// Whether boxes have no sides across z.
