@@ -98,9 +98,10 @@ function answer(draft: Draft, isRestored: boolean): void {
   editor.view.focus();
 }
 
-/** Something else comes in the place of what is written, which is offered in its turn. */
+/** Something else comes in the place of what is written, which is offered in its turn, or
+ *  forgotten under its own key if it has just been undone. */
 function leave(): void {
-  if (!files.isUnsaved) return;
+  if (!files.isUnsaved) return void keepDraft();
   unanswered.unshift(newDraft());
   if (!isServed) void stored(newDraft());
   id = freshId();

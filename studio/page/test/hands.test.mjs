@@ -176,16 +176,23 @@ test("a finger drags, and two fingers zoom without a change of the text", async 
   const page = await open(browser, await host(t), { viewport: { width: 380, height: 700 }, hasTouch: true, isMobile: true });
   const session = await page.context().newCDPSession(page);
   const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-  const before = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+  const place = () => page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().toJSON());
+  const start = await place();
+  const before = start.width;
   const [x, y] = await onPage(page, BALL);
+  // What is touched is selected, which moves nothing.
+  await page.touchscreen.tap(x, y);
+  await page.waitForSelector(".handle");
+  assert.deepEqual(await place(), start);
   await touch("touchStart", [x, y]);
   await touch("touchStart", [x, y], [x + 40, y]);
   for (let i = 1; i <= 5; i++) await touch("touchMove", [x, y], [x + 40 + 8 * i, y]);
   await touch("touchEnd");
-  const after = await page.evaluate(() => document.querySelector("canvas").getBoundingClientRect().width);
+  const after = (await place()).width;
   assert.ok(after > 1.7 * before, `${before} to ${after}`);
   assert.equal(await text(page), FIGURE);
   await page.click("#zoom-fit");
+  assert.deepEqual(await place(), start);
   await touch("touchStart", [x, y]);
   await page.waitForTimeout(300);
   for (let i = 1; i <= 5; i++) await touch("touchMove", [x + 8 * i, y]);
