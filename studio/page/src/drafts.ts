@@ -18,7 +18,7 @@ const MOST = 10;
 const OFFERED = 3;
 interface Kept extends Draft { id: string }
 
-const store = () => createStore("pinhole-drafts", "drafts");
+const store = isServed ? undefined : createStore("pinhole-drafts", "drafts");
 
 let timer = 0;
 /** Whether something is kept that this page has written. */
@@ -108,11 +108,11 @@ function leave(): void {
   show();
 }
 
-const all = async () => (await values<Kept>(store())).sort((a, b) => b.time - a.time);
+const all = async () => (await values<Kept>(store)).sort((a, b) => b.time - a.time);
 
 /** Keeps a draft in this browser and forgets the oldest ones, or forgets one by its key. */
 async function stored(draft: Kept | string): Promise<void> {
-  if (typeof draft === "string") return del(draft, store());
-  await set(draft.id, draft, store());
-  await delMany((await all()).slice(MOST).map(({ id }) => id), store());
+  if (typeof draft === "string") return del(draft, store);
+  await set(draft.id, draft, store);
+  await delMany((await all()).slice(MOST).map(({ id }) => id), store);
 }

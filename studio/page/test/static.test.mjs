@@ -103,8 +103,9 @@ test("the static page keeps what is written in the browser, and offers it after 
     await andFinished(page, () => page.keyboard.press("Control+z"));
   }
   assert.ok(await page.isHidden("#draft-bar"));
-  await page.reload();
   await page.waitForTimeout(900);
+  await page.reload();
+  await finished(page);
   await page.waitForTimeout(900);
   assert.ok(await page.isHidden("#draft-bar"));
 });
