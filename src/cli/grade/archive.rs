@@ -3,10 +3,10 @@
 
 use std::{
     fs::File,
-    io::{BufReader, Read},
+    io::{self, BufReader, Read, Seek, SeekFrom},
     path::Path,
     sync::{
-        Mutex, PoisonError,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
 };
@@ -20,6 +20,10 @@ pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries.
 const MOST_ENTRIES: usize = 10_000;
+
+/// Maximum number of bytes that are read to list the entries, each of which has 46 and its name: so
+/// many that a list of the maximum length is read whose names have a thousand letters.
+const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum number of bytes that all zip files of a class are unpacked to.
 const WHOLE_LIMIT: u64 = 4 << 30;
@@ -48,16 +52,45 @@ impl Budget {
     }
 }
 
+/// A file of which only so many bytes are read: the list of a zip file's entries is read whole.
+#[derive(Debug)]
+struct Bounded {
+    file: BufReader<File>,
+    left: Arc<AtomicU64>,
+}
+
+impl Read for Bounded {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let left = self.left.load(Ordering::Relaxed);
+        if left == 0 {
+            return Err(io::Error::other("it is too long"));
+        }
+        let most = usize::try_from(left)
+            .unwrap_or(usize::MAX)
+            .min(buffer.len());
+        let read = self.file.read(&mut buffer[..most])?;
+        self.left.store(left - read as u64, Ordering::Relaxed);
+        Ok(read)
+    }
+}
+
+impl Seek for Bounded {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
 /// An open zip file.
 #[derive(Debug)]
-pub struct Archive(Mutex<ZipArchive<BufReader<File>>>);
+pub struct Archive(Mutex<ZipArchive<Bounded>>);
 
-/// An entry of a zip file, which is no folder.
+/// An entry of a zip file.
 #[derive(Debug)]
 pub struct Entry {
     pub index: usize,
     /// Its name, with `/` between folders.
     pub name: String,
+    pub is_folder: bool,
     /// Seconds since 1970, even ones.
     pub time: Option<i64>,
     /// Its length, as the header says.
@@ -74,7 +107,17 @@ impl Archive {
     /// Why it cannot be read.
     pub fn open(path: &Path) -> Result<(Self, Vec<Entry>), String> {
         let file = files::open_argument(path).map_err(|error| error.to_string())?;
-        let mut zip = ZipArchive::new(BufReader::new(file)).map_err(|error| in_words(&error))?;
+        let left = Arc::new(AtomicU64::new(LIST_LIMIT));
+        let file = Bounded {
+            file: BufReader::new(file),
+            left: left.clone(),
+        };
+        let mut zip = ZipArchive::new(file).map_err(|error| match left.load(Ordering::Relaxed) {
+            0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
+            _ => in_words(&error),
+        })?;
+        // From here on what is unpacked is counted.
+        left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
             return Err(format!(
@@ -84,17 +127,16 @@ impl Archive {
         let mut entries = Vec::new();
         for index in 0..zip.len() {
             let entry = zip.by_index_raw(index).map_err(|error| in_words(&error))?;
-            if entry.is_dir() {
-                continue;
-            }
             let refused = match () {
                 () if entry.encrypted() => Some("encrypted"),
                 () if entry.is_symlink() => Some("a link"),
                 () => None,
             };
+            let name = name(entry.name_raw(), entry.name().ok().as_deref());
             entries.push(Entry {
                 index,
-                name: name(entry.name_raw(), entry.name().ok().as_deref()),
+                is_folder: name.ends_with('/'),
+                name,
                 time: entry.last_modified().map(seconds),
                 length: entry.size(),
                 refused,

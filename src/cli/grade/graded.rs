@@ -17,6 +17,8 @@ pub struct Graded {
     pub place: String,
     /// What was compared, the best one first.
     pub compared: Vec<Compared>,
+    /// What `--picture` chooses.
+    pub chosen: Option<String>,
     /// The other files, and why they are not.
     pub not_compared: Vec<String>,
     /// Other students whose picture is the same in every pixel.
@@ -157,7 +159,10 @@ impl Graded {
     pub fn best(&self) -> Result<&Judged, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
-            None => Err("there is no picture in what was handed in".to_owned()),
+            None => Err(match &self.chosen {
+                Some(glob) => format!("there is no picture called `{glob}` in what was handed in"),
+                None => "there is no picture in what was handed in".to_owned(),
+            }),
         }
     }
 

@@ -78,7 +78,7 @@ impl HandedIn {
     }
 
     /// Whether it may be a picture, or is chosen as one.
-    fn is_picture(&self, chosen: Option<&Glob>) -> bool {
+    pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, Content::Refused(_));
         self.is_named
             || is_read

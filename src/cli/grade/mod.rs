@@ -1,8 +1,8 @@
 //! `grade`: a class's work against one scene.
 //!
-//! 1. What is named becomes a `class` of students with files (`handed_in`), from folders and zip
-//!    files (`archive`); `names` are those of the systems that classes hand in by, and `glob`
-//!    chooses pictures.
+//! 1. What is named becomes a `class` of students with files (`handed_in`), from the `tree` of a
+//!    folder or of a zip file (`archive`); `names` are those of the systems that classes hand in
+//!    by, and `glob` chooses pictures.
 //! 2. Each student's pictures are compared and judged: that is `graded`, of which `points` make a
 //!    score by `criteria`.
 //! 3. Writers say it: `table` for people and as CSV, `page` with `thumbnails`, `junit`,
@@ -22,6 +22,7 @@ mod page;
 mod points;
 mod table;
 mod thumbnails;
+mod tree;
 
 use std::{
     collections::BTreeMap,
@@ -121,7 +122,8 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     let mut read = args.pictures.clone();
     read.push(args.scene.clone());
     check_standard(&read)?;
-    let class = Class::read(&args.pictures, &own)?;
+    let chosen = args.picture.as_deref().map(Glob::new);
+    let class = Class::read(&args.pictures, &own, chosen.as_ref())?;
     if class.students.is_empty() {
         return Err(class::nobody(&args.pictures));
     }
@@ -316,6 +318,7 @@ fn graded(
                 number: student.number.clone(),
                 place: student.place.clone(),
                 compared,
+                chosen: args.picture.clone(),
                 not_compared: choice.others,
                 equal_to: Vec::new(),
                 score: None,

@@ -3,6 +3,9 @@
 
 use std::collections::BTreeMap;
 
+/// How the folder is called, after the assignment, that GitHub Classroom makes for all clones.
+pub const CLONES: &str = "-submissions";
+
 /// What Moodle calls a file or a folder: `Name_12345_assignsubmission_file_` and, where it is a
 /// file, its own name.
 #[derive(Debug)]
@@ -129,16 +132,45 @@ impl Submitter {
 
 /// A value without its quotation marks.
 fn scalar(text: &str) -> String {
-    if let Some(inner) = text
-        .strip_prefix('\'')
-        .and_then(|text| text.strip_suffix('\''))
-    {
+    let inner = |mark: char| text.strip_prefix(mark)?.strip_suffix(mark);
+    if let Some(inner) = inner('\'') {
         return inner.replace("''", "'");
     }
-    match serde_json::from_str(text) {
-        Ok(serde_json::Value::String(inner)) => inner,
-        _ => text.to_owned(),
+    match inner('"') {
+        Some(inner) => unescaped(inner).unwrap_or_else(|| text.to_owned()),
+        None => text.to_owned(),
     }
+}
+
+/// A text between double quotation marks, by the escapes of YAML 1.2.2 (5.7): Ruby writes what is
+/// not printable so, which to its library are all characters above U+FFFF.
+fn unescaped(text: &str) -> Option<String> {
+    let mut chars = text.chars();
+    let mut plain = String::new();
+    while let Some(c) = chars.next() {
+        if c != '\\' {
+            plain.push(c);
+            continue;
+        }
+        let digits = match chars.next()? {
+            'x' => 2,
+            'u' => 4,
+            'U' => 8,
+            // A control character is no part of a name.
+            '0' | 'a' | 'b' | 't' | '\t' | 'n' | 'v' | 'f' | 'r' | 'e' | 'N' | '_' | 'L' | 'P' => {
+                plain.push(' ');
+                continue;
+            }
+            c @ (' ' | '"' | '/' | '\\') => {
+                plain.push(c);
+                continue;
+            }
+            _ => return None,
+        };
+        let digits: String = chars.by_ref().take(digits).collect();
+        plain.push(char::from_u32(u32::from_str_radix(&digits, 16).ok()?)?);
+    }
+    Some(plain)
 }
 
 #[cfg(test)]
@@ -197,7 +229,7 @@ submission_1:
       - :name: nobody
 submission_2:
   :submitters:
-  - :name: \"Z\\u00fclal \\\"Z\\\" A\"
+  - :name: \"Z\\u00fclal \\\"Z\\\" \\U0001F600 \\xC9\"
   - :email: bob@example.org
     :name: 'Bob O''B'
 submission_3:
@@ -210,7 +242,7 @@ submission_4:
         let found: Vec<_> = found.all().collect();
         let expected = [
             ("submission_1", "First Last"),
-            ("submission_2", "Zülal \"Z\" A, Bob O'B"),
+            ("submission_2", "Zülal \"Z\" 😀 É, Bob O'B"),
             ("submission_3", "333"),
             ("submission_4", "submission_4"),
         ];

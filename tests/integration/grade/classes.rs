@@ -1,14 +1,12 @@
-//! Classes as they are handed in: folders and zip files of Gradescope, GitHub Classroom and Moodle,
-//! with what else there is in them.
+//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with what else
+//! there is in them.
 
 use std::{
     fs::File,
-    io::{Cursor, Write},
     time::{Duration, SystemTime},
 };
 
 use serde_json::{Value, json};
-use zip::{ZipWriter, write::SimpleFileOptions};
 
 use crate::{program::Folder, table::rows};
 
@@ -54,7 +52,7 @@ fn age(folder: &Folder, path: &str, hours: u64) {
 }
 
 /// The lines of a class, by student.
-fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
+pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
     let said = folder.run(&format!("grade a.scn {arguments} --format json"));
     assert_eq!(
         (said.status, said.errors.as_str()),
@@ -69,7 +67,7 @@ fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
 
 /// What is compared of each: the student, the file, the verdict, and what is not.
 #[track_caller]
-fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
+pub fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
     let said = |line: &Value| {
         let verdict = match line.get("error") {
             Some(_) => json!("error"),
@@ -86,7 +84,7 @@ fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
     assert_eq!(found, expected);
 }
 
-const METADATA: &str = "---
+pub const METADATA: &str = "---
 submission_1:
   :submitters:
   - :name: Anna Li
@@ -103,6 +101,8 @@ submission_4:
   :submitters:
   - :email: eve@example.org
 ";
+
+const LOGO: &str = "starter/logo.png (equal in every folder: --picture chooses it)";
 
 #[test]
 fn an_export_of_gradescope_is_a_class() {
@@ -127,21 +127,23 @@ fn an_export_of_gradescope_is_a_class() {
             "Anna Li",
             "export/submission_1/render.png",
             "right",
-            &["main.py"],
+            &["main.py", LOGO],
         ),
         (
             "Ben <b>, Cy",
             "export/submission_2/Render.PNG",
             "wrong",
-            &["photo.heic"],
+            &["photo.heic", LOGO],
         ),
         // The template is in every folder, and is nobody's.
-        ("Dora", "export/submission_3", "error", &[]),
+        ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];
     assert_lines(&graded(&folder, "export", 1), &expected);
     assert_lines(&graded(&folder, "export/", 1), &expected);
 }
+
+const GIVEN: &str = "given.png (equal in every folder: --picture chooses it)";
 
 #[test]
 fn clones_of_github_classroom_are_a_class() {
@@ -171,9 +173,19 @@ fn clones_of_github_classroom_are_a_class() {
     assert_lines(
         &found,
         &[
-            ("anna", "hw1-submissions/hw1-anna/render.png", "right", &[]),
-            ("ben", "hw1-submissions/hw1-ben/tries/2.png", "right", &[]),
-            ("cy", "hw1-submissions/hw1-cy/render.png", "wrong", &[]),
+            (
+                "anna",
+                "hw1-submissions/hw1-anna/render.png",
+                "right",
+                &[GIVEN],
+            ),
+            (
+                "ben",
+                "hw1-submissions/hw1-ben/tries/2.png",
+                "right",
+                &[GIVEN],
+            ),
+            ("cy", "hw1-submissions/hw1-cy/render.png", "wrong", &[GIVEN]),
         ],
     );
     let pictures = |line: &Value| line["pictures"].as_array().unwrap().len();
@@ -189,19 +201,19 @@ fn clones_of_github_classroom_are_a_class() {
                 "anna",
                 "hw1-submissions/hw1-anna/render.png",
                 "right",
-                &["tries/1.png"],
+                &[GIVEN, "tries/1.png"],
             ),
             (
                 "ben",
                 "hw1-submissions/hw1-ben/render.png",
                 "wrong",
-                &["tries/1.png", "tries/2.png"],
+                &[GIVEN, "tries/1.png", "tries/2.png"],
             ),
             (
                 "cy",
                 "hw1-submissions/hw1-cy/render.png",
                 "wrong",
-                &["tries/1.png"],
+                &[GIVEN, "tries/1.png"],
             ),
         ],
     );
@@ -325,168 +337,89 @@ fn a_picture_that_all_have_and_nothing_else_is_theirs() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-}
-
-/// A zip file with these entries.
-fn zip(entries: &[(&str, &[u8])]) -> Vec<u8> {
-    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, content) in entries {
-        let options = SimpleFileOptions::default().large_file(false);
-        match name.strip_prefix("link:") {
-            Some(name) => zip
-                .add_symlink(name, str::from_utf8(content).unwrap(), options)
-                .unwrap(),
-            None => {
-                zip.start_file(*name, options).unwrap();
-                zip.write_all(content).unwrap();
-            }
-        }
-    }
-    zip.finish().unwrap().into_inner()
-}
-
-/// Changes all places of some bytes.
-fn patch(bytes: &mut [u8], from: &[u8], to: &[u8]) {
-    let places: Vec<_> = (0..bytes.len() - from.len())
-        .filter(|&at| bytes[at..].starts_with(from))
-        .collect();
-    assert_eq!(places.len(), 2, "a head in front and one in the list");
-    for at in places {
-        bytes[at..at + to.len()].copy_from_slice(to);
-    }
-}
-
-#[test]
-fn a_zip_file_is_a_class_and_nothing_in_it_leads_out() {
-    let folder = folder();
-    let [right, red] = ["right.png", "red.png"].map(|name| folder.read(name));
-    let inner = zip(&[("render.png", &right)]);
-    let mut file = zip(&[
-        ("../up.png", &right),
-        ("/etc/absolute.png", &red),
-        ("anna/render.png", &right),
-        ("anna/../../deep.pdf", b"%PDF"),
-        ("ben/inner.zip", &inner),
-        ("link:cy/render.png", b"/etc/passwd"),
-        ("dora/Xecret.png", &red),
-        ("fXnn/render.png", &red),
-        ("gus\\render.png", &red),
-        ("__MACOSX/._x.png", b"junk"),
-    ]);
-    // Code page 437, in which 0x81 is ü, and 0x82 é.
-    patch(&mut file, b"fXnn/", b"f\x81nn/");
-    // Encrypted: a bit before each name says so.
-    for (head, flags) in [(30, 6), (46, 8)] {
-        let name = b"dora/Xecret.png";
-        let names: Vec<_> = (head..file.len() - name.len())
-            .filter(|&at| file[at..].starts_with(name))
-            .collect();
-        let starts = names.iter().map(|at| at - head);
-        let at = starts.into_iter().find(|&at| {
-            file[at..].starts_with(if head == 30 {
-                b"PK\x03\x04"
-            } else {
-                b"PK\x01\x02"
-            })
-        });
-        file[at.unwrap() + flags] |= 1;
-    }
-    folder.write("class.zip", &file);
-    let before = folder.names();
-    let found = graded(&folder, "class.zip", 1);
+    // Another picture makes it look like one, until it is named.
+    put(&folder, &[("class/ben/test.png", "size.png")]);
+    let given = ["render.png (equal in every folder: --picture chooses it)"];
+    let others: &[(&str, &str, &str, &[&str])] = &[
+        ("anna", "class/anna", "error", &given),
+        ("ben", "class/ben/test.png", "wrong", &given),
+    ];
+    assert_lines(&graded(&folder, "class", 1), others);
     assert_lines(
-        &found,
+        &graded(&folder, "class --picture render.*", 1),
         &[
-            ("anna", "class.zip/anna/render.png", "right", &["deep.pdf"]),
-            (
-                "ben",
-                "class.zip/ben",
-                "error",
-                &["inner.zip (an archive in a zip file)"],
-            ),
-            ("cy", "class.zip/cy", "error", &["render.png (a link)"]),
-            (
-                "dora",
-                "class.zip/dora",
-                "error",
-                &["Xecret.png (encrypted)"],
-            ),
-            ("etc", "class.zip/etc/absolute.png", "wrong", &[]),
-            ("fünn", "class.zip/fünn/render.png", "wrong", &[]),
-            ("gus", "class.zip/gus/render.png", "wrong", &[]),
-            ("up.png", "class.zip/up.png", "right", &[]),
+            ("anna", "class/anna/render.png", "wrong", &[]),
+            ("ben", "class/ben/render.png", "wrong", &["test.png"]),
         ],
     );
-    assert_eq!(folder.names(), before);
+    let none = folder.told("grade a.scn class --picture picture.*", 2);
+    let words = "there is no picture called `picture.*` in what was handed in";
+    assert_eq!(none.matches(words).count(), 2, "{none}");
 }
 
+/// Whoever names the folder around a class means the class, and not one student.
 #[test]
-fn a_zip_file_of_a_student_is_his_folder_and_one_around_a_class_is_left() {
+fn the_folder_around_what_a_system_made_is_that() {
     let folder = folder();
-    let [right, red] = ["right.png", "red.png"].map(|name| folder.read(name));
-    folder.write("class/anna.zip", zip(&[("out/render.png", &right)]));
-    folder.write("class/ben/all.zip", zip(&[("render.png", &red)]));
-    folder.write("class/cy.zip", b"PK\x03\x04 cut off");
-    assert_lines(
-        &graded(&folder, "class", 1),
-        &[
-            ("anna", "class/anna.zip/out/render.png", "right", &[]),
-            ("ben", "class/ben/all.zip/render.png", "wrong", &[]),
-            (
-                "cy.zip",
-                "class/cy.zip",
-                "error",
-                &["cy.zip (it is no zip file, or damaged or cut off)"],
-            ),
-        ],
-    );
-    let export = zip(&[
+    let files = [
+        ("g/export/submission_metadata.yml", METADATA),
+        ("g/export/submission_1/a.png", "right.png"),
+        ("g/export/submission_2/b.png", "red.png"),
+        ("m/a/Li_1_assignsubmission_file/x.png", "right.png"),
+        ("m/a/Li_2_assignsubmission_file/x.png", "red.png"),
+        ("m/b/Li_3_assignsubmission_file_x.png", "red.png"),
+        ("h/hw-submissions/hw-anna/x.png", "right.png"),
+        ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
+        ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
+        // These are two students, each of whom has a repository or a file of another one.
+        ("s/anna/tracer/x.png", "right.png"),
+        ("s/anna/tracer/.git/HEAD", "ref"),
+        ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),
+        ("s/ben/x.txt", "mine"),
+    ];
+    put(&folder, &files);
+    let expected: [(&str, &[[&str; 2]]); 4] = [
         (
-            "assignment_1_export/submission_metadata.yml",
-            METADATA.as_bytes(),
+            "g",
+            &[
+                ["Anna Li", "g/export/submission_1/a.png"],
+                ["Ben <b>, Cy", "g/export/submission_2/b.png"],
+                ["Dora", "g/export/submission_3"],
+                ["eve@example.org", "g/export/submission_4"],
+            ],
         ),
-        ("assignment_1_export/submission_1/a.png", &right),
-        ("assignment_1_export/submission_2/b.png", &red),
-    ]);
-    folder.write("export.zip", export);
-    let found = graded(&folder, "export.zip", 1);
-    let names: Vec<_> = found.iter().map(|line| &line["student"]).collect();
-    assert_eq!(names, ["Anna Li", "Ben <b>, Cy", "Dora", "eve@example.org"]);
-    assert_eq!(found[1]["verdict"], "wrong");
-}
-
-#[test]
-fn a_zip_file_without_end_is_unpacked_to_its_bound() {
-    let folder = folder();
-    let right = folder.read("right.png");
-    let mut bomb = zip(&[
-        ("anna/a.png", &vec![0; (256 << 20) + 1]),
-        ("ben/b.png", &right),
-    ]);
-    // It says that it has ten bytes.
-    let length = ((256u32 << 20) + 1).to_le_bytes();
-    let places: Vec<_> = (0..bomb.len() - 4)
-        .filter(|&at| bomb[at..].starts_with(&length))
-        .collect();
-    assert!(!places.is_empty());
-    for at in places {
-        bomb[at..at + 4].copy_from_slice(&10u32.to_le_bytes());
+        (
+            "m",
+            &[
+                ["Li (1)", "m/a/Li_1_assignsubmission_file/x.png"],
+                ["Li (2)", "m/a/Li_2_assignsubmission_file/x.png"],
+                ["Li (3)", "m/b/Li_3_assignsubmission_file_x.png"],
+            ],
+        ),
+        (
+            "h",
+            &[
+                ["anna", "h/hw-submissions/hw-anna/x.png"],
+                ["ben", "h/hw-submissions/hw-ben"],
+            ],
+        ),
+        (
+            "s",
+            &[
+                ["anna", "s/anna/tracer/x.png"],
+                ["ben", "s/ben/Li_3_assignsubmission_file_x.png"],
+            ],
+        ),
+    ];
+    for (name, expected) in expected {
+        let found = graded(&folder, name, 1);
+        let found: Vec<_> = found
+            .iter()
+            .map(|line| [&line["student"], &line["file"]])
+            .collect();
+        assert_eq!(json!(found), json!(expected), "{name}");
     }
-    folder.write("bomb.zip", bomb);
-    let found = graded(&folder, "bomb.zip", 1);
-    let error = found[0]["error"].as_str().unwrap();
-    assert!(
-        error.contains("unpacks to more than 256 MiB") || error.contains("damaged"),
-        "{error}"
-    );
-    assert_eq!(found[1]["verdict"], "right");
-
-    let names: Vec<String> = (0..10_001).map(|index| format!("{index}/a.txt")).collect();
-    let many: Vec<(&str, &[u8])> = names.iter().map(|name| (&**name, &b""[..])).collect();
-    folder.write("many.zip", zip(&many));
-    let told = folder.told("grade a.scn many.zip", 2);
-    assert!(
-        told.contains("it has 10001 entries, and at most 10000 are read"),
-        "{told}"
-    );
+    let found = graded(&folder, "h/hw-submissions/hw-anna s", 1);
+    let names: Vec<_> = found.iter().map(|line| &line["student"]).collect();
+    assert_eq!(names, ["x.png", "anna", "ben"]);
 }

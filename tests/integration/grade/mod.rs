@@ -1,5 +1,6 @@
 //! Grading: pictures of a tracer of its own judged by the library, and the command `grade`.
 
+mod archives;
 mod case;
 mod classes;
 mod command;

@@ -1,0 +1,287 @@
+//! What lies in a folder or zip file, with the names of the folders around it. Links are not
+//! followed, and what systems leave behind is passed over.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs, io, mem,
+    path::Path,
+    sync::Arc,
+    time::UNIX_EPOCH,
+};
+
+use super::{
+    archive::Archive,
+    handed_in::{Content, HandedIn},
+    names,
+};
+use crate::cli::input::is_same_file;
+
+/// What Gradescope writes beside the folders of an export.
+pub const METADATA: &str = "submission_metadata.yml";
+
+/// Maximum number of files in a folder that is named.
+const MOST_FILES: usize = 200_000;
+
+/// Maximum depth of folders.
+const DEEPEST: usize = 40;
+
+/// Maximum depth of folders that are kept by their names: classes' and students'.
+const NAMED: usize = 2;
+
+/// A file with the names of the folders that it lies in, and its own.
+pub type Found = (Vec<String>, HandedIn);
+
+/// The files below a folder, or in a zip file.
+#[derive(Debug, Default)]
+pub struct Tree {
+    /// What is named, without a `/` at its end.
+    pub place: String,
+    pub found: Vec<Found>,
+    /// Folders by their names, whether there is a file in them or not.
+    pub folders: BTreeSet<Vec<String>>,
+    /// Those of them that are repositories.
+    pub clones: BTreeSet<Vec<String>>,
+}
+
+impl Tree {
+    /// Goes through a folder, past the teacher's own files and folders.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be read, or holds too many files.
+    pub fn of_folder(path: &Path, own: &[&Path]) -> io::Result<Self> {
+        let mut tree = Self::at(path);
+        tree.walk(path, &[], own)?;
+        Ok(tree)
+    }
+
+    /// Lists a zip file.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be read.
+    pub fn of_zip(path: &Path) -> Result<Self, String> {
+        let mut tree = Self::at(path);
+        tree.unpack(path, &[])?;
+        Ok(match tree.only_folder() {
+            Some(root) => tree.taken(&root),
+            None => tree,
+        })
+    }
+
+    fn at(path: &Path) -> Self {
+        let place = path.display().to_string();
+        Self {
+            place: place.trim_end_matches('/').to_owned(),
+            ..Self::default()
+        }
+    }
+
+    /// Goes through a folder, whose names are those of the folders before it in what is named.
+    fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
+        let mut entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+        entries.sort_by_key(fs::DirEntry::file_name);
+        for entry in entries {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name == ".git" {
+                self.add_clone(before);
+            }
+            let path = entry.path();
+            let is_own = || own.iter().any(|own| is_same_file(own, &path));
+            if is_passed_over(&name) || before.len() < 2 && is_own() {
+                continue;
+            }
+            let names = [before, &[name]].concat();
+            let found = entry.metadata();
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
+                self.add_folder(&names);
+                let inner = match names.len() < DEEPEST {
+                    true => self.walk(&path, &names, own),
+                    false => Err(io::Error::other("folders are nested too deeply")),
+                };
+                // What is named must be readable; of what is in it one says what is not.
+                if let Err(error) = inner {
+                    self.push(names, Content::Refused(error.to_string()), None, 0)?;
+                }
+                continue;
+            }
+            let (length, time) = found.map_or((0, None), |found| {
+                let time = found.modified().ok();
+                let since = time.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+                (found.len(), since.map(|since| since.as_secs() as i64))
+            });
+            let content = match () {
+                () if kind.is_symlink() => Content::Refused("a link".to_owned()),
+                () if !kind.is_file() => Content::Refused("not a file".to_owned()),
+                () if is_zip(&path) => match self.unpack(&path, &names) {
+                    Ok(()) => continue,
+                    Err(error) => Content::Refused(error),
+                },
+                () => Content::File(path),
+            };
+            self.push(names, content, time, length)?;
+        }
+        Ok(())
+    }
+
+    fn push(
+        &mut self,
+        names: Vec<String>,
+        content: Content,
+        time: Option<i64>,
+        length: u64,
+    ) -> io::Result<()> {
+        if self.found.len() == MOST_FILES {
+            let message = format!("there are more than {MOST_FILES} files in it");
+            return Err(io::Error::other(message));
+        }
+        let file = HandedIn {
+            path: names.join("/"),
+            shown: format!("{}/{}", self.place, names.join("/")),
+            time,
+            length,
+            content,
+            is_named: false,
+        };
+        self.found.push((names, file));
+        Ok(())
+    }
+
+    /// Keeps the names of a folder and of those around it.
+    fn add_folder(&mut self, names: &[String]) {
+        for depth in 1..=names.len().min(NAMED) {
+            self.folders.insert(names[..depth].to_vec());
+        }
+    }
+
+    /// Keeps that there is a repository in a folder.
+    fn add_clone(&mut self, names: &[String]) {
+        if !names.is_empty() {
+            self.clones.insert(names[..names.len().min(NAMED)].to_vec());
+        }
+    }
+
+    /// Adds what is in a zip file.
+    fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
+        let (archive, entries) = Archive::open(path)?;
+        let archive = Arc::new(archive);
+        // It is somebody's, whatever is in it.
+        self.add_folder(before);
+        for entry in entries {
+            // No name leads out of the zip file: what is not a folder's own is only shown.
+            let parts = entry.name.split('/').map(str::to_owned);
+            let parts: Vec<_> = parts
+                .filter(|part| !matches!(&**part, "" | "." | ".."))
+                .collect();
+            let junk = parts.iter().position(|part| is_passed_over(part));
+            let names = [before, &parts[..]].concat();
+            if let Some(at) = junk.filter(|&at| parts[at] == ".git") {
+                self.add_clone(&names[..before.len() + at]);
+            }
+            // Where only junk lies there is a folder.
+            let folders = match (junk, entry.is_folder) {
+                (Some(at), _) => before.len() + at,
+                (None, true) => names.len(),
+                (None, false) => names.len().saturating_sub(1),
+            };
+            self.add_folder(&names[..folders]);
+            if parts.is_empty() || junk.is_some() || entry.is_folder {
+                continue;
+            }
+            let is_nested = is_named_as_archive(&entry.name);
+            let content = match entry.refused {
+                Some(why) => Content::Refused(why.to_owned()),
+                None if is_nested => Content::Refused("an archive in a zip file".to_owned()),
+                None => Content::Entry(archive.clone(), entry.index),
+            };
+            self.push(names, content, entry.time, entry.length)
+                .map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    /// The folder around all else in a zip file, if that is a class.
+    fn only_folder(&self) -> Option<String> {
+        let files = self.found.iter().map(|(names, _)| &names[..]);
+        let all: Vec<_> = files
+            .chain(self.folders.iter().map(Vec::as_slice))
+            .collect();
+        let [root, ..] = all.first()? else {
+            return None;
+        };
+        let inner: BTreeSet<_> = all.iter().filter_map(|names| names.get(1)).collect();
+        let is_alone = all.iter().all(|names| names[0] == *root);
+        let is_in_folders = self.found.iter().all(|(names, _)| names.len() > 2);
+        let is_somebodys = names::moodle(root).is_some();
+        (is_alone && inner.len() > 1 && is_in_folders && !is_somebodys).then(|| root.clone())
+    }
+
+    /// Takes out each folder that a system made for a whole class, with its name: one in which
+    /// Gradescope or Moodle wrote who it is of, or that is called as GitHub Classroom calls it.
+    pub fn take_classes(&mut self) -> Vec<(String, Self)> {
+        let files = self.found.iter().map(|(names, _)| names);
+        let mut inner = BTreeMap::<&str, Vec<&str>>::new();
+        for names in files.chain(&self.folders) {
+            match &names[..] {
+                // It is the class itself.
+                [name] if name == METADATA => return Vec::new(),
+                [root, name, ..] => inner.entry(root).or_default().push(name),
+                _ => {}
+            }
+        }
+        let is_moodle = |name: &&str| names::moodle(name).is_some();
+        let is_class = |(root, inner): &(&str, Vec<&str>)| {
+            let is_clone = |clone: &Vec<String>| clone.len() == 2 && clone[0] == **root;
+            inner.contains(&METADATA)
+                || inner.iter().all(is_moodle) && !is_moodle(root)
+                || root.ends_with(names::CLONES) && self.clones.iter().any(is_clone)
+        };
+        let classes = inner.into_iter().filter(is_class);
+        let roots: Vec<String> = classes.map(|(root, _)| root.to_owned()).collect();
+        let take = |root: String| {
+            let inner = self.taken(&root);
+            (root, inner)
+        };
+        roots.into_iter().map(take).collect()
+    }
+
+    /// Takes out what lies in a folder.
+    fn taken(&mut self, root: &str) -> Self {
+        let found = self.found.extract_if(.., |(names, _)| names[0] == root);
+        let found = found.map(|(names, file)| (names[1..].to_vec(), file));
+        let found = found.filter(|(names, _)| !names.is_empty()).collect();
+        let take = |folders: &mut BTreeSet<Vec<String>>| {
+            let (inner, others) = mem::take(folders)
+                .into_iter()
+                .partition::<BTreeSet<_>, _>(|names| names[0] == root);
+            *folders = others;
+            let cut = inner.into_iter().map(|names| names[1..].to_vec());
+            cut.filter(|names| !names.is_empty()).collect()
+        };
+        Self {
+            place: format!("{}/{root}", self.place),
+            found,
+            folders: take(&mut self.folders),
+            clones: take(&mut self.clones),
+        }
+    }
+}
+
+/// Whether a path names a zip file.
+pub fn is_zip(path: &Path) -> bool {
+    let ending = path.extension();
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
+}
+
+/// What systems leave behind, and nobody handed in.
+fn is_passed_over(name: &str) -> bool {
+    const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
+    name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))
+}
+
+fn is_named_as_archive(name: &str) -> bool {
+    let ending = name.rsplit('.').next().unwrap_or_default();
+    const ENDINGS: [&str; 8] = ["zip", "tar", "gz", "tgz", "rar", "7z", "xz", "bz2"];
+    ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own))
+}
