@@ -28,7 +28,7 @@ const SCENE_LIMIT: u64 = 256 << 20;
 const PICTURE_LIMIT: u64 = 8 << 20;
 
 /// So many bytes of a file say whether it is a picture, also after a program's other words.
-const START: u64 = 4096;
+const START: u64 = 1 << 16;
 
 /// What a scene is read from.
 pub struct Input {

@@ -112,6 +112,33 @@ impl Jpeg {
     }
 }
 
+/// Whether a JPEG goes on to the marker of its end: what decoders make of one that is cut off is
+/// gray below the cut, and looks like a picture.
+pub fn is_whole(bytes: &[u8]) -> bool {
+    /// Comes before what is coded.
+    const SCAN: u8 = 0xda;
+    const END: u8 = 0xd9;
+    // After the marker of its start.
+    let mut at = 2;
+    loop {
+        // A byte of 255 in what is coded has a 0 behind it; those from 0xd0 to 0xd7 restart it.
+        let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xd0..=0xd7 | 0xff);
+        let rest = bytes.get(at..).unwrap_or_default();
+        let Some(found) = rest.windows(2).position(is_marker) else {
+            return false;
+        };
+        at += found;
+        match bytes[at + 1] {
+            END => return true,
+            SCAN => at += 2,
+            _ => match bytes.get(at + 2..at + 4) {
+                Some(&[high, low]) => at += 2 + usize::from(u16::from_be_bytes([high, low])),
+                _ => return false,
+            },
+        }
+    }
+}
+
 impl Jpeg {
     /// What becomes of a picture's bytes, red, green and blue in rows of a width, by this coding;
     /// none if it cannot be coded so.

@@ -12,6 +12,7 @@ mod exr;
 mod jpeg;
 mod mean;
 mod memory;
+mod no_picture;
 #[cfg(feature = "cli")]
 mod part;
 mod picture;

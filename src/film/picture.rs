@@ -81,6 +81,8 @@ pub enum Coding {
     Utf16,
     /// It is a PNM of bytes in which every line feed had become two, as in a text.
     TextMode,
+    /// It is a PNM of bytes in which all above 127 had become two, as letters of a text in UTF-8.
+    Utf8,
 }
 
 impl Coding {
@@ -101,6 +103,9 @@ impl Coding {
             Self::TextMode => Some(
                 "each of its line feeds had become CR LF, which most programs cannot read so: open the file in binary mode (\"wb\")",
             ),
+            Self::Utf8 => Some(
+                "each of its bytes above 127 had become two, as in a text of UTF-8, which most programs cannot read so: open the file in binary mode (\"wb\"), and write bytes",
+            ),
             Self::OtherCurve => Some(
                 "its gAMA or iCCP says that its numbers follow another curve than sRGB's, and they are read as sRGB",
             ),
@@ -117,6 +122,9 @@ pub enum Unreadable {
         .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
     )]
     Format(Option<ImageFormat>),
+    /// It is something else.
+    #[error("it is no picture, but {0}")]
+    Other(&'static str),
     /// It does not follow its format.
     #[error(
         "it begins as {format} files do, but is damaged or cut off: {}",
@@ -197,7 +205,7 @@ pub(super) fn check_size(
 /// What a decoder says, which may hold a part of the file of any length.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
-    let mut characters = cause.chars();
+    let mut characters = cause.trim_end().chars();
     let mut short: String = characters.by_ref().take(LONGEST).collect();
     if characters.next().is_some() {
         short.push('…');

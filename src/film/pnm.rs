@@ -12,7 +12,7 @@ use super::{
 use crate::color::srgb_to_linear;
 
 /// Maximum number of bytes before a picture that may be a program's other words.
-const LINES_BEFORE: usize = 4096;
+const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
@@ -97,6 +97,9 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
 const UTF_16: &str = "it was turned into UTF-16, as `>` of PowerShell does, which loses bytes: \
     have the program write the file itself, or use `cmd /c \"program > picture.ppm\"`";
 
+const LOST: &str = "it was read as a text of UTF-8 and written again, as `>` of PowerShell 7 does, which \
+    loses bytes: have the program write the file itself, or use `cmd /c \"program > picture.ppm\"`";
+
 fn damaged(cause: String) -> Unreadable {
     Unreadable::Damaged {
         format: "PNM".to_owned(),
@@ -137,9 +140,9 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
         channels,
         maxval: maxval as u16,
     };
-    let (numbers, is_mended) = match kind {
-        1..=3 => (samples.in_text(&mut reader, is_bits)?, false),
-        4 => (samples.in_bits(reader.after_one_space())?, false),
+    let (numbers, mended) = match kind {
+        1..=3 => (samples.in_text(&mut reader, is_bits)?, None),
+        4 => (samples.in_bits(reader.after_one_space())?, None),
         _ => samples.in_bytes(&reader, length as usize)?,
     };
     let light: Vec<f64> = (0..=maxval)
@@ -155,7 +158,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     Ok(Picture {
         film,
         rounding,
-        coding: if is_mended { Coding::TextMode } else { coding },
+        coding: mended.unwrap_or(coding),
         crop: None,
         opacity: None,
     })
@@ -239,19 +242,24 @@ impl Samples {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Bytes, or words of two with the high one first; and whether carriage returns were taken out.
-    fn in_bytes(&self, reader: &Reader, length: usize) -> Result<(Vec<u16>, bool), Unreadable> {
+    /// Bytes, or words of two with the high one first; and what had been done to them.
+    fn in_bytes(
+        &self,
+        reader: &Reader,
+        length: usize,
+    ) -> Result<(Vec<u16>, Option<Coding>), Unreadable> {
         let raster = reader.after_one_space();
         let wanted = length * self.count();
-        let mended = (raster.len() != wanted)
-            .then(|| {
-                reader
-                    .after_line_end()
-                    .and_then(|rest| without_returns(rest, wanted))
-            })
-            .flatten();
-        let is_mended = mended.is_some();
-        let raster = mended.as_deref().unwrap_or(raster);
+        let mended = match raster.len() == wanted {
+            true => None,
+            false => reader
+                .after_line_end()
+                .and_then(|rest| mended(rest, wanted)),
+        };
+        if raster.len() != wanted && mended.is_none() && is_text_with_losses(raster) {
+            return Err(damaged(LOST.to_owned()));
+        }
+        let raster = mended.as_ref().map_or(raster, |(raster, _)| raster);
         let number = |index: usize| {
             let bytes = raster.get(length * index..length * (index + 1));
             let number = match bytes.ok_or_else(|| self.cut_off(index))? {
@@ -264,8 +272,29 @@ impl Samples {
             }
         };
         let numbers: Result<_, _> = (0..self.count()).map(number).collect();
-        Ok((numbers?, is_mended))
+        Ok((numbers?, mended.map(|(_, coding)| coding)))
     }
+}
+
+/// A raster of the length that it should have, if it was written as a text, and as which.
+fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
+    let of_lines = |raster: &[u8]| without_returns(raster, wanted);
+    if let Some(raster) = of_lines(raster) {
+        return Some((raster, Coding::TextMode));
+    }
+    let letters = str::from_utf8(raster).ok()?.chars();
+    let bytes = letters.map(|letter| u8::try_from(letter).ok());
+    let bytes = bytes.collect::<Option<Vec<u8>>>()?;
+    let bytes = match bytes.len() == wanted {
+        true => bytes,
+        false => of_lines(&bytes)?,
+    };
+    Some((bytes, Coding::Utf8))
+}
+
+/// Whether bytes are a text in which some had been none, and were replaced.
+fn is_text_with_losses(raster: &[u8]) -> bool {
+    str::from_utf8(raster).is_ok_and(|text| text.contains(char::REPLACEMENT_CHARACTER))
 }
 
 /// A raster that was written as text where a line ends in two bytes: all its line feeds have a
@@ -336,7 +365,12 @@ impl<'b> Reader<'b> {
                 [] => "it ends before its size and maxval".to_owned(),
                 _ => {
                     let word = String::from_utf8_lossy(&word[..word.len().min(20)]);
-                    format!("`{word}` in line {line} is no whole number")
+                    let is_number = word.parse::<f64>().is_ok();
+                    let way_out = match !is_number && word.starts_with(char::is_alphabetic) {
+                        true => ": what is not the picture's goes to standard error",
+                        false => "",
+                    };
+                    format!("`{word}` in line {line} is no whole number{way_out}")
                 }
             })
         })

@@ -14,8 +14,9 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use png::{BitDepth, ColorType, DecodingError, Transformations};
 
 use super::{
-    exr,
+    exr, jpeg,
     memory::{self, TooLarge},
+    no_picture,
     picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable, check_size, name},
     pixels::Film,
     png::read_recipe,
@@ -60,7 +61,10 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
         // A mark, UTF-16 or lines of text come before it.
-        None => pnm::read(bytes, limit)?,
+        None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
+            (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
+            (error, _) => error,
+        })?,
         other => return Err(Unreadable::Format(other)),
     };
     let width = picture.film.width() as usize;
@@ -74,6 +78,12 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
 
 fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unreadable> {
     let unreadable = |error| unreadable(&error, format);
+    if format == ImageFormat::Jpeg && !jpeg::is_whole(bytes) {
+        return Err(Unreadable::Damaged {
+            format: name(format),
+            cause: "its end is missing".to_owned(),
+        });
+    }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if limit > DECODED_LIMIT {
         // What there is memory for is looked at below.

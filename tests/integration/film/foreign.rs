@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use exr::prelude::{Image, SpecificChannels, WritableImage};
+use image::{ImageFormat, Rgb, RgbImage};
 use pinhole::film::{Coding, read_picture};
 
 /// Two rows of three pixels.
@@ -33,6 +34,7 @@ fn what_was_done_to_a_pnm_is_undone() {
     let right = read_picture(TEXT.as_bytes()).unwrap();
     assert_eq!(right.coding, Coding::Exact);
     let log = "Rendering…\nP3 takes long\n50 %\n";
+    let long = "Scanlines remaining: 719\n".repeat(720);
     let with = |before: &[u8], file: &[u8]| [before, file].concat();
     let cases = [
         (bytes(), Coding::Exact),
@@ -45,6 +47,7 @@ fn what_was_done_to_a_pnm_is_undone() {
         (with("\u{feff}".as_bytes(), &bytes()), Coding::TextBefore),
         (with(log.as_bytes(), TEXT.as_bytes()), Coding::TextBefore),
         (with(log.as_bytes(), &bytes()), Coding::TextBefore),
+        (with(long.as_bytes(), TEXT.as_bytes()), Coding::TextBefore),
         (utf16(TEXT, b"\xff\xfe", u16::to_le_bytes), Coding::Utf16),
         (utf16(TEXT, b"\xfe\xff", u16::to_be_bytes), Coding::Utf16),
         (utf16(TEXT, b"", u16::to_le_bytes), Coding::Utf16),
@@ -61,9 +64,88 @@ fn what_was_done_to_a_pnm_is_undone() {
 }
 
 #[test]
+fn bytes_that_were_written_as_letters_are_read() {
+    let numbers: Vec<u8> = [9, 10, 11, 12, 13, 14, 126, 127, 128]
+        .into_iter()
+        .chain(247..=255)
+        .collect();
+    let file = [b"P6\n3 2\n255\n", &numbers[..]].concat();
+    let right = read_picture(&file).unwrap();
+    let letters = |file: &[u8]| -> Vec<u8> {
+        let text: String = file.iter().map(|&byte| char::from(byte)).collect();
+        text.into_bytes()
+    };
+    for file in [letters(&file), in_text_mode(&letters(&file))] {
+        let read = read_picture(&file).unwrap();
+        assert!(read.film.pixels() == right.film.pixels());
+        assert_eq!(read.coding, Coding::Utf8);
+        assert!(read.coding.warning().is_some());
+    }
+    let lost = String::from_utf8_lossy(&file);
+    let said = read_picture(lost.as_bytes()).unwrap_err().to_string();
+    assert!(said.contains("as `>` of PowerShell 7 does"), "{said}");
+}
+
+/// What is cut off is no picture with something gray or black below.
+#[test]
+fn no_part_of_a_picture_file_is_another_picture() {
+    let picture = RgbImage::from_fn(24, 20, |x, y| {
+        Rgb([9 * x, 11 * y, 7 * (x + y)].map(|n| n as u8))
+    });
+    let formats = [
+        ImageFormat::Bmp,
+        ImageFormat::Gif,
+        ImageFormat::Jpeg,
+        ImageFormat::Png,
+        ImageFormat::Pnm,
+        ImageFormat::Tiff,
+        ImageFormat::WebP,
+    ];
+    let coded = formats.map(|format| {
+        let mut file = Cursor::new(Vec::new());
+        picture.write_to(&mut file, format).unwrap();
+        (format!("{format:?}"), file.into_inner())
+    });
+    let floats = ("EXR".to_owned(), exr(["R", "G", "B"]));
+    for (format, file) in coded.into_iter().chain([floats]) {
+        let whole = read_picture(&file).unwrap();
+        for length in 0..file.len() {
+            if let Ok(part) = read_picture(&file[..length]) {
+                assert!(
+                    part.film.pixels() == whole.film.pixels(),
+                    "{format}: {length} of {} bytes",
+                    file.len()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_no_picture_is_named() {
+    let cases: [(&[u8], &str); 7] = [
+        (b"", "an empty file"),
+        (
+            b"version https://git-lfs.github.com/spec/v1\n",
+            "`git lfs pull`",
+        ),
+        (b"%PDF-1.7", "a PDF"),
+        (b"PK\x03\x04", "a zip file"),
+        (b"\n<!DOCTYPE html>", "a web page"),
+        (b"PF\n1 1\n-1.0\n", "OpenEXR is the format of floats"),
+        (b"\0\0\0\x18ftypheic", "HEIC"),
+    ];
+    for (file, words) in cases {
+        let said = read_picture(file).unwrap_err().to_string();
+        assert!(said.starts_with("it is no picture, but "), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_pnm_is_told_with_its_place() {
     let cut = |length: usize| bytes()[..length].to_vec();
-    let cases: [(Vec<u8>, &str); 16] = [
+    let cases: [(Vec<u8>, &str); 17] = [
         (
             TEXT[..30].into(),
             "cut off before the green of pixel (0, 1), after 10 of 18",
@@ -101,6 +183,10 @@ fn what_is_wrong_with_a_pnm_is_told_with_its_place() {
         (
             TEXT.replace("14", "nan").into(),
             "`nan` in line 5 is no whole number",
+        ),
+        (
+            TEXT.replace("14", "13\nline 3\n14").into(),
+            "`line` in line 6 is no whole number: what is not the picture's goes to standard error",
         ),
         (
             TEXT.replace("255", "0").into(),
