@@ -47,7 +47,10 @@ impl Budget {
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, less)
         {
             Ok(_) => Ok(()),
-            Err(_) => Err("all zip files together unpack to more than 4 GiB".to_owned()),
+            Err(_) => Err(
+                "all zip files together unpack to more than 4 GiB: unpack them, and name the folder"
+                    .to_owned(),
+            ),
         }
     }
 }
@@ -95,6 +98,8 @@ pub struct Entry {
     pub time: Option<i64>,
     /// Its length, as the header says.
     pub length: u64,
+    /// The check sum of its bytes, which is looked at when they are unpacked.
+    pub sum: u32,
     /// Why it is not compared, whatever is in it.
     pub refused: Option<&'static str>,
 }
@@ -139,6 +144,7 @@ impl Archive {
                 name,
                 time: entry.last_modified().map(seconds),
                 length: entry.size(),
+                sum: entry.crc32(),
                 refused,
             });
         }

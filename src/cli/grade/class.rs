@@ -190,6 +190,10 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
+        // What zip files say is enough, and unpacks nothing.
+        if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
+            return same.iter().all(|other| other.sum == file.sum);
+        }
         let hash = |file: &HandedIn| {
             bytes(file, &self.budget)
                 .ok()
@@ -221,6 +225,7 @@ fn single(path: &Path) -> Student {
         shown: place.clone(),
         time: None,
         length: 0,
+        sum: None,
         content: Content::File(path.to_owned()),
         is_named: true,
     };

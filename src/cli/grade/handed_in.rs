@@ -44,6 +44,8 @@ pub struct HandedIn {
     pub time: Option<i64>,
     /// As the folder or the zip file says.
     pub length: u64,
+    /// The check sum that a zip file has for it.
+    pub sum: Option<u32>,
     pub content: Content,
     /// Whether it was named itself, and is a picture whatever it is called.
     pub is_named: bool,

@@ -74,6 +74,10 @@ pub fn filled(
     };
     let starts: Vec<usize> = rows.iter().map(start).chain([text.len()]).collect();
     let head = rows.first().ok_or_else(|| failed(&"it is empty"))?;
+    if head.len() == 1 || bytes.starts_with(b"\xff\xfe") {
+        let why = "it is no table with commas between cells: take it as Moodle gave it, or save it as CSV in UTF-8 with commas";
+        return Err(failed(&why));
+    }
     let find = |english: &str| {
         let own = columns.iter().find(|(name, _)| *name == english);
         let heading = own.map_or(english, |(_, heading)| *heading);

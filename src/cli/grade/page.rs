@@ -27,7 +27,7 @@ pub fn page(scene: &str, graded: &[Graded], total: Option<f64>) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>Pictures of {scene}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Pictures of {scene}</h1>\n{}{}",
         summary(graded),
-        mistakes(graded)
+        mistakes(graded) + &equal(graded)
     );
     html += &format!(
         "<p class=\"hint\">Press a picture to see it beside the exact one; the map of differences is {HEAT_LEGEND}. Press a heading to sort.</p>\n\
@@ -101,6 +101,22 @@ fn mistakes(graded: &[Graded]) -> String {
     };
     let lines: String = counted.into_iter().map(line).collect();
     format!("<h2>Mistakes</h2>\n<ul class=\"mistakes\">\n{lines}</ul>\n")
+}
+
+/// Who has the same picture as somebody else.
+fn equal(graded: &[Graded]) -> String {
+    let is_first = |(index, one): &(usize, &Graded)| {
+        let mut before = graded[..*index].iter();
+        !one.equal_to.is_empty() && !before.any(|other| one.equal_to.contains(&other.name))
+    };
+    let line = |(_, one): (usize, &Graded)| {
+        let names = [&one.name].into_iter().chain(&one.equal_to);
+        let names: Vec<_> = names.map(|name| escaped(name)).collect();
+        let names = names.join(", ");
+        format!("<p class=\"mark\">The same in every pixel: {names}.</p>\n")
+    };
+    let firsts = graded.iter().enumerate().filter(is_first);
+    firsts.map(line).collect()
 }
 
 fn headings(total: Option<f64>) -> String {

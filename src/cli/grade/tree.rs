@@ -141,6 +141,7 @@ impl Tree {
             shown: format!("{}/{}", self.place, names.join("/")),
             time,
             length,
+            sum: None,
             content,
             is_named: false,
         };
@@ -197,6 +198,9 @@ impl Tree {
             };
             self.push(names, content, entry.time, entry.length)
                 .map_err(|error| error.to_string())?;
+            if let Some((_, file)) = self.found.last_mut() {
+                file.sum = Some(entry.sum);
+            }
         }
         Ok(())
     }

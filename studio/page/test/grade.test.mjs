@@ -9,7 +9,7 @@ import { test } from "node:test";
 import { FIGURE, launch } from "./helpers.mjs";
 
 const PINHOLE = process.env.PINHOLE ?? "pinhole";
-const HOSTILE = "<img src=x onerror=alert(1)>";
+const HOSTILE = "<img src=x onerror=alert(1)>" + "x".repeat(70);
 
 /** A folder with a graded class. */
 function graded(t) {

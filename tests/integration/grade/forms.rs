@@ -236,6 +236,21 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         told.contains("its grades go up to 10, and the points to 20"),
         "{told}"
     );
+    // As spreadsheets save it.
+    for bytes in [
+        WORKSHEET.replace(',', ";").into_bytes(),
+        WORKSHEET
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect(),
+    ] {
+        folder.write("saved.csv", bytes);
+        let told = folder.told("grade a.scn class --format moodle --worksheet saved.csv", 2);
+        assert!(
+            told.contains("save it as CSV in UTF-8 with commas"),
+            "{told}"
+        );
+    }
     folder.told("grade a.scn class --format moodle", 2);
     let told = folder.told(&format!("{line} --columns Note=Bewertung"), 2);
     assert!(
