@@ -7,6 +7,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    ffi::OsStr,
     fs,
     path::{Path, PathBuf},
 };
@@ -51,7 +52,14 @@ impl Class {
     /// whoever reads it.
     pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
         let mut class = Self::default();
-        for path in paths {
+        let mut rest: Vec<&PathBuf> = paths.iter().collect();
+        for (parent, names) in spread(paths) {
+            let tree = Tree::of_some(parent, &names, own);
+            let tree = tree.map_err(|error| unreadable(parent, &error))?;
+            class.add(folder_name(parent), tree, chosen);
+            rest.retain(|path| !(names.contains(name(path)) && parent_of(path) == parent));
+        }
+        for path in rest {
             if path.is_dir() {
                 let tree = Tree::of_folder(path, own).map_err(|error| unreadable(path, &error))?;
                 class.add(folder_name(path), tree, chosen);
@@ -121,7 +129,7 @@ impl Class {
             let student = works.entry(key).or_insert_with(|| Student {
                 name,
                 number,
-                place: format!("{}/{first}", tree.place),
+                place: format!("{}{first}", tree.place),
                 files: Vec::new(),
                 is_clone: tree.clones.iter().any(|clone| clone[0] == *first),
             });
@@ -136,7 +144,7 @@ impl Class {
                 .or_insert_with(|| Student {
                     name,
                     number: None,
-                    place: format!("{}/{folder}", tree.place),
+                    place: format!("{}{folder}", tree.place),
                     files: Vec::new(),
                     is_clone: false,
                 });
@@ -274,9 +282,48 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
+/// What a shell made of `class/*`: folders with what is named in them, where each of these is a
+/// student. That it is so is told by a repository, by Moodle's names or Gradescope's list of them,
+/// or by a picture of one name in two folders.
+fn spread(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
+    let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
+    for path in paths {
+        let is_list = name(path) == METADATA && path.is_file();
+        let is_class = path.is_dir() || tree::is_zip(path) || is_list;
+        // A link that is named is followed, and `..` has no name.
+        if is_class && !path.is_symlink() && !name(path).is_empty() {
+            named.entry(parent_of(path)).or_default().insert(name(path));
+        }
+    }
+    named.retain(|parent, names| {
+        let mut pictures = BTreeSet::new();
+        names.iter().any(|name| {
+            let path = parent.join(name);
+            let is_folder = path.is_dir();
+            let is_system = *name == METADATA || names::moodle(&name.to_string_lossy()).is_some();
+            let entries = fs::read_dir(&path).into_iter().flatten().flatten();
+            let own: Vec<_> = entries.map(|entry| entry.file_name()).collect();
+            let is_clone = own.iter().any(|name| name == ".git");
+            let mut own = own
+                .into_iter()
+                .filter(|name| judge::is_named_as_picture(name.as_ref()));
+            is_system || is_clone || is_folder && own.any(|picture| !pictures.insert(picture))
+        })
+    });
+    named
+}
+
+fn name(path: &Path) -> &OsStr {
+    path.file_name().unwrap_or_default()
+}
+
+fn parent_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
 /// What a folder is called, also where it is `.`.
 fn folder_name(path: &Path) -> Option<String> {
-    let path = fs::canonicalize(path).ok()?;
+    let path = fs::canonicalize(tree::or_here(path)).ok()?;
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 

@@ -3,7 +3,9 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    fs, io, mem,
+    ffi::OsStr,
+    fs::{self, DirEntry},
+    io, mem,
     path::Path,
     sync::Arc,
     time::UNIX_EPOCH,
@@ -34,7 +36,7 @@ pub type Found = (Vec<String>, HandedIn);
 /// The files below a folder, or in a zip file.
 #[derive(Debug, Default)]
 pub struct Tree {
-    /// What is named, without a `/` at its end.
+    /// What is named, with a `/` at its end.
     pub place: String,
     pub found: Vec<Found>,
     /// Folders by their names, whether there is a file in them or not.
@@ -55,6 +57,19 @@ impl Tree {
         Ok(tree)
     }
 
+    /// Goes through some of what lies in a folder.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::of_folder`].
+    pub fn of_some(path: &Path, names: &BTreeSet<&OsStr>, own: &[&Path]) -> io::Result<Self> {
+        let mut tree = Self::at(path);
+        let entries = fs::read_dir(or_here(path))?.collect::<io::Result<Vec<_>>>()?;
+        let named = |entry: &DirEntry| names.contains(&*entry.file_name());
+        tree.walk_entries(entries.into_iter().filter(named).collect(), &[], own)?;
+        Ok(tree)
+    }
+
     /// Lists a zip file.
     ///
     /// # Errors
@@ -72,15 +87,27 @@ impl Tree {
     fn at(path: &Path) -> Self {
         let place = path.display().to_string();
         Self {
-            place: place.trim_end_matches('/').to_owned(),
+            place: match &*place {
+                "" => place,
+                _ => format!("{}/", place.trim_end_matches('/')),
+            },
             ..Self::default()
         }
     }
 
     /// Goes through a folder, whose names are those of the folders before it in what is named.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
-        let mut entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
-        entries.sort_by_key(fs::DirEntry::file_name);
+        let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+        self.walk_entries(entries, before, own)
+    }
+
+    fn walk_entries(
+        &mut self,
+        mut entries: Vec<DirEntry>,
+        before: &[String],
+        own: &[&Path],
+    ) -> io::Result<()> {
+        entries.sort_by_key(DirEntry::file_name);
         for entry in entries {
             let name = entry.file_name().to_string_lossy().into_owned();
             if name == ".git" {
@@ -138,7 +165,7 @@ impl Tree {
         }
         let file = HandedIn {
             path: names.join("/"),
-            shown: format!("{}/{}", self.place, names.join("/")),
+            shown: format!("{}{}", self.place, names.join("/")),
             time,
             length,
             sum: None,
@@ -264,11 +291,19 @@ impl Tree {
             cut.filter(|names| !names.is_empty()).collect()
         };
         Self {
-            place: format!("{}/{root}", self.place),
+            place: format!("{}{root}/", self.place),
             found,
             folders: take(&mut self.folders),
             clones: take(&mut self.clones),
         }
+    }
+}
+
+/// A path that may be empty, which is the folder that the program runs in.
+pub fn or_here(path: &Path) -> &Path {
+    match path.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => path,
     }
 }
 

@@ -419,7 +419,57 @@ fn the_folder_around_what_a_system_made_is_that() {
             .collect();
         assert_eq!(json!(found), json!(expected), "{name}");
     }
-    let found = graded(&folder, "h/hw-submissions/hw-anna s", 1);
-    let names: Vec<_> = found.iter().map(|line| &line["student"]).collect();
-    assert_eq!(names, ["x.png", "anna", "ben"]);
+}
+
+/// What a shell makes of `class/*` is the class, too.
+#[test]
+fn the_folders_in_a_class_are_named() {
+    let folder = folder();
+    let files = [
+        ("g/submission_metadata.yml", METADATA),
+        ("g/submission_1/a.png", "right.png"),
+        ("g/submission_2/b.png", "red.png"),
+        ("m/Li_1_assignsubmission_file/x.png", "right.png"),
+        ("m/Cy_2_assignsubmission_file/x.png", "red.png"),
+        ("hw-submissions/hw-anna/x.png", "right.png"),
+        ("hw-submissions/hw-anna/given.png", "noise.png"),
+        ("hw-submissions/hw-anna/.git/HEAD", "ref"),
+        ("hw-submissions/hw-ben/.git/HEAD", "ref"),
+        ("hw-submissions/hw-ben/given.png", "noise.png"),
+        ("class/anna/render.png", "right.png"),
+        ("class/anna/main.c", "main"),
+        ("class/ben/render.png", "red.png"),
+        ("class/cy/out/x.png", "red.png"),
+        ("class/dora.png", "right.png"),
+        // Two classes, and no student.
+        ("one/anna/x.png", "right.png"),
+        ("two/anna/x.png", "red.png"),
+        ("two/ben.png", "red.png"),
+    ];
+    put(&folder, &files);
+    let cases = rows(
+        "
+        g/submission_metadata.yml g/submission_1 g/submission_2 -> Anna Li: right, Ben <b>, Cy: wrong, Dora: error, eve@example.org: error
+        m/Cy_2_assignsubmission_file m/Li_1_assignsubmission_file/ -> Cy: wrong, Li: right
+        hw-submissions/hw-anna hw-submissions/hw-ben -> anna: right, ben: error
+        hw-submissions/hw-anna -> anna: right
+        class/anna class/ben class/cy class/dora.png -> anna: right, ben: wrong, cy: wrong, class/dora.png: right
+        class/anna/ class/ben -> anna: right, ben: wrong
+        class/none class/anna class/ben -> anna: right, ben: wrong, class/none: error
+        one two -> anna (one/anna): right, anna (two/anna): wrong, ben.png: wrong
+        ",
+    );
+    for [arguments, expected] in cases {
+        let said = folder.run(&format!("grade a.scn {arguments} --format json"));
+        let lines = said.text().lines().map(|line| {
+            let line: Value = serde_json::from_str(line).unwrap();
+            let verdict = line["verdict"].as_str().unwrap_or("error");
+            format!("{}: {verdict}", line["student"].as_str().unwrap())
+        });
+        assert_eq!(
+            lines.collect::<Vec<_>>().join(", "),
+            expected,
+            "{arguments}"
+        );
+    }
 }
