@@ -300,6 +300,14 @@ test("the picture has one row of tools above it at 1280, and a window of its own
   await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
   await rested(page);
   await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
+  // A page that is loaded anew goes on with it.
+  page.on("dialog", dialog => dialog.accept());
+  await page.reload();
+  await finished(page);
+  await page.waitForTimeout(300);
+  await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() === before, before);
+  await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
+  await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
   assert.equal(sockets, 0);
 });
 
