@@ -42,10 +42,9 @@ export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft
 async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;
-  const { isUnsaved } = files;
+  const { isUnsaved, textToSave } = files;
   if (isUnsaved || isKept) due.set(id, isUnsaved ? newDraft() : null);
   isKept = isUnsaved;
-  const { textToSave } = files;
   for (const it of offers) if (it.text === saved || it.text === textToSave) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
     try {
@@ -73,10 +72,12 @@ export async function offerDrafts(kept: Draft[] | undefined): Promise<void> {
 function show(): void {
   bar.hidden = offers.length === 0;
   byId("draft-choices").replaceChildren(...offers.slice(0, OFFERED).map(draft => {
-    const time = new Date(draft.time * 1000).toLocaleString();
-    const isOther = isServed && draft.base !== files.at.seen;
-    const row = create("li", "", `${draft.name}, of ${time}, ${draft.text.split("\n").length} lines.`
-      + (isOther ? " The file holds something else; Save will ask." : ""));
+    const time = new Date(draft.time * 1000)
+      .toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
+    const other = isServed && draft.base !== files.at.seen
+      ? " The file holds something else; Save will ask." : "";
+    const { length } = draft.text.split("\n");
+    const row = create("li", "", `${draft.name}, of ${time}, ${length} lines.${other}`);
     row.append(createButton("Restore", "primary", () => answer(draft, true)),
       createButton("Forget", "", () => answer(draft, false)));
     return row;

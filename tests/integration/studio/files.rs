@@ -150,7 +150,8 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let studio = Studio::start(command);
     let (mut page, found) = studio.page();
     let (mut other, _) = studio.page();
-    assert_eq!(found, file("scene.scn", SCENE, false));
+    let nothing = json!({ "name": "scene.scn", "text": null, "reason": null, "saved": false });
+    assert_eq!(found, nothing);
     let save = |page: &mut Client<Page>, name: Value| {
         let params = json!({ "text": "// new", "base": SCENE, "name": name });
         page.respond("studio/save", params)
