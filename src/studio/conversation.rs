@@ -216,7 +216,10 @@ impl Conversation<'_> {
         }
         // A page that is new has nothing yet that a draft would take the place of.
         let is_first = self.known == 0;
-        let drafts = is_first.then(|| file.drafts()).unwrap_or_default();
+        let drafts = match is_first {
+            true => file.drafts(),
+            false => Vec::new(),
+        };
         self.known = version;
         let held = file.held().as_ref();
         let mut params = json!({
