@@ -21,7 +21,7 @@ use tokio::{runtime::Handle, sync::watch, time::timeout};
 use super::{
     access::{NotAdmitted, Pass},
     download,
-    draft::{Kept, Unsaved},
+    draft::Unsaved,
     scene_file::{NotSaved, SceneFile, lock},
     watched::{self, Watch},
 };
@@ -29,7 +29,7 @@ use crate::{
     lsp::{
         Refusal, Server,
         messages::{self, Malformed},
-        optional, response,
+        response,
     },
     threads,
 };
@@ -216,7 +216,10 @@ impl Conversation<'_> {
         }
         // A page that is new has nothing yet that a draft would take the place of.
         let is_first = self.known == 0;
-        let draft = is_first.then(|| file.draft()).flatten();
+        let drafts = match is_first {
+            true => file.drafts(),
+            false => Vec::new(),
+        };
         self.known = version;
         let held = file.held().as_ref();
         let mut params = json!({
@@ -225,8 +228,8 @@ impl Conversation<'_> {
             "reason": held.err(),
             "saved": file.path().is_some(),
         });
-        if let Some(draft) = draft {
-            params["draft"] = json!(draft);
+        if !drafts.is_empty() {
+            params["drafts"] = json!(drafts);
         }
         drop(file);
         self.say(vec![
@@ -291,16 +294,15 @@ impl Conversation<'_> {
                     Err(NotSaved::Refused(message)) => Err(Refusal::failed(message)),
                 }
             }
-            ("studio/draft", text) => {
-                let newest = text.map(|text| Unsaved::new(text, field("base")));
-                let keep = |earlier: Option<Vec<Unsaved>>| {
-                    let texts = newest.into_iter().chain(earlier.into_iter().flatten());
-                    let kept = lock(self.file).keep_draft(Kept::new(texts).as_ref());
-                    kept.map_err(Refusal::failed)
-                };
-                let kept = optional(&params, "earlier").and_then(keep);
-                kept.map(|()| json!({ "ok": true }))
-            }
+            ("studio/draft", text) => match field("id") {
+                Some(id) => {
+                    let new = |text| Unsaved::new(id, field("name"), text, field("base"));
+                    let kept = lock(self.file).keep_draft(id, text.map(new));
+                    kept.map(|()| json!({ "ok": true }))
+                        .map_err(Refusal::failed)
+                }
+                None => Err(Refusal::invalid("there is no `id`")),
+            },
             ("studio/alive", _) => Ok(json!({ "ok": true })),
             ("studio/save", None) => Err(Refusal::invalid("there is no `text`")),
             _ => Err(Refusal::unknown(&method)),

@@ -1,12 +1,12 @@
-//! The draft of a scene: what a page has written and not saved, kept for the user alone, and what
-//! earlier pages have, as long as nobody has said what is to become of it.
+//! The drafts of a scene: what its pages have written and not saved, kept for the user alone.
 //!
-//! It stands in a file of its own in the user's folder for such things, named by the scene's
+//! They stand in a file of their own in the user's folder for such things, named by the scene's
 //! canonical path, since what a browser keeps belongs to a port, and the host has another one each
-//! time. Saving removes it, and so does time.
+//! time. Each page keeps one, under a key of its own, so that no page writes over another's. Saving
+//! their text removes them, and so does time.
 
 use std::{
-    io, iter,
+    io,
     path::{Path, PathBuf},
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
@@ -21,12 +21,16 @@ pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 /// How long a draft is kept that nobody asks for.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Maximum number of texts of earlier pages that are kept beside the newest one.
-const MOST_EARLIER: usize = 3;
+/// Maximum number of drafts of a scene; with one more, the oldest is forgotten.
+const MOST: usize = 10;
 
 /// A text that was not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
+    /// The key that its page has given it.
+    pub id: String,
+    /// What its scene is called.
+    pub name: Option<String>,
     pub text: String,
     /// What was in the file that it was made from.
     base: Option<String>,
@@ -36,9 +40,11 @@ pub struct Unsaved {
 
 impl Unsaved {
     /// A text of now.
-    pub fn new(text: &str, base: Option<&str>) -> Self {
+    pub fn new(id: &str, name: Option<&str>, text: &str, base: Option<&str>) -> Self {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
+            id: id.to_owned(),
+            name: name.map(str::to_owned),
             text: text.to_owned(),
             base: base.map(str::to_owned),
             time: now.map_or(0, |now| now.as_secs()),
@@ -46,38 +52,12 @@ impl Unsaved {
     }
 }
 
-/// All that is kept of a scene, as it stands in the draft's file and goes to the page.
-#[derive(Debug, Deserialize, Serialize)]
-pub struct Kept {
-    #[serde(flatten)]
-    newest: Unsaved,
-    /// The newest of them first.
-    #[serde(default)]
-    earlier: Vec<Unsaved>,
-}
-
-impl Kept {
-    /// Some texts, the newest first; none if there is none.
-    pub fn new(texts: impl IntoIterator<Item = Unsaved>) -> Option<Self> {
-        let mut texts = texts.into_iter();
-        Some(Self {
-            newest: texts.next()?,
-            earlier: texts.take(MOST_EARLIER).collect(),
-        })
-    }
-
-    /// The texts, the newest first.
-    pub fn texts(self) -> impl Iterator<Item = Unsaved> {
-        iter::once(self.newest).chain(self.earlier)
-    }
-}
-
-/// Where the draft of a scene is; nowhere if the system has no place for it.
+/// Where the drafts of a scene are; nowhere if the system has no place for them.
 #[derive(Debug, Default)]
-pub struct Draft(Option<PathBuf>);
+pub struct Drafts(Option<PathBuf>);
 
-impl Draft {
-    /// The draft of the scene in a file; of a new scene, of the folder that it would be saved in.
+impl Drafts {
+    /// The drafts of the scene in a file; of a new scene, of the folder that it would be saved in.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;
@@ -90,27 +70,28 @@ impl Draft {
         Self(place())
     }
 
-    /// What is kept.
-    pub fn kept(&self, read: Read) -> Option<Kept> {
-        let bytes = read(self.0.as_deref()?).ok()?;
-        serde_json::from_slice(&bytes).ok()
+    /// What is kept, the newest first.
+    pub fn kept(&self, read: Read) -> Vec<Unsaved> {
+        let read = || serde_json::from_slice(&read(self.0.as_deref()?).ok()?).ok();
+        read().unwrap_or_default()
     }
 
-    /// Keeps this in the place of what is kept.
+    /// Keeps the first of these, which are the newest ones, in the place of what is kept.
     ///
     /// # Errors
     ///
-    /// Why it is not kept, in words.
-    pub fn keep(&self, kept: Option<&Kept>) -> Result<(), String> {
-        let Some(kept) = kept else {
+    /// Why they are not kept, in words.
+    pub fn keep(&self, drafts: &[Unsaved]) -> Result<(), String> {
+        if drafts.is_empty() {
             if let Some(path) = &self.0 {
                 files::forget(path);
             }
             return Ok(());
-        };
+        }
         let path = self.0.as_deref();
         let path = path.ok_or("this system has no folder for drafts")?;
-        let text = serde_json::to_string(kept).map_err(|error| error.to_string())?;
+        let newest = &drafts[..drafts.len().min(MOST)];
+        let text = serde_json::to_string(newest).map_err(|error| error.to_string())?;
         let kept = files::keep(path, &text);
         kept.map_err(|error| format!("the draft is not kept: {error}"))
     }

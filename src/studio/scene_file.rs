@@ -1,4 +1,4 @@
-//! The scene's own file. Studio reads and writes no others, except for its draft and new scenes
+//! The scene's own file. Studio reads and writes no others, except for its drafts and new scenes
 //! beside it.
 
 use std::{
@@ -7,11 +7,10 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
 };
 
-use super::draft::{Draft, Kept, Read};
+use super::draft::{Drafts, Read, Unsaved};
 use crate::{
     files::{self, Original, Purpose},
     preview::{self, Content, Latest},
-    scene::SMALLEST,
     source::Source,
 };
 
@@ -26,13 +25,13 @@ pub struct SceneFile {
     /// Where a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// What was there when it was looked at last; of a new scene, its text.
+    /// What was there when it was looked at last.
     held: Held,
     /// Counts what was there.
     version: u64,
     /// Tells when the file has changed. Without it, that is found when it is saved.
     watch: Option<Arc<Latest<Content>>>,
-    draft: Draft,
+    drafts: Drafts,
     /// The new scenes beside the file that pages have saved, which they may save again.
     beside: Vec<PathBuf>,
 }
@@ -88,19 +87,19 @@ impl SceneFile {
             held: Ok(Some(text)),
             version: 1,
             watch: preview::watch(path, read).ok(),
-            draft: Draft::of(path),
+            drafts: Drafts::of(path),
         })
     }
 
-    /// A new scene, the smallest one. It is saved in this folder.
+    /// A new scene, which the page begins. It is saved in this folder.
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
-            draft: Draft::of(&folder),
+            drafts: Drafts::of(&folder),
             folder,
             beside: Vec::new(),
             path: None,
-            held: Ok(Some(SMALLEST.to_owned())),
+            held: Ok(None),
             version: 1,
             watch: None,
         }
@@ -123,20 +122,25 @@ impl SceneFile {
         &self.held
     }
 
-    /// What was written and not saved, if any is kept that differs from what is there.
-    pub fn draft(&self) -> Option<Kept> {
+    /// What was written and not saved and differs from what is there, the newest first.
+    pub fn drafts(&self) -> Vec<Unsaved> {
         let held = self.held.as_ref().ok().and_then(Option::as_deref);
-        let texts = self.draft.kept(self.read)?.texts();
-        Kept::new(texts.filter(|it| Some(&*it.text) != held))
+        let mut drafts = self.drafts.kept(self.read);
+        drafts.retain(|it| Some(&*it.text) != held);
+        drafts
     }
 
-    /// Keeps what is written and not saved in the place of what was kept; nothing for none.
+    /// Keeps what a page has written and not saved in the place of what was kept under its key;
+    /// forgets that for none.
     ///
     /// # Errors
     ///
     /// Why it is not kept, in words.
-    pub fn keep_draft(&self, kept: Option<&Kept>) -> Result<(), String> {
-        self.draft.keep(kept)
+    pub fn keep_draft(&self, id: &str, unsaved: Option<Unsaved>) -> Result<(), String> {
+        let mut drafts = self.drafts.kept(self.read);
+        drafts.retain(|it| it.id != id);
+        drafts.splice(0..0, unsaved);
+        self.drafts.keep(&drafts)
     }
 
     /// Looks at what is there now if the file has changed: what a watch has read may be older than
@@ -176,7 +180,7 @@ impl SceneFile {
         base: Option<&str>,
         name: Option<&str>,
     ) -> Result<u64, NotSaved> {
-        let kept = self.draft.kept(self.read);
+        let mut drafts = self.drafts.kept(self.read);
         let own = self.name();
         let other = name.filter(|name| *name != own && self.path.is_some());
         let other = other.map(|name| (name, self.folder.join(name)));
@@ -220,15 +224,15 @@ impl SceneFile {
                 let path = self.folder.join(name);
                 create(name, &path, new)?;
                 self.watch = preview::watch(&path, self.read).ok();
-                let _ = self.draft.keep(None);
-                self.draft = Draft::of(&path);
+                let _ = self.drafts.keep(&[]);
+                self.drafts = Drafts::of(&path);
                 self.path = Some(path);
                 self.version += 1;
             }
         }
-        // What this page has written is saved; what earlier ones have is still to be offered.
-        let earlier = kept.into_iter().flat_map(Kept::texts).skip(1);
-        let _ = self.draft.keep(Kept::new(earlier).as_ref());
+        // Other texts are still to be offered.
+        drafts.retain(|it| it.text != new);
+        let _ = self.drafts.keep(&drafts);
         if !is_other {
             self.hold(Ok(Some(new.to_owned())));
         }

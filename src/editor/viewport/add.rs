@@ -150,7 +150,11 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
             Shape::Checkerboard(board) => (board.y < projection.eye.y).then_some(board.y),
             _ => None,
         });
-    let floor = floors.reduce(f64::max);
+    // Without a board, a little above or below the ground, things stand there: boards come there.
+    let floor = floors.reduce(f64::max).or_else(|| {
+        let bottom = projection.eye.y + projection.ahead.y * distance - size;
+        (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
+    });
     let shapes = scene.objects.iter().map(|object| object.shape);
     let shapes = shapes.filter(|shape| !matches!(shape, Shape::Checkerboard(_)));
     let middles =
@@ -159,8 +163,9 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let place = |steps: i32| {
         let aside = projection.right * (2.5 * size * f64::from(steps));
         let at = projection.eye + projection.ahead * distance + aside;
-        let at = floor.map_or(at, |y| at.with_y(y + size));
-        DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)))
+        let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
+        // What stands on a floor keeps all digits of its height.
+        floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_free = |at: &DVec3| taken.iter().all(|it| it.distance(*at) > 1.5 * size);
     let places = [0, 1, -1, 2, -2, 3, -3].map(place);

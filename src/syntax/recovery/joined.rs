@@ -27,7 +27,11 @@ impl<'s> Recovery<'_, 's> {
         let (first, second, span) = match values.as_slice() {
             [] => return bad(self.behind()),
             [_] => return values.swap_remove(0),
-            [first, second, ..] => (first.clone(), second.clone(), first.span.to(self.behind())),
+            [first, second, rest @ ..] => {
+                // A comment of another language may stand behind the last one.
+                let last = rest.last().unwrap_or(second);
+                (first.clone(), second.clone(), first.span.to(last.span))
+            }
         };
         let (takes, whole) = (self.within.takes, self.written(span));
         let numbers = values.iter().all(is_plain_number);

@@ -282,7 +282,14 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        self.report(&say::MISSING_COMMA, right.span, &[&l, &r], fix);
+        // `min1.6` is one word that was torn, rather than two values.
+        let are_apart = left.span.end < right.span.start;
+        self.report(
+            &say::MISSING_COMMA.safe_if(are_apart),
+            right.span,
+            &[&l, &r],
+            fix,
+        );
         fits.then_some(elements)
     }
 

@@ -67,7 +67,9 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
 }));
 
 /** A text with lines that end by LF, as the editor has them. */
-export function withLf(text: string): string { return text.replace(/\r\n?/g, "\n"); }
+export function withLf(text: string): string {
+  return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
+}
 
 class SceneEditor {
   readonly view: EditorView;

@@ -58,7 +58,7 @@ const MOST_CHANGES = 3000;
 
 /** The host's file and others; a static page has local files alone. */
 class Files {
-  onSaved: () => void = () => {};
+  onSaved: (text: string) => void = () => {};
   /** Told before another scene comes in the place of one. */
   onLeave: () => void = () => {};
   /** The host's scene, and the one that the page shows. */
@@ -127,14 +127,14 @@ class Files {
     if (this.at !== this.hosts) return this.show();
     if (editor.uri === "") {
       this.at.seen = this.at.base = saved ? text : null;
-      const start = isServed ? (text ?? "") : FIGURE;
+      const start = saved ? (text ?? "") : isServed ? EMPTY : FIGURE;
       this.at.untouched = saved ? null : start;
       editor.open(start);
       this.tellLone();
       if (linked !== null) editor.replace(linked);
       // Who opens a link has the scene in it, whatever happens to the page.
       if (!isServed) this.at.untouched = editor.text;
-      if (text === null) this.tellGone(reason);
+      if (saved && text === null) this.tellGone(reason);
     } else if (isServed && saved) {
       this.at.untouched = null;
       this.changed(text, reason);
@@ -227,7 +227,7 @@ class Files {
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);
-    this.onSaved();
+    this.onSaved(text);
   }
 
   /** Asks for the name of a new file, and saves it. While that fails, the dialog stays. */

@@ -7,7 +7,7 @@ import { keymap } from "@codemirror/view";
 import { connection } from "./connection";
 import { fixKey, problemsFollow, publishDiagnostics } from "./diagnostics";
 import { byId } from "./dom";
-import { draftChanged, keepDraft, offerDrafts } from "./drafts";
+import { draftChanged, offerDrafts } from "./drafts";
 import { editor } from "./editor";
 import { files, sceneHistory } from "./files";
 import { frames } from "./frames";
@@ -34,12 +34,12 @@ editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numbe
   hintField, problemsFollow, sceneHistory]);
 editor.onUpdate = update => {
   if (update.docChanged) {
+    files.follow(update.transactions);
+    changed();
     selection.mapped(update.changes);
     mapSliders(update.changes);
-    files.follow(update.transactions);
   }
   if (update.selectionSet) selection.cursorMoved();
-  if (update.docChanged) changed();
   byId<HTMLButtonElement>("undo").disabled = undoDepth(update.state) === 0;
   byId<HTMLButtonElement>("redo").disabled = redoDepth(update.state) === 0;
 };
@@ -56,13 +56,11 @@ frames.onState = state => {
   else status.stale(`No picture of the newest text: ${state.message}`);
 };
 frames.onRest = rested;
-files.onSaved = () => void keepDraft();
 
 function changed(): void {
   if (editor.uri === "") return;
   frames.changed();
-  // The coarse picture comes first.
-  void frames.coarse.then(() => refreshOutlines());
+  void refreshOutlines();
   files.show();
   draftChanged();
   // Nobody looks at these while a hand moves.
@@ -111,7 +109,7 @@ async function hosted(file: HostedFile): Promise<void> {
   files.hosted(file, text);
   if (!first) return;
   changed();
-  void offerDrafts(file.draft ?? null);
+  void offerDrafts(file.drafts);
 }
 
 addEventListener("hashchange", async () => {

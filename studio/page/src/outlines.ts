@@ -45,8 +45,9 @@ export async function listObjects(): Promise<void> {
   if (seen !== null) describe(seen, objects.length);
 }
 
-/** Asks for what is shown, one question after the other. */
+/** Asks for what is shown, one question after the other: the coarse picture comes first. */
 export const refreshOutlines = newestOf<void>(async () => {
+  for (let its; its !== frames.coarse; await its) its = frames.coarse;
   const shown = [selection.index, overlays.hovered].filter(it => it !== null);
   const needsNone = shown.length === 0 && !overlays.needsAny;
   if (connection.state !== "open" || (frames.dragging !== null && needsNone)) return;

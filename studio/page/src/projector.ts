@@ -1,7 +1,7 @@
 // The picture alone in a window of its own, for a projector. This page feeds it: it asks no server.
 
 import { inAddress } from "./address";
-import { byId } from "./dom";
+import { byId, remember, remembered } from "./dom";
 import type { Fineness, Shown } from "./frames";
 import { picture } from "./picture";
 
@@ -9,10 +9,12 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Other pages of Studio, also of this host, have channels of their own. */
-const name = of ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
+/** Each tab of Studio has a channel of its own, also after it was loaded anew. */
+const known = remembered(KEY, "sessionStorage");
+const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);
-let isFed = false;
+/** Whether a window has ever asked for pictures. */
+let isFed = known !== null;
 
 /** Hands a picture on, as long as anybody has asked for one. */
 export function feedProjectors(shown: Shown): void { if (isFed) channel.postMessage(shown); }
@@ -23,6 +25,7 @@ if (isProjector) {
   channel.postMessage("ready");
 } else channel.onmessage = async () => {
   isFed = true;
+  remember(KEY, name, "sessionStorage");
   const { canvas, canvas: { dataset }, size, isEmpty } = picture;
   if (!isEmpty) feedProjectors({ bitmap: await createImageBitmap(canvas), size,
     fineness: dataset["fineness"] as Fineness, version: Number(dataset["version"]) });

@@ -60,13 +60,15 @@ export interface HostedFile {
   /** Why there is no text, where something else is there. */
   reason?: string | null;
   saved: boolean;
-  /** What was written and not saved, when a page comes that is new. */
-  draft?: Draft | null;
+  /** What was written and not saved, when a page comes that is new: the newest first. */
+  drafts?: Draft[];
 }
 
-/** A text that was not saved: what it was made from, and when, in seconds since 1970; with those
- *  before it that nobody has restored or forgotten. */
-export interface Draft { text: string; base: string | null; time: number; earlier?: Draft[] }
+/** A text that was not saved, under its page's key: what its scene is called, what it was made
+ *  from, and when, in seconds since 1970. */
+export interface Draft {
+  id: string; name: string; text: string; base: string | null; time: number;
+}
 
 /** Whether the file was saved; if not, what is in it now. */
 export type Saved = { ok: true } | { ok: false; text: string | null };

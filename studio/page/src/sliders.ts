@@ -11,17 +11,7 @@ import { setText } from "./visible";
 /** How long it takes to play a number from one end to the other, in milliseconds. */
 const PLAY = 4000;
 
-/** A definition's row, where its number begins in the text, and the step that is chosen for it. */
-interface Row {
-  name: string;
-  at: number;
-  step: number | null;
-  dial: Dial;
-  element: HTMLElement;
-  value: HTMLElement;
-  button: HTMLButtonElement;
-}
-
+type Row = ReturnType<typeof createRow>;
 let rows: Row[] = [];
 let playing: Row | null = null;
 
@@ -59,17 +49,18 @@ export async function refreshSliders(): Promise<void> {
   });
 }
 
-function createRow(name: string): Row {
-  const dial = new Dial(() => {
+/** A definition's row, where its number begins in the text, and the step that is chosen for it. */
+function createRow(name: string) {
+  const dial: Dial = new Dial(() => {
     const found = literalAt(row.at + 1);
     return found && { ...found, step: row.step ?? found.step };
   });
   dial.range.setAttribute("aria-label", name);
   dial.range.addEventListener("input", () => { if (playing === row) stop(); });
   const [element, value] = [create("div", "slider-row"), create("output")];
-  const button = createButton("", "play", () => play(row), `Play ${name}`);
+  const button: HTMLElement = createButton("", "play", () => play(row), `Play ${name}`);
   element.append(create("span", "", name), dial.range, value, button);
-  const row: Row = { name, at: 0, step: null, dial, element, value, button };
+  const row = { name, at: 0, step: null as number | null, dial, element, value, button };
   return row;
 }
 

@@ -5,8 +5,6 @@ import { byId } from "./dom";
 import type { Fineness } from "./frames";
 import { setText, visibleLine } from "./visible";
 
-/** What becomes of a text until there is a connection again. */
-const KEPT = "What is written here stays, and can be downloaded.";
 const FINENESS: Record<Fineness, string> =
   { coarse: "coarse", sharp: "one sample a pixel", final: "finished" };
 
@@ -39,7 +37,7 @@ export function stale(why: string | null): void {
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";
-  byId("connection-download").hidden = !isKept;
+  byId("connection-kept").hidden = !isKept;
   const said = byId("connection-states").querySelector(`[data-state=${state}]`)?.textContent ?? "";
-  setText(byId("connection"), isKept ? `${said} ${KEPT}` : said);
+  setText(byId("connection"), said);
 }

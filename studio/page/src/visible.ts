@@ -14,7 +14,8 @@ export function visible(text: string): string { return text.replace(INVISIBLE, c
 /** A name, or another text of one line: line feeds and tabs are made visible, too. */
 export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
-/** Shows a text in an element. It is never read as HTML. */
+/** Shows a text in an element, unless it is there. It is never read as HTML. */
 export function setText(element: Element, text: string): void {
-  element.textContent = visible(text);
+  const shown = visible(text);
+  if (element.textContent !== shown) element.textContent = shown;
 }

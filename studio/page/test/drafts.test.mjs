@@ -178,7 +178,7 @@ test("a draft is not written over a file that is newer without a question", asyn
   await new Promise(resolve => setTimeout(resolve, 300));
   const other = await open(browser, started);
   await offered(other);
-  assert.match(await other.textContent("#draft-choices"), /file has changed since/);
+  assert.match(await other.textContent("#draft-choices"), /^scene\.scn, of .*, \d+ lines.*The file holds something else/);
   await andFinished(other, () => choose(other, "Restore"));
   await other.keyboard.press("Control+s");
   await other.waitForSelector("#conflict-dialog[open]");
@@ -207,4 +207,76 @@ test("a host that stops is told after two seconds, and Save says that nothing is
   await page.waitForFunction(() => /Nothing is saved yet/.test(document.querySelector("#said").textContent), null, { timeout: 1000 });
   process.kill(started.pid, "SIGCONT");
   await page.waitForSelector("#connection-bar", { state: "hidden", timeout: 3000 });
+});
+
+test("while the host hangs or is gone, problems are not said to be there or not", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  const foot = () => page.locator("footer").innerText();
+  for (const [found, act] of [[/No problems/, () => {}], [/1 problem/, () => type(page, FIGURE.replace("radius 1", "radios 1"))]]) {
+    await act();
+    await page.waitForFunction(found => new RegExp(found).test(document.querySelector("footer").innerText), found.source);
+    process.kill(started.pid, "SIGSTOP");
+    await page.waitForSelector("#unjudged", { state: "visible", timeout: 4000 });
+    assert.doesNotMatch(await foot(), found);
+    assert.ok(await page.isHidden("#problem-list"));
+    process.kill(started.pid, "SIGCONT");
+    await page.waitForSelector("#unjudged", { state: "hidden", timeout: 4000 });
+    assert.match(await foot(), found);
+  }
+  await started.stop("SIGKILL");
+  await page.waitForSelector("#unjudged", { state: "visible" });
+  assert.ok(await page.isHidden("#problem-list"));
+});
+
+test("two pages of a host keep a draft each, and both are offered", async t => {
+  const started = await host(t);
+  const browser = await launch(t);
+  const pages = [await open(browser, started), await open(browser, started)];
+  await andFinished(pages[0], () => type(pages[0], LARGER));
+  await andFinished(pages[1], () => type(pages[1], NEARER));
+  await kept(pages[1]);
+  await andFinished(pages[0], () => type(pages[0], `${LARGER}// on\n`));
+  await kept(pages[0]);
+  await started.stop("SIGKILL");
+  for (const page of pages) await leave(page);
+  const again = await serve(started.file);
+  t.after(() => again.stop());
+  const page = await open(browser, again);
+  await offered(page);
+  const texts = [];
+  for (let i = 0; i < 2; i++) {
+    await andFinished(page, () => choose(page, "Restore"));
+    texts.push(await text(page));
+    await andFinished(page, () => page.keyboard.press("Control+z"));
+  }
+  assert.deepEqual(texts, [`${LARGER}// on\n`, NEARER]);
+});
+
+test("what is saved while another scene comes, and what Undo brings back, is not offered", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  // The answer to Save comes when the scene is left already.
+  process.kill(started.pid, "SIGSTOP");
+  await page.keyboard.press("Control+s");
+  await menu(page, "File", "#new");
+  await offered(page);
+  process.kill(started.pid, "SIGCONT");
+  await page.waitForFunction(() => document.querySelector("#draft-bar").hidden);
+  assert.equal(started.text(), LARGER);
+  await andFinished(page, () => page.keyboard.press("Control+z"));
+  assert.equal(await text(page), LARGER);
+  await andFinished(page, () => type(page, NEARER));
+  await menu(page, "File", "#new");
+  await offered(page);
+  await andFinished(page, () => page.keyboard.press("Control+z"));
+  assert.equal(await text(page), NEARER);
+  await page.waitForFunction(() => document.querySelector("#draft-bar").hidden);
+  // It is still kept as what it is.
+  await kept(page);
+  page.on("dialog", dialog => dialog.accept());
+  await page.reload();
+  await offered(page);
+  assert.equal(await page.locator("#draft-choices li").count(), 1);
 });

@@ -204,6 +204,30 @@ test("New says that it has to wait as long as the scene is not there", async t =
   assert.equal(await text(page), FIGURE);
 });
 
+test("Studio without a file and New begin with the same text, which has a picture", async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const started = await serve(null, { folder });
+  t.after(() => started.stop());
+  const page = await open(await launch(t), started);
+  const first = await text(page);
+  assert.equal(await page.textContent("#file-state"), "");
+  await andFinished(page, () => type(page, FIGURE));
+  await andFinished(page, () => menu(page, "File", "#new"));
+  assert.equal(await text(page), first);
+  assert.equal(await page.textContent("#said"), "");
+  // What is added stands on a board that comes after it.
+  for (const kind of ["sphere", "box", "checkerboard"]) {
+    await andFinished(page, () => menu(page, "+ Add", `[data-kind=${kind}]`));
+    await rested(page);
+  }
+  const made = await text(page);
+  const [, ball, radius] = /Sphere1 \{ center \(\S+ (\S+), \S+  radius (\S+)/.exec(made).map(Number);
+  const [, box, size] = /Box1 \{ center \(\S+ (\S+), \S+  size \(\S+ (\S+),/.exec(made).map(Number);
+  const [, board] = /Checkerboard1 \{ y (\S+)/.exec(made).map(Number);
+  assert.deepEqual([ball - radius, box - size / 2], [board, board], made);
+});
+
 test("a new scene gets its name by Save", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));

@@ -300,6 +300,14 @@ test("the picture has one row of tools above it at 1280, and a window of its own
   await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
   await rested(page);
   await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
+  // A page that is loaded anew goes on with it.
+  page.on("dialog", dialog => dialog.accept());
+  await page.reload();
+  await finished(page);
+  await page.waitForTimeout(300);
+  await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() === before, before);
+  await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
+  await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
   assert.equal(sockets, 0);
 });
 
@@ -318,6 +326,21 @@ test("at each size the picture takes what there is", async t => {
     const page = await open(browser, started, { viewport: { width, height } });
     assert.ok((await page.locator("canvas").boundingBox()).width >= least, `${width}`);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    await page.context().close();
+  }
+});
+
+test("on a phone the header and the tools have two rows each, on its side the tools have one, and selecting moves nothing", async t => {
+  const [started, browser] = [await host(t), await launch(t)];
+  for (const [width, height, header, tools] of [[390, 844, 110, 115], [360, 740, 110, 115], [844, 390, 60, 62], [768, 1024, 60, 62]]) {
+    const page = await open(browser, started, { viewport: { width, height }, hasTouch: true, isMobile: true });
+    const stage = await page.locator("#stage").boundingBox();
+    await page.selectOption("#objects", { label: "Ball (sphere)" });
+    await page.waitForSelector("#along:not([hidden])");
+    for (const [at, most] of [["header", header], [".tools", tools]]) assert.ok((await page.locator(at).boundingBox()).height <= most, `${at} at ${width}`);
+    assert.deepEqual(await page.locator("#stage").boundingBox(), stage, `${width}`);
+    const cut = await page.evaluate(() => [...document.querySelectorAll("button, summary")].filter(it => it.checkVisibility({ visibilityProperty: true }) && it.scrollWidth > it.clientWidth + 1).map(it => it.textContent));
+    assert.deepEqual(cut, [], `${width}`);
     await page.context().close();
   }
 });

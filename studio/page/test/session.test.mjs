@@ -76,6 +76,29 @@ test("a connection that breaks is found again, and the text stays", async t => {
   assert.equal(started.text(), LARGER);
 });
 
+test("a host that was not to be reached for long is found again by itself", async t => {
+  const started = await host(t);
+  const page = await (await launch(t)).newPage();
+  let [wire, isAway] = [null, false];
+  await page.routeWebSocket(/socket/, socket => {
+    if (isAway) return void socket.close({ code: 3000 });
+    socket.connectToServer();
+    wire = socket;
+  });
+  await page.goto(started.address);
+  await connected(page);
+  isAway = true;
+  await wire.close({ code: 3000 });
+  await type(page, LARGER);
+  await says(page, /Nothing answers at this address any more/);
+  isAway = false;
+  await connected(page);
+  await page.waitForFunction(() => /not saved/.test(document.querySelector("#file-state").textContent));
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+  assert.equal(started.text(), LARGER);
+});
+
 test("a host that is started anew is told from one that is lost; its address goes on with the text", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);

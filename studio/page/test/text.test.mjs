@@ -189,3 +189,24 @@ test("texts and names of a scene are never HTML", async t => {
   assert.equal(await page.evaluate(() => window.hit), undefined);
   assert.equal(await page.locator("img:not(.cm-widgetBuffer), body script").count(), 0);
 });
+
+test("a key has its picture asked for before all else, also where it selects another object", async t => {
+  const started = await host(t);
+  const page = await (await launch(t)).newPage();
+  const asked = [];
+  page.on("websocket", socket => socket.on("framesent", ({ payload }) => asked.push(/"method":"([^"]+)"/.exec(payload)?.[1])));
+  await page.goto(started.address);
+  await finished(page);
+  await page.locator(".cm-line").filter({ hasText: /^sphere/ }).click();
+  // At first it leads to where the line is wrapped.
+  for (let i = 0; i < 2; i++) await page.keyboard.press("End");
+  await rested(page);
+  // Behind its block the object is not selected any more, and before that space it is.
+  for (const key of ["Space", "Backspace"]) {
+    asked.length = 0;
+    await andFinished(page, () => page.keyboard.press(key));
+    await rested(page);
+    assert.deepEqual(asked.filter(it => it !== "studio/alive").slice(0, 2), ["textDocument/didChange", "pinhole/frame"], asked.join());
+    assert.ok(asked.includes("pinhole/overlays"));
+  }
+});

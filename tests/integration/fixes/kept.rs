@@ -35,7 +35,9 @@ impl Words {
     /// `all` has such a word, is two words or one.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
-        let mut rest = text;
+        // What has no width is no part of a number.
+        let text = &text.replace('\u{200b}', "");
+        let mut rest = text.as_str();
         let mut is_number_before = false;
         while let Some(first) = rest.chars().next() {
             let is_number = first.is_ascii_digit()
@@ -49,9 +51,12 @@ impl Words {
                 continue;
             }
             if is_letter(first) || (first == '°' && is_number_before) {
-                let length = rest
-                    .find(|c: char| !(is_letter(c) || c.is_ascii_digit() || c == '°'))
-                    .unwrap_or(rest.len());
+                let length = match first {
+                    '°' => first.len_utf8(),
+                    _ => rest
+                        .find(|c: char| !(is_letter(c) || c.is_ascii_digit()))
+                        .unwrap_or(rest.len()),
+                };
                 // `0.5x1.5x2`
                 let is_times = rest.starts_with(['x', 'X'])
                     && rest[1..].starts_with(|c: char| c.is_ascii_digit())
@@ -68,7 +73,11 @@ impl Words {
                     row.0.split(' ').any(|unit| unit.eq_ignore_ascii_case(word))
                 };
                 match UNITS.iter().find(is_it).filter(|_| is_number_before) {
-                    Some((_, factor)) => *words.numbers.last_mut().unwrap() *= factor,
+                    Some((_, factor)) => {
+                        *words.numbers.last_mut().unwrap() *= factor;
+                        // A unit written twice, as in `30deg degrees`, is still one.
+                        continue;
+                    }
                     None => words.names.push(word.to_owned()),
                 }
             } else {

@@ -67,3 +67,23 @@ fn texts_with_slips_keep_their_numbers_and_names() {
     kept::slips(&texts, count, |text| complaints.extend(kept::fixed(text).1));
     assert_none(&complaints);
 }
+
+/// What a hundred thousand slips once found.
+#[test]
+fn texts_that_once_lost_something_keep_it() {
+    let texts = [
+        // A comment of another language is no part of the values before it.
+        "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
+        "sphere { center 0 1 0 // R\n radius 2 }",
+        "sphere { center 0 1 0\n-- R\n radius 2 }",
+        // One torn word is not two values.
+        "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
+        "sphere { center (a.5, 2) }",
+        "triangle { centroid (0, 1, 0)  spin 30 degrees lookat }",
+        "sphere { center (0, 1, 0)  radius 30°° }",
+        "checkerboard { y -1  square 1e-\u{200b}101 }",
+    ];
+    for text in texts {
+        assert_none(&kept::fixed(text).1);
+    }
+}

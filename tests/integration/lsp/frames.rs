@@ -277,6 +277,36 @@ fn what_is_added_is_seen() {
     }
 }
 
+/// What is added touches the board, whatever its height is, and where the board comes later.
+#[test]
+fn what_is_added_stands_on_the_board() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for (before, floor) in [
+        ("", 0.0),
+        ("checkerboard { y 0 }", 0.0),
+        ("checkerboard { y 0.25 }", 0.25),
+        ("checkerboard { y -1.37 }", -1.37),
+        ("checkerboard { y -0.2 }\ncheckerboard { y -3 }", -0.2),
+    ] {
+        for kind in ["sphere", "box"] {
+            let mut talk = Talk::with(&format!("{camera}{before}"));
+            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            let text = format!("{camera}{before}{written}");
+            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
+            let board = found["edits"][0]["newText"].as_str().expect("a text");
+            // The number of the name, the middle, and the radius or the size.
+            let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
+            let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
+            let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
+            assert!((numbers[2] - half - floor).abs() < 1e-9, "{text}");
+            if before.is_empty() {
+                assert!(board.ends_with("{ y 0 }"), "{board}");
+            }
+        }
+    }
+}
+
 /// A board is under what is there, and not where another one is.
 #[test]
 fn a_board_is_added_under_everything() {

@@ -1,6 +1,6 @@
 //! The scene's file: read, saved, changed by others, and no other file.
 
-use std::{fs, iter, net::TcpListener};
+use std::{fs, net::TcpListener};
 
 use pinhole::scene::SMALLEST as SCENE;
 use serde_json::{Value, json};
@@ -150,7 +150,8 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     let studio = Studio::start(command);
     let (mut page, found) = studio.page();
     let (mut other, _) = studio.page();
-    assert_eq!(found, file("scene.scn", SCENE, false));
+    let nothing = json!({ "name": "scene.scn", "text": null, "reason": null, "saved": false });
+    assert_eq!(found, nothing);
     let save = |page: &mut Client<Page>, name: Value| {
         let params = json!({ "text": "// new", "base": SCENE, "name": name });
         page.respond("studio/save", params)
@@ -378,10 +379,10 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
     }
 }
 
-/// What is not saved survives the program, and is gone when it is saved or forgotten; what earlier
-/// pages have written stays until it is forgotten itself.
+/// What is not saved survives the program, each page's under its key, and is gone when its text is
+/// saved or it is forgotten.
 #[test]
-fn a_draft_outlives_the_program() {
+fn drafts_outlive_the_program() {
     let folder = Folder::with([("a.scn", SCENE)]);
     let start = || {
         let mut command = folder.command("studio --no-open a.scn");
@@ -389,70 +390,67 @@ fn a_draft_outlives_the_program() {
         command.env("LOCALAPPDATA", folder.path("state"));
         Studio::start(command)
     };
-    let text = |text: &str, time: u64| json!({ "text": text, "base": SCENE, "time": time });
     let offered = |studio: &Studio| {
-        let mut draft = studio.page().1["draft"].take();
-        let earlier = draft["earlier"].take();
-        let earlier = earlier.as_array().cloned().unwrap_or_default();
-        let all = iter::once(draft).chain(earlier);
-        let texts = all.map(|it| it["text"].as_str().unwrap_or_default().to_owned());
+        let drafts = studio.page().1["drafts"].take();
+        let drafts = drafts.as_array().cloned().unwrap_or_default();
+        assert!(drafts.iter().all(|it| it["time"].as_u64() > Some(0)));
+        let texts = drafts
+            .iter()
+            .map(|it| it["text"].as_str().unwrap_or_default());
         texts.collect::<Vec<_>>().join(" ")
     };
-    let kept = [
-        text("// 1", 1),
-        text("// 2", 2),
-        text("// 3", 3),
-        text("// 4", 4),
-    ];
-    // What a page keeps, what a later one is offered, and what is left when that has saved.
+    let twelve: Vec<String> = (0..12).map(|key| key.to_string()).collect();
+    let twelve: Vec<(&str, Option<&str>)> =
+        twelve.iter().map(|key| (&**key, Some(&**key))).collect();
+    // What pages keep under their keys, one after the other, what a later one is offered, and what
+    // is left when that has saved `// b`.
     let cases = [
-        (json!({ "text": "// 0", "base": SCENE }), "// 0", ""),
         (
-            json!({ "text": "// 0", "earlier": kept[..2] }),
-            "// 0 // 1 // 2",
-            "// 1 // 2",
+            &[("x", Some("// 0")), ("y", Some("// 1"))][..],
+            "// 1 // 0",
+            "// 1 // 0",
         ),
         (
-            json!({ "text": null, "earlier": kept[..2] }),
-            "// 1 // 2",
+            &[
+                ("x", Some("// 0")),
+                ("y", Some("// b")),
+                ("x", Some("// 2")),
+            ],
+            "// 2 // b",
             "// 2",
         ),
         (
-            json!({ "text": "// 0", "earlier": kept }),
-            "// 0 // 1 // 2 // 3",
-            "// 1 // 2 // 3",
+            &[("x", Some("// 0")), ("y", Some("// 1")), ("y", None)],
+            "// 0",
+            "// 0",
         ),
-        // What the file holds is not offered.
-        (
-            json!({ "text": SCENE, "earlier": kept[..1] }),
-            "// 1",
-            "// 1",
-        ),
-        (json!({ "text": SCENE }), "", ""),
-        (json!({ "text": null, "earlier": null }), "", ""),
+        // What the file holds is not offered, and ten are enough.
+        (&[("x", Some(SCENE)), ("y", Some("// 1"))], "// 1", "// 1"),
+        (&twelve, "11 10 9 8 7 6 5 4 3 2", "11 10 9 8 7 6 5 4 3 2"),
+        (&[("x", None)], "", ""),
     ];
-    for (draft, later, left) in cases {
+    for (written, later, left) in cases {
         let mut first = start();
-        let (mut page, found) = first.page();
-        assert_eq!(found.get("draft"), None);
-        assert_eq!(page.ask("studio/draft", draft.clone()), saved());
+        for (id, text) in written {
+            let (mut page, _) = first.page();
+            let draft = json!({ "id": id, "name": "a.scn", "text": text, "base": SCENE });
+            assert_eq!(page.ask("studio/draft", draft), saved());
+        }
         first.child.kill().unwrap();
         let second = start();
-        assert_eq!(offered(&second), later, "{draft}");
-        let (mut page, mut found) = second.page();
-        let newest = found["draft"]["time"].take();
-        assert!(later.is_empty() || newest.as_u64() > Some(0), "{draft}");
+        assert_eq!(offered(&second), later, "{written:?}");
+        let (mut page, _) = second.page();
         assert_eq!(save(&mut page, "// b", Some(SCENE))["result"], saved());
-        assert_eq!(offered(&second), left, "{draft}");
-        assert_eq!(page.ask("studio/draft", json!({ "text": null })), saved());
-        assert_eq!(offered(&second), "", "{draft}");
+        let now = offered(&second);
+        assert_eq!(now.replace(SCENE, "").trim(), left, "{written:?}");
+        for (id, _) in written {
+            assert_eq!(page.ask("studio/draft", json!({ "id": id })), saved());
+        }
+        assert_eq!(offered(&second), "", "{written:?}");
         assert_eq!(save(&mut page, SCENE, Some("// b"))["result"], saved());
     }
     let studio = start();
     let (mut page, _) = studio.page();
-    let params = json!({ "text": "// 0", "earlier": ["// 1"] });
-    assert_eq!(
-        page.respond("studio/draft", params)["error"]["code"],
-        -32602
-    );
+    let answer = page.respond("studio/draft", json!({ "text": "// 0" }));
+    assert_eq!(answer["error"]["code"], -32602);
 }
