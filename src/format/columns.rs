@@ -2,7 +2,7 @@
 //!
 //! In a group (lines without a blank one between) these are aligned: the `=` of definitions, the names and braces of objects
 //! that stand on one line each, the values of a block's fields, and the fields of equal objects as far as their names are the
-//! same. The braces of `image`, `camera` and `sampler` are aligned wherever they stand, as they are one group by their
+//! same. Objects on both sides of a line of comments are no group. The braces of `image`, `camera` and `sampler` are aligned wherever they stand, as they are one group by their
 //! meaning. Lines that would have to be filled with many blanks do not share a column.
 
 use super::{
@@ -14,13 +14,21 @@ use crate::schema;
 /// Parts that differ in their widths by more than this do not share a column.
 const SLACK: usize = 20;
 
+/// So many blocks of one kind are a table.
+const LEAST_ROWS: usize = 3;
+
 /// Decides the columns of a file's entries.
 pub fn align(entries: &mut [Entry<'_>]) {
+    keep_rows(entries);
     settings(entries);
     for run in runs(entries, class_in_file) {
-        match class_in_file(&entries[run[0]]) {
-            Class::Definition => starts(entries, &run),
-            _ => objects(entries, &run),
+        if class_in_file(&entries[run[0]]) == Class::Definition {
+            starts(entries, &run);
+        }
+    }
+    for run in runs(entries, class_of_objects) {
+        if class_in_file(&entries[run[0]]) == Class::Object {
+            objects(entries, &run);
         }
     }
     for entry in entries {
@@ -31,6 +39,30 @@ pub fn align(entries: &mut [Entry<'_>]) {
                 starts(&mut block.entries, &run);
             }
         }
+    }
+}
+
+/// Neighbours of one kind that are written on a line each stay so, even if some of them are a little too wide: a table of
+/// them is read at a glance.
+fn keep_rows(entries: &mut [Entry<'_>]) {
+    for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
+        if rows.len() < LEAST_ROWS {
+            continue;
+        }
+        for entry in rows {
+            if let What::Block(block) = &mut entry.what {
+                block.on_one_line = true;
+            }
+        }
+    }
+}
+
+/// Whether both are blocks of one kind, each written on one line.
+fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
+    let is_row = |block: &Block<'_>| block.on_one_line || block.is_nearly_one_line;
+    match (block(a), block(b)) {
+        (Some(a), Some(b)) => a.kind == b.kind && is_row(a) && is_row(b),
+        _ => false,
     }
 }
 
@@ -61,6 +93,14 @@ fn class_in_file(entry: &Entry<'_>) -> Class {
             false => Class::Odd,
         },
         What::Comments | What::Field(..) => Class::Odd,
+    }
+}
+
+/// Objects on both sides of a line of comments, or of an object of another layout, are too far apart to pad each other.
+fn class_of_objects(entry: &Entry<'_>) -> Class {
+    match class_in_file(entry) {
+        Class::Odd => Class::End,
+        class => class,
     }
 }
 

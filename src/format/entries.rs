@@ -60,6 +60,8 @@ pub struct Block<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether it stands on one line.
     pub on_one_line: bool,
+    /// Whether it was written on one line, which is just too wide.
+    pub is_nearly_one_line: bool,
 }
 
 impl Block<'_> {
@@ -194,8 +196,8 @@ impl<'s> Reader<'_, 's> {
         // ` { `, ` }`, and two blanks between two fields.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
-        let fits = width(&head) + 3 + fields <= WIDTH;
-        let on_one_line = is_empty || (is_on_one_line && fits);
+        let width = width(&head) + 3 + fields;
+        let on_one_line = is_empty || (is_on_one_line && width <= WIDTH);
         Some(What::Block(Block {
             head,
             kind,
@@ -205,6 +207,7 @@ impl<'s> Reader<'_, 's> {
             after_open,
             entries,
             on_one_line,
+            is_nearly_one_line: is_on_one_line && width <= WIDTH + WIDTH / 5,
         }))
     }
 
