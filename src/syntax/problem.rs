@@ -1,5 +1,7 @@
 //! How a problem of syntax is made of what `messages` says.
 
+use std::collections::BTreeMap;
+
 use crate::{
     diagnostic::{Applicability, Diagnostic, Edit, Fix, Label, Severity},
     source::Span,
@@ -87,6 +89,32 @@ pub fn times(more: usize) -> String {
         1 => ", and at one more place".to_owned(),
         _ => format!(", and at {more} more places"),
     }
+}
+
+/// Makes one report, at the first place, of all that say the same of a sign, such as each `−` of
+/// a text.
+pub fn tell_signs_once(problems: &mut Vec<Diagnostic>) {
+    // Where the report of a sign is, and how many more there were.
+    let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut kept: Vec<Diagnostic> = Vec::with_capacity(problems.len());
+    for mut found in std::mem::take(problems) {
+        let is_sign = found.code == "pinhole::unknown_operator"
+            && matches!(&*found.fixes, [fix] if matches!(&*fix.edits, [it] if it.text.len() == 1));
+        if is_sign && let Some((first, more)) = firsts.get_mut(&found.message) {
+            *more += 1;
+            let edits = found.fixes.iter_mut().flat_map(|fix| fix.edits.drain(..));
+            kept[*first].fixes[0].edits.extend(edits);
+            continue;
+        }
+        if is_sign {
+            firsts.insert(found.message.clone(), (kept.len(), 0));
+        }
+        kept.push(found);
+    }
+    for (first, more) in firsts.into_values() {
+        kept[first].message += &times(more);
+    }
+    *problems = kept;
 }
 
 /// What stands at some place, in a message: on one line, and not too long.

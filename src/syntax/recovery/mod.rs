@@ -27,7 +27,7 @@ use numbers::unit_of;
 
 use super::{
     Parsed, messages as say,
-    problem::{Message, shorten, times},
+    problem::{Message, shorten, tell_signs_once, times},
     scan::Scan,
     tokens::{Lexer, Token, TokenKind},
     tree::{Item, Name, Tree, Value, ValueKind, bad},
@@ -191,6 +191,7 @@ impl<'w, 's> Recovery<'w, 's> {
             problems: self.problems.into(),
             ..Parsed::default()
         };
+        tell_signs_once(&mut parsed.problems);
         scan.report(self.text, &mut parsed);
         parsed
     }
