@@ -63,7 +63,7 @@ pub fn capabilities(client: &Client) -> Value {
         },
         // 2: changes come as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
-        "completionProvider": {},
+        "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,
         "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
         "definitionProvider": true,

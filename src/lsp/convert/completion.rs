@@ -38,6 +38,9 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
+            // Neovim takes what has an edit and not this for filtered already, and puts the first
+            // one over what was typed.
+            "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
