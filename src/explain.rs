@@ -10,6 +10,66 @@ pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 /// What to do with a scene of a program whose z points away from the viewer, or up.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
+/// What others call things, with the heading of the reference or the word of the language where they
+/// are explained.
+pub const OTHER_NAMES: &[(&str, &str)] = &[
+    ("loop", "repetition"),
+    ("repeat", "repetition"),
+    ("array", "repetition"),
+    ("group", "repetition"),
+    ("angle", "values"),
+    ("angles", "values"),
+    ("vector", "values"),
+    ("number", "values"),
+    ("pair", "values"),
+    ("operator", "operators"),
+    ("expression", "operators"),
+    ("function", "functions"),
+    ("comment", "text"),
+    ("comments", "text"),
+    ("variable", "definitions"),
+    ("constant", "definitions"),
+    ("units", "values"),
+    ("field", "blocks"),
+    ("block", "blocks"),
+    ("default", "blocks"),
+    ("mesh", "objects"),
+    ("cube", "box"),
+    ("ball", "sphere"),
+    ("floor", "checkerboard"),
+    ("plane", "checkerboard"),
+    ("rotate", "objects"),
+    ("zoom", "fov"),
+    ("position", "eye"),
+];
+
+/// A section of the reference by its heading, whatever its case, with all that is below it.
+pub fn section(heading: &str) -> Option<&'static str> {
+    let is_heading = |line: &str| line.starts_with("## ");
+    let mut start = None;
+    let (mut offset, mut is_scene) = (0, false);
+    for line in LANGUAGE.split_inclusive('\n') {
+        is_scene ^= line.starts_with("```");
+        if !is_scene && is_heading(line) {
+            if let Some(start) = start {
+                return LANGUAGE.get(start..offset).map(str::trim_end);
+            }
+            let words = line.trim_start_matches('#').trim();
+            if words.eq_ignore_ascii_case(heading) {
+                start = Some(offset);
+            }
+        }
+        offset += line.len();
+    }
+    start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
+}
+
+/// The headings of the reference's sections.
+pub fn headings() -> impl Iterator<Item = &'static str> {
+    let lines = LANGUAGE.lines();
+    lines.filter_map(|line| line.strip_prefix("## "))
+}
+
 /// Pages on one subject.
 #[derive(Debug)]
 pub struct Group {
@@ -86,7 +146,7 @@ groups! {
     "Vectors": missing_parentheses brackets missing_comma needless_comma unclosed_parenthesis part_count part_type;
     "Calculations": missing_operator missing_operand unknown_operator operand_types unknown_function foreign_function function_without_arguments
         argument_count argument_type not_finite too_deep;
-    "The camera": view_undefined up_parallel empty_depth nothing_seen;
+    "The camera": view_undefined up_parallel empty_depth nothing_seen outside_picture;
     "Triangles and boxes": not_a_triangle on_one_line empty_box box_too_large;
     "Samples": unknown_method few_samples too_many_samples squares_too_small;
     "Overrides with --set": bad_set bad_target no_such_target;

@@ -9,6 +9,7 @@ use crate::{
     math::{Big, Real},
     numbers::{grouped, short, short_vector},
     scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
+    seen::{self, LISTED, Seen},
     source::Source,
     tracer::{Basis, vertices},
 };
@@ -73,6 +74,8 @@ pub struct ObjectFacts {
     pub line: usize,
     /// What it is.
     pub shape: Shape,
+    /// What is seen of it.
+    pub seen: Seen,
 }
 
 /// Says what a scene means; `source` is the file that it was read from.
@@ -82,11 +85,14 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
         Count::Total(_) => None,
     };
     let basis = Basis::new(&scene.camera, &scene.image);
-    let objects = scene.objects.iter().map(|object| ObjectFacts {
+    let seen = seen::seen(scene);
+    let objects = scene.objects.iter().zip(seen);
+    let objects = objects.map(|(object, seen)| ObjectFacts {
         name: object.name.clone(),
         indices: object.indices.clone(),
         line: source.line(object.span.start),
         shape: object.shape,
+        seen,
     });
     Inspection {
         size: [scene.image.width, scene.image.height],
@@ -185,6 +191,9 @@ impl Inspection {
             for (key, value) in shape_facts(&object.shape) {
                 facts[key] = value;
             }
+            if index < LISTED {
+                facts["seen"] = self.seen_facts(object.seen);
+            }
             facts
         });
         json!({
@@ -280,6 +289,58 @@ impl fmt::Display for Inspection {
                 "  {index:<3} {kind:<12} {name:<10} line {line:<4} {}",
                 summary(&object.shape)
             )?;
+        }
+        self.write_seen(f)
+    }
+}
+
+/// What is seen of the objects.
+impl Inspection {
+    fn seen_facts(&self, seen: Seen) -> Value {
+        match seen {
+            Seen::Part(corners, pixels) => json!({ "box": corners, "pixels": pixels }),
+            Seen::Outside(place) => json!({ "box": null, "pixels": 0, "outside": place.words() }),
+            Seen::HiddenBy(other) => {
+                let name = self.objects.get(other).and_then(|it| it.name.as_deref());
+                json!({ "box": null, "pixels": 0, "hidden_by": name, "hidden_by_index": other })
+            }
+            Seen::Nothing => json!({ "box": null, "pixels": 0 }),
+        }
+    }
+
+    fn write_seen(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.objects.is_empty() {
+            return Ok(());
+        }
+        let all = self.size.map(f64::from).iter().product::<f64>();
+        let share = |pixels: u64| format!("{} %", short(100.0 * pixels as f64 / all));
+        writeln!(f, "\nin the picture, as far as middles of pixels show it")?;
+        for (index, object) in self.objects.iter().enumerate().take(LISTED) {
+            let name = object.name.as_deref().unwrap_or("-");
+            let words = match object.seen {
+                Seen::Part([x, y, w, h], pixels) => {
+                    format!("{w} x {h} pixels at ({x}, {y}), {}", share(pixels))
+                }
+                Seen::Outside(place) => place.words().replace('`', ""),
+                Seen::HiddenBy(other) => {
+                    let other = self.objects.get(other);
+                    let name = other.map(|it| it.name.as_deref().unwrap_or(it.shape.kind()));
+                    format!("hidden by {}", name.unwrap_or_default())
+                }
+                Seen::Nothing => "nothing of it".to_owned(),
+            };
+            let kind = object.shape.kind();
+            writeln!(f, "  {index:<3} {kind:<12} {name:<10} {words}")?;
+        }
+        let rest = self.objects.get(LISTED..).unwrap_or_default();
+        if !rest.is_empty() {
+            let pixels = rest.iter().filter_map(|object| match object.seen {
+                Seen::Part(_, pixels) => Some(pixels),
+                _ => None,
+            });
+            let (count, seen) = (rest.len() as u64, pixels.clone().count() as u64);
+            let (count, seen, share) = (grouped(count), grouped(seen), share(pixels.sum()));
+            writeln!(f, "  {count} more, of which {seen} are seen: {share}")?;
         }
         Ok(())
     }

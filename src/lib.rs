@@ -67,6 +67,7 @@ pub mod grading;
 pub mod inspect;
 pub mod probe;
 pub mod report;
+pub mod seen;
 
 pub mod editor;
 #[cfg(feature = "lsp")]

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::{
     color::Color,
     numbers::{short, short_vector},
-    scene::Scene,
+    scene::{Object, Scene},
     tracer::{Hit, World, ray},
 };
 
@@ -22,8 +22,8 @@ pub struct Probe {
     pub origin: DVec3,
     /// The ray's direction, of length 1.
     pub direction: DVec3,
-    /// All crossings in front of the eye, the nearest first, with the object's kind and name.
-    pub hits: Vec<(Hit, &'static str, Option<String>)>,
+    /// All crossings in front of the eye, the nearest first, with the object.
+    pub hits: Vec<(Hit, Object)>,
     /// The colour that is seen.
     pub color: Color,
 }
@@ -35,33 +35,34 @@ pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let (direction, hits) = ray(&world, pixel);
     let visible = hits.iter().find(|hit| hit.visible);
     let color = visible.map_or(scene.image.background, |hit| hit.color);
-    let named = |hit: Hit| {
-        let object = &scene.objects[hit.object];
-        (hit, object.shape.kind(), object.name.clone())
-    };
+    let of_object = |hit: Hit| (hit, scene.objects[hit.object].clone());
     Probe {
         pixel,
         origin: scene.camera.eye,
         direction,
         color,
-        hits: hits.into_iter().map(named).collect(),
+        hits: hits.into_iter().map(of_object).collect(),
     }
 }
 
 impl Probe {
     /// The JSON object of the command line's contract.
     pub fn to_json(&self) -> Value {
-        let hits = self.hits.iter().map(|(hit, kind, name)| {
-            json!({
-                "object": name,
+        let hits = self.hits.iter().map(|(hit, object)| {
+            let mut facts = json!({
+                "object": object.name,
                 "index": hit.object,
-                "kind": kind,
+                "kind": object.shape.kind(),
                 "t": hit.t,
                 "depth": hit.depth,
                 "point": hit.point.to_array(),
                 "color": hit.color.to_string(),
                 "visible": hit.visible,
-            })
+            });
+            if !object.indices.is_empty() {
+                facts["indices"] = json!(object.indices);
+            }
+            facts
         });
         json!({
             "pixel": self.pixel.to_array(),
@@ -95,11 +96,12 @@ impl fmt::Display for Probe {
             f,
             "      t           depth       object                   color    point"
         )?;
-        for (hit, kind, name) in &self.hits {
+        for (hit, object) in &self.hits {
+            let kind = object.shape.kind();
             let mark = if hit.visible { "seen" } else { "" };
-            let object = match name {
+            let object = match &object.name {
                 Some(name) => format!("{kind} {name}"),
-                None => (*kind).to_owned(),
+                None => kind.to_owned(),
             };
             let (t, depth, point) = (short(hit.t), short(hit.depth), short_vector(hit.point));
             writeln!(

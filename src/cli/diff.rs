@@ -1,4 +1,4 @@
-//! `diff`: two pictures, or a picture and a scene's exact one.
+//! `diff`: two pictures, a picture and a scene's exact one, or the exact ones of two scenes.
 
 use std::{
     fmt::Write,
@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use super::{
     Status, Trouble,
     args::{DiffArgs, Format, LargeArgs},
+    exact_pictures::{self, EXACT_STEPS, is_scene},
     input::{self, Compared, Input, Most, is_standard, shown, unreadable, unwritable},
     interrupt::Interrupt,
     judge::{self, quoted},
@@ -36,6 +37,14 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
     let a = input::compared(&args.a, &args.large, Most::Start);
     let a = match a.map_err(|error| unreadable(&args.a, &error))? {
+        Compared::Other(_) if is_scene(&args.a) && is_scene(&args.b) => {
+            let cancel = interrupt.watch();
+            return match exact_pictures::of_scenes(args, cancel)? {
+                None => Ok(Status::SceneErrors),
+                Some(Err(error)) => ended(error),
+                Some(Ok([a, b])) => compare(args, [&a, &b], EXACT_STEPS, cancel),
+            };
+        }
         Compared::Other(_) if is_scene(&args.a) => {
             return Err(Trouble(format!(
                 "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
@@ -68,25 +77,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             return Err(Trouble(message));
         }
         let b = read(&args.b, &b, &args.large)?;
-        let steps = args.tolerance;
-        let steps = steps.unwrap_or_else(|| a.rounding.steps() + b.rounding.steps());
-        let tolerance = Tolerance {
-            steps,
-            bounds: None,
-        };
-        let comparison = film::compare(&a.film, &b.film, tolerance);
-        let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
-        let report = Report {
-            names: [&args.a, &args.b].map(|path| path.display().to_string()),
-            sizes: [&a.film, &b.film].map(|film| [film.width(), film.height()]),
-            comparison,
-            tolerance: steps,
-            verdict: None,
-            is_strict,
-        };
-        report.print(args.format.format)?;
-        write_heat_map(args, [&a.film, &b.film], tolerance, is_equal, cancel)?;
-        return Ok(status(is_equal));
+        let steps = a.rounding.steps() + b.rounding.steps();
+        return compare(args, [&a.film, &b.film], steps, cancel);
     }
 
     let input = Input::of(&args.b, b, &args.overrides);
@@ -134,6 +126,31 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
+/// Compares two pictures that are given, or are of scenes.
+fn compare(
+    args: &DiffArgs,
+    films: [&Film; 2],
+    steps: f64,
+    cancel: &AtomicBool,
+) -> Result<Status, Trouble> {
+    let steps = args.tolerance.unwrap_or(steps);
+    let bounds = None;
+    let tolerance = Tolerance { steps, bounds };
+    let comparison = film::compare(films[0], films[1], tolerance);
+    let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
+    let report = Report {
+        names: [&args.a, &args.b].map(|path| path.display().to_string()),
+        sizes: films.map(|film| [film.width(), film.height()]),
+        comparison,
+        tolerance: steps,
+        verdict: None,
+        is_strict: args.strict || args.tolerance.is_some(),
+    };
+    report.print(args.format.format)?;
+    write_heat_map(args, films, tolerance, is_equal, cancel)?;
+    Ok(status(is_equal))
+}
+
 fn status(is_accepted: bool) -> Status {
     match is_accepted {
         true => Status::Done,
@@ -148,10 +165,6 @@ fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble
         output::warning(&format!("{}: {warning}", shown(path)));
     }
     Ok(picture)
-}
-
-fn is_scene(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "scn")
 }
 
 fn ended(error: RenderError) -> Result<Status, Trouble> {

@@ -75,12 +75,22 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     if let Some(page) = explain::page(trimmed) {
         return Ok(page.text.into());
     }
-    if let Some(page) = describe::word(trimmed) {
+    if let Some(page) = describe::word(trimmed).or_else(|| describe::field_of(trimmed)) {
+        return Ok(page.into());
+    }
+    let mut others = explain::OTHER_NAMES.iter();
+    let other = others.find(|(name, _)| name.eq_ignore_ascii_case(trimmed));
+    let meant = other.map_or(trimmed, |(_, meant)| *meant);
+    if let Some(page) = explain::section(meant) {
+        return Ok(format!("{page}\n").into());
+    }
+    if let Some(page) = describe::word(meant) {
         return Ok(page.into());
     }
     let codes = explain::pages().map(|page| page.code);
     let others = ["language", "left_handed"].into_iter();
     let words = codes.chain(describe::words()).chain(others);
+    let words = words.chain(explain::headings());
     let near = suggest::nearest(explain::short(trimmed), words);
     Err(Trouble(match near {
         Some(near) => format!("there is no code `{word}`: did you mean `{near}`?"),
@@ -102,7 +112,7 @@ fn list(headings: Headings) -> String {
             let _ = writeln!(text, "  {:width$}  {}", page.code, page.title());
         }
     }
-    text.push_str("\nThere are also `language`, the reference, and `left_handed`, for scenes of programs whose z points away.\n");
+    text.push_str("\nThere are also `language`, the reference, each of its headings, such as `repetition`, a field of a block, such as `camera.up`, and `left_handed`, for scenes of programs whose z points away.\n");
     text
 }
 
@@ -112,13 +122,17 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut paragraph = String::new();
     let mut is_scene = false;
     // The empty line after the last one ends its paragraph.
+    let mut rows: Vec<Vec<&str>> = Vec::new();
     for line in page.lines().chain([""]) {
+        if !is_scene && line.starts_with('|') {
+            rows.push(cells(line));
+            continue;
+        }
+        push_table(&mut text, &std::mem::take(&mut rows), width);
         if line.starts_with("```") {
             is_scene = !is_scene;
         } else if is_scene {
             let _ = writeln!(text, "    {line}");
-        } else if line.starts_with('|') {
-            let _ = writeln!(text, "{line}");
         } else if let Some(words) = line.trim_start_matches('#').strip_prefix(' ') {
             let _ = writeln!(text, "{}", headings.heading(words));
         } else if line.is_empty() {
@@ -137,6 +151,53 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     text.truncate(text.trim_end().len());
     text.push('\n');
     text
+}
+
+/// The cells of a row of a table in Markdown; a sign `\\|` in a cell is no border.
+fn cells(line: &str) -> Vec<&str> {
+    let inner = line.trim().trim_start_matches('|');
+    let inner = inner.strip_suffix('|').unwrap_or(inner);
+    let mut cells = Vec::new();
+    let (mut start, mut before) = (0, ' ');
+    for (at, c) in inner.char_indices() {
+        if c == '|' && before != '\\' {
+            cells.push(inner.get(start..at).unwrap_or_default().trim());
+            start = at + 1;
+        }
+        before = c;
+    }
+    cells.push(inner.get(start..).unwrap_or_default().trim());
+    cells
+}
+
+/// A table: in columns where they fit, otherwise each row a paragraph.
+fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
+    let is_rule = |row: &&Vec<&str>| {
+        row.iter()
+            .all(|cell| cell.chars().all(|c| "-: ".contains(c)))
+    };
+    let rows: Vec<_> = rows.iter().filter(|row| !is_rule(row)).collect();
+    let columns = rows.iter().map(|row| row.len()).max().unwrap_or_default();
+    let length = |cell: &str| cell.chars().count();
+    let widths: Vec<usize> = (0..columns)
+        .map(|column| {
+            let cells = rows.iter().filter_map(|row| row.get(column));
+            cells.map(|cell| length(cell)).max().unwrap_or_default()
+        })
+        .collect();
+    let fits = widths.iter().map(|width| width + 2).sum::<usize>() <= width + 2;
+    for row in rows {
+        if fits {
+            let padded = row.iter().zip(&widths);
+            let padded: Vec<String> = padded
+                .map(|(cell, width)| format!("{cell}{}", " ".repeat(width - length(cell))))
+                .collect();
+            let _ = writeln!(text, "{}", padded.join("  ").trim_end());
+        } else {
+            let told = row.iter().filter(|cell| !cell.is_empty());
+            push_wrapped(text, &Vec::from_iter(told.copied()).join(" · "), width);
+        }
+    }
 }
 
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
@@ -180,6 +241,32 @@ mod tests {
                 assert!(!text.contains("\n\n\n"), "{text}");
             }
         }
+    }
+
+    #[test]
+    fn the_reference_fits_terminals() {
+        for width in [20, 40, 60, 80, WIDEST] {
+            let text = drawn(explain::LANGUAGE, width, Headings::Plain);
+            let is_heading = |line: &str| explain::headings().any(|heading| heading == line);
+            let mut lines = text
+                .lines()
+                .filter(|line| !line.starts_with("    ") && !is_heading(line));
+            let is_wide = |line: &&str| line.chars().count() > width && line.contains(' ');
+            let wide = lines.find(|line| is_wide(line));
+            assert_eq!(wide, None, "{width}");
+            assert!(!text.contains("| --"), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_others_call_things_is_explained() {
+        let headings = explain::headings();
+        let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
+        for word in headings.chain(others).chain(["camera.up", "box.colors"]) {
+            let found = page(word).map(|page| page.starts_with('#'));
+            assert!(found.is_ok_and(|is_page| is_page), "{word}");
+        }
+        assert!(page("box.radius").is_err());
     }
 
     #[test]

@@ -72,6 +72,7 @@ Examples:
   pinhole diff mine.png figure.scn               a picture with what the scene means, without noise
   pinhole diff mine.png figure.scn -o where.png  also a heat map of the differences
   pinhole diff mine.png figure.scn --strict --format json
+  pinhole diff old.scn new.scn -o where.png      what a change of a scene changes
 
 Where B is a scene, the verdict comes first: the picture is right, right but for sampling noise, or wrong. Mistakes that explain \
 the difference are named, with the --set arguments that make the scene give that picture; then what is right and what is not, \

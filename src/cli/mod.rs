@@ -8,6 +8,7 @@ mod args;
 mod check;
 mod diff;
 mod difference;
+mod exact_pictures;
 mod explain;
 mod fmt;
 mod grade;

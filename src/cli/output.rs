@@ -140,10 +140,16 @@ pub fn page_style() -> Option<Style> {
 }
 
 /// Whether a terminal may be written to in colour: <https://no-color.org> and
-/// <https://bixense.com/clicolors>.
-fn has_color() -> bool {
+/// <https://bixense.com/clicolors>. The terminals of DEC, such as the VT100, have none.
+pub fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
-    !is("TERM", "dumb") && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
+    let is_of_dec = |name: &str| match name.strip_prefix("vt") {
+        Some(model) => model.starts_with(|c: char| c.is_ascii_digit()),
+        None => false,
+    };
+    let terminal = env::var("TERM").unwrap_or_default();
+    let is_plain = terminal == "dumb" || is_of_dec(&terminal);
+    !is_plain && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
 }
 
 /// As no-color.org says: present and not empty.

@@ -47,6 +47,14 @@ impl Screen {
                 "`--show` draws in a terminal, and standard error is none".to_owned(),
             ));
         }
+        if !output::has_color() {
+            return Err(Trouble(
+                "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`".to_owned(),
+            ));
+        }
+        // What stands on the screen is scrolled up, where people find it again: what follows is
+        // drawn from the top.
+        output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(Shown::default()),
             said: String::new(),

@@ -110,8 +110,18 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    let is_taken =
-        |token: &&Token| space_of(token.role) == Some(space) && analysis.slice(token.span) == new;
+    // An index of another block is known there alone, and no index of this one.
+    let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
+    let own = block(analysis.slice(name.span), name.span.start);
+    let is_elsewhere = |token: &Token| {
+        let other = block(new, token.span.start);
+        own.is_some() && other.is_some() && own != other
+    };
+    let is_taken = |token: &&Token| {
+        space_of(token.role) == Some(space)
+            && analysis.slice(token.span) == new
+            && !is_elsewhere(token)
+    };
     // One that nothing defines would be this one from then on.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {

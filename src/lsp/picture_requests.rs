@@ -113,13 +113,17 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
 /// An object of the scene, and where it stands in the text.
 fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
     let object = &version.scene.objects[index];
-    json!({
+    let mut facts = json!({
         "index": index,
         "kind": object.shape.kind(),
         "name": object.name,
         "range": converter.range(object.span),
         "selection": converter.range(version.selections[index]),
-    })
+    });
+    if !object.indices.is_empty() {
+        facts["indices"] = json!(object.indices);
+    }
+    facts
 }
 
 /// The objects without what is drawn of them.

@@ -59,6 +59,16 @@ pub fn word(word: &str) -> Option<String> {
     (!parts.is_empty()).then_some(text)
 }
 
+/// A field of one kind of block, written `BLOCK.FIELD`, with an example.
+pub fn field_of(path: &str) -> Option<String> {
+    let (block, name) = path.split_once('.')?;
+    let row = schema::block(block)?;
+    let field = row.field(name)?;
+    let about = about_field(row, field);
+    let example = format!("{name} {}", field.example);
+    Some(format!("# {path}\n\n{about}\n\n```scn\n{example}\n```\n"))
+}
+
 /// Every word that [`word`] knows, but for the colours.
 pub fn words() -> impl Iterator<Item = &'static str> {
     let fields = schema::BLOCKS.iter().flat_map(Block::field_names);

@@ -34,4 +34,5 @@ pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};
 pub use model::*;
 pub use semantic_model::{Parts, SemanticModel};
+pub use unseen::{Place, Sight, sphere_around};
 pub use value::operate;

@@ -57,6 +57,71 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     })
 }
 
+/// Where an object is that the camera cannot see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Behind the camera.
+    Behind,
+    /// Nearer than the near plane.
+    BeforeNear,
+    /// Farther than the far plane.
+    BeyondFar,
+    /// Beside the window: left, right, above or below.
+    Beside(&'static str),
+}
+
+impl Place {
+    /// The place in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Behind => "behind the camera",
+            Self::BeforeNear => "nearer than `near`",
+            Self::BeyondFar => "beyond `far`",
+            Self::Beside(side) => side,
+        }
+    }
+}
+
+/// The space that a camera sees, to ask where objects are that lie wholly outside of it.
+pub struct Sight {
+    frustum: Frustum,
+    near: f64,
+    far: f64,
+}
+
+impl Sight {
+    /// Returns `None` if the camera's axes are not known well enough.
+    pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
+        Some(Self {
+            frustum: Frustum::new(camera, image)?,
+            near: camera.near,
+            far: camera.far.unwrap_or(f64::INFINITY),
+        })
+    }
+
+    /// Says where an object is if a sphere around it shows that no part of it is in the picture.
+    pub fn outside(&self, shape: &Shape) -> Option<Place> {
+        let frustum = &self.frustum;
+        let Some(sphere) = sphere_around(shape) else {
+            let sees = frustum.may_see(shape, self.near, self.far);
+            return (!sees).then_some(Place::Beside("outside of the window"));
+        };
+        let forward = frustum.forward;
+        if frustum.is_beyond(sphere, forward, 0.0) {
+            return Some(Place::Behind);
+        }
+        let mut sides = frustum.sides().into_iter();
+        if let Some((name, _)) = sides.find(|(_, side)| frustum.is_beyond(sphere, *side, 0.0)) {
+            return Some(Place::Beside(name));
+        }
+        if frustum.is_beyond(sphere, forward, self.near) {
+            return Some(Place::BeforeNear);
+        }
+        let is_far = frustum.is_beyond(sphere, -forward, -self.far);
+        is_far.then_some(Place::BeyondFar)
+    }
+}
+
 /// Whether samples show squares of a board that they cannot tell apart, so that all have one
 /// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
@@ -157,16 +222,28 @@ impl Frustum {
             (Shape::Checkerboard(board), _) => return self.may_see_plane(board.y, near, far),
             _ => return true,
         };
-        // A side goes through the eye and along one of the axes; these point inwards.
-        let sides = self.window.into_iter().flat_map(|axis| {
-            let half = axis.length();
-            [1.0, -1.0].map(|sign| (self.forward * half + axis / half * sign).normalize())
-        });
         !self.is_beyond(sphere, self.forward, near)
             && !self.is_beyond(sphere, -self.forward, -far)
-            && !sides
+            && !self
+                .sides()
                 .into_iter()
-                .any(|side| self.is_beyond(sphere, side, 0.0))
+                .any(|(_, side)| self.is_beyond(sphere, side, 0.0))
+    }
+
+    /// The normals of the window's four sides, which point inwards, and what is beyond each. A side
+    /// goes through the eye and along one of the axes.
+    fn sides(&self) -> [(&'static str, DVec3); 4] {
+        let [right, top] = self.window;
+        let side = |axis: DVec3, sign: f64| {
+            let half = axis.length();
+            (self.forward * half + axis / half * sign).normalize()
+        };
+        [
+            ("left of the window", side(right, 1.0)),
+            ("right of the window", side(right, -1.0)),
+            ("below the window", side(top, 1.0)),
+            ("above the window", side(top, -1.0)),
+        ]
     }
 
     /// Whether all of a sphere lies clearly on the outer side of a plane: at n·(p − e) < bound, n of length 1.

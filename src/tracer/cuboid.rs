@@ -46,8 +46,10 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         faces.push((plane, inverse_depth(camera, &normal, &height)));
     }
     for (i, front) in &fronts {
-        // Between two parallel faces a ray always is for a while.
-        let others = backs.iter().filter(|(j, _)| i / 2 != j / 2);
+        // Between two parallel faces a ray always is for a while. What bounds the other faces
+        // follows from what bounds the only one.
+        let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
+        let others = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(others.map(|(_, back)| front.minus(back)));
     }
     let Some(only) = only else {

@@ -1,12 +1,23 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
-//! In: a scene. Out: the scene with six objects in the place of each such box, and which face of
-//! which object each of them is. To a ray a face is a flat object, and two that share an edge have
-//! the same line for it, so that no ray slips through between them.
+//! In: a scene. Out: the scene with an object for each face that may be seen in the place of each
+//! such box, and which face of which object each of them is. To a ray a face is a flat object, and
+//! two that share an edge have the same line for it, so that no ray slips through between them.
 
-use std::{borrow::Cow, sync::Arc};
+use std::{array, borrow::Cow, sync::Arc};
 
-use crate::scene::{Object, Scene, Shape};
+use glam::DVec3;
+
+use crate::scene::{Cuboid, Object, Scene, Shape};
+
+/// Which faces become objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Faces {
+    /// Those that may be seen: it is for a picture.
+    Seen,
+    /// All of them: every crossing of a ray is asked for.
+    All,
+}
 
 /// What the objects of a scene that was taken apart are; nothing where each is an object.
 #[derive(Debug, Default)]
@@ -14,7 +25,7 @@ pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
 impl Pieces {
     /// Takes a scene apart.
-    pub fn of(scene: &Scene) -> (Cow<'_, Scene>, Self) {
+    pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let faces = |object: &Object| match object.shape {
             Shape::Box(cuboid) => cuboid.faces,
             _ => None,
@@ -22,6 +33,8 @@ impl Pieces {
         if scene.objects.iter().all(|object| faces(object).is_none()) {
             return (Cow::Borrowed(scene), Self::default());
         }
+        // The near plane may cut the front faces off, so that those behind them are seen.
+        let only_fronts = which == Faces::Seen && scene.camera.near == 0.0;
         let (mut objects, mut pieces) = (Vec::new(), Vec::new());
         for (owner, object) in scene.objects.iter().enumerate() {
             let (Some(colors), Shape::Box(mut cuboid)) = (faces(object), object.shape) else {
@@ -30,11 +43,20 @@ impl Pieces {
                 continue;
             };
             cuboid.faces = None;
-            for face in 0..6 {
+            let fronts = fronts(&cuboid, scene.camera.eye);
+            // From inside there are none, and the faces behind are seen first.
+            let only_fronts = only_fronts && fronts.contains(&true);
+            for (face, is_front) in (0..).zip(fronts) {
+                if only_fronts && !is_front {
+                    continue;
+                }
                 cuboid.color = colors[usize::from(face / 2)];
-                let shape = Shape::Box(cuboid);
-                let object = object.clone();
-                objects.push(Object { shape, ..object });
+                objects.push(Object {
+                    name: None,
+                    indices: Box::default(),
+                    shape: Shape::Box(cuboid),
+                    span: object.span,
+                });
                 pieces.push((owner, Some(face)));
             }
         }
@@ -52,4 +74,12 @@ impl Pieces {
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }
+}
+
+/// Which faces the eye looks at from outside; their numbers are as in [`cuboid`](super::cuboid).
+fn fronts(cuboid: &Cuboid, eye: DVec3) -> [bool; 6] {
+    array::from_fn(|face| match (face / 2, face % 2) {
+        (axis, 0) => eye[axis] < cuboid.min[axis],
+        (axis, _) => eye[axis] > cuboid.max[axis],
+    })
 }

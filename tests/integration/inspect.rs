@@ -5,11 +5,13 @@ use pinhole::{
     inspect::{Inspection, inspect},
     probe::{Probe, probe},
     report::numerics::oracle::{ALL_SIZES, Oracle, length},
-    scene::View,
+    scene::{self, View},
     tracer::World,
 };
 
 use crate::{
+    generated::{Numbers, generated},
+    program::Folder,
     scenes::{example_text as example, read, sources},
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
@@ -76,9 +78,9 @@ fn all_crossings_are_listed_and_one_is_seen() {
         sphere B { center (0, 0, 0) radius 2 color red }
         box    C { min (-1, -1, -5) max (1, 1, -4) }";
     let probe = probed(text, 400.0, 225.0);
-    let listed = probe.hits.iter().map(|(hit, _, name)| {
+    let listed = probe.hits.iter().map(|(hit, object)| {
         let sign = if hit.visible { "!" } else { "" };
-        format!("{}{sign} {}", name.as_deref().unwrap(), hit.t)
+        format!("{}{sign} {}", object.name.as_deref().unwrap(), hit.t)
     });
     let listed: Vec<_> = listed.collect();
     assert_eq!(listed.join(", "), "A 8, B 8, A! 12, B 12, C 14, C 15");
@@ -149,7 +151,9 @@ fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
     // In the worked case a floor point is twice its view plane point (1, −1.5), 160 pixels to the right of the middle and 240 above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
-    let floor = hits.iter().find(|(_, kind, _)| *kind == "checkerboard");
+    let floor = hits
+        .iter()
+        .find(|(_, object)| object.shape.kind() == "checkerboard");
     let (floor, ..) = floor.unwrap();
     assert_eq!((floor.point, floor.depth), (dvec3(2.0, 0.0, -3.0), 10.0));
     for lens in [
@@ -172,4 +176,95 @@ fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
     let (hit, ..) = &probed(text, 400.0, 225.0).hits[0];
     assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
+}
+
+/// What is seen of each object, through the program's own answer.
+#[test]
+fn what_is_seen_of_each_object_is_told() {
+    let scene =
+        "image { width 100 height 100 } camera { eye (0, 0, 10) lookat (0, 0, 0) fov 90deg near 1 far 100 }
+         box Wall { min (-5, -5, -1) max (5, 5, 0) }
+         sphere Hidden { center (0, 0, -5) }
+         sphere Behind { center (0, 0, 20) }
+         sphere Right { center (60, 0, 0) }
+         sphere Above { center (0, 60, 0) }
+         sphere Near { center (0, 0, 9.5) radius 0.1 }
+         sphere Far { center (0, 0, -200) }
+         sphere Row for i < 2 { center (-7 + 99 * i, 0, 0) }";
+    let folder = Folder::with([("a.scn", scene)]);
+    let json = folder.run("inspect a.scn --format json").json();
+    let seen = |index: usize| json["objects"][index]["seen"].to_string();
+    assert_eq!(seen(0), r#"{"box":[25,25,50,50],"pixels":2500}"#);
+    for (index, what) in [
+        (1, r#""hidden_by":"Wall""#),
+        (2, r#""outside":"behind the camera""#),
+        (3, r#""outside":"right of the window""#),
+        (4, r#""outside":"above the window""#),
+        (5, r#""outside":"nearer than `near`""#),
+        (6, r#""outside":"beyond `far`""#),
+        (7, r#""box":[10,"#),
+        (8, r#""outside":"right of the window""#),
+    ] {
+        assert!(seen(index).contains(what), "{}", seen(index));
+    }
+    let hits = folder.run("probe a.scn 15 50 --format json").json();
+    assert_eq!(hits["hits"][0]["indices"].to_string(), "[0]", "{hits}");
+}
+
+/// Two scenes are compared without noise, and each command line ends as it says.
+#[test]
+fn scenes_are_compared_exactly() {
+    let folder = Folder::with([
+        (
+            "a.scn",
+            "image { width 40 height 30 } camera { eye (0, 0, 9) lookat (0, 0, 0) } sphere { center (0, 0, 0) }",
+        ),
+        (
+            "b.scn",
+            "camera { lookat (0, 0, 0) eye (0, 0, 9) } image { width 40 height 30 } let o = (0, 0, 0) sphere { center o }",
+        ),
+        (
+            "c.scn",
+            "image { width 40 height 30 } camera { eye (0, 0, 9) lookat (0, 0, 0) } sphere { center (0.01, 0, 0) }",
+        ),
+        (
+            "d.scn",
+            "image { width 41 height 30 } camera { eye (0, 0, 9) lookat (0, 0, 0) } sphere { center (0, 0, 0) }",
+        ),
+    ]);
+    for (line, status, words) in [
+        ("diff a.scn b.scn", 0, "are equal"),
+        ("diff a.scn c.scn -o heat.png", 1, "differ"),
+        ("diff a.scn c.scn --tolerance 255", 0, "are equal"),
+        ("diff a.scn d.scn", 2, "give both one size"),
+        ("diff a.scn b.scn --crop 0,0,1,1", 2, "`--crop`"),
+    ] {
+        let said = folder.run(line);
+        assert_eq!(said.status, status, "{line}: {}", said.errors);
+        assert!(said.errors.contains(words), "{line}: {}", said.errors);
+    }
+    assert!(!folder.read("heat.png").is_empty());
+}
+
+/// A warning that an object is outside of the picture is never false: nothing of it is seen.
+#[test]
+fn nothing_is_seen_of_what_lies_outside_of_the_picture() {
+    let mut outside = 0;
+    for (text, _) in generated(Numbers::Wild(0), [12, 8], 3).take(300) {
+        let Some(scene) = scene::read(&sources(&text)).scene else {
+            continue;
+        };
+        let Some(sight) = scene::Sight::new(&scene.camera, &scene.image) else {
+            continue;
+        };
+        let world = World::new(&scene);
+        let pixels = (0..8).flat_map(|y| (0..12).map(move |x| (x, y)));
+        let seen: Vec<_> = pixels.filter_map(|(x, y)| world.object_at(x, y)).collect();
+        for (index, object) in scene.objects.iter().enumerate() {
+            let is_outside = sight.outside(&object.shape).is_some();
+            outside += u32::from(is_outside);
+            assert!(!is_outside || !seen.contains(&index), "{index}: {text}");
+        }
+    }
+    assert!(outside > 50, "{outside}");
 }

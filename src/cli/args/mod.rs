@@ -47,7 +47,7 @@ pub enum Command {
     /// Follow one ray, surface by surface
     #[command(after_help = help::PROBE_EXAMPLES)]
     Probe(ProbeArgs),
-    /// Compare two pictures, or a picture with a scene's exact one
+    /// Compare two pictures, a picture with a scene's exact one, or two scenes exactly
     #[command(after_help = help::DIFF_EXAMPLES)]
     Diff(DiffArgs),
     /// Judge a class's pictures of a scene

@@ -13,9 +13,13 @@ use crate::{
     scene::{
         error::{error, warning},
         model::{Camera, Checkerboard, Image, Lens, Object, View, level_direction},
-        unseen::{LEAST_SINE, Unseen, are_squares_lost, sphere_around, why_unseen},
+        unseen::{LEAST_SINE, Place, Sight, Unseen, are_squares_lost, sphere_around, why_unseen},
     },
+    suggest,
 };
+
+/// Maximum number of objects that one warning names.
+const MOST_NAMED: usize = 3;
 
 impl<'s> Lowering<'s> {
     pub(super) fn camera(&mut self, block: &Block<'s>) -> Option<Camera> {
@@ -167,7 +171,7 @@ impl<'s> Lowering<'s> {
         objects: &[Object],
     ) {
         let Some(why) = why_unseen(camera, image, objects) else {
-            return;
+            return self.outside(camera, image, objects);
         };
         let looks = match camera.view {
             View::Lookat(_) => "lookat",
@@ -213,6 +217,59 @@ impl<'s> Lowering<'s> {
 }
 
 impl Lowering<'_> {
+    /// Warns of named objects that lie wholly outside of the picture; of a block with indices if
+    /// all of its objects do.
+    fn outside(&mut self, camera: &Camera, image: &Image, objects: &[Object]) {
+        let Some(sight) = Sight::new(camera, image) else {
+            return;
+        };
+        let mut outside = Vec::new();
+        for block in objects.chunk_by(|one, other| one.span == other.span) {
+            let name = block.first().and_then(|object| object.name.as_deref());
+            let name = name.map(|name| name.split('[').next().unwrap_or(name));
+            let Some((name, &place)) = name.and_then(|it| self.first_names.get_key_value(it))
+            else {
+                continue;
+            };
+            let mut places = block.iter().map(|object| sight.outside(&object.shape));
+            let Some(first) = places.next().flatten() else {
+                continue;
+            };
+            let others: Option<Vec<Place>> = places.collect();
+            let Some(others) = others else { continue };
+            let words = match others.iter().all(|other| *other == first) {
+                true => first.words(),
+                false => "outside of the picture",
+            };
+            outside.push((format!("`{name}`"), place, words));
+        }
+        let Some((first, _, _)) = outside.first() else {
+            return;
+        };
+        let (message, help) = match outside.len() {
+            1 => (
+                format!("{first} lies outside of the picture"),
+                "move it or the camera, or leave it out",
+            ),
+            count => {
+                let listed = outside.iter().take(MOST_NAMED);
+                let mut names: Vec<String> = listed.map(|(name, ..)| name.clone()).collect();
+                if count > MOST_NAMED {
+                    names.push(format!("{} more", count - MOST_NAMED));
+                }
+                let names = suggest::list(names.iter().map(String::as_str));
+                (
+                    format!("{names} lie outside of the picture"),
+                    "move them or the camera, or leave them out",
+                )
+            }
+        };
+        let problem = warning("outside_picture", message).help(help);
+        let labels = outside.iter().take(MOST_NAMED);
+        let problem = labels.fold(problem, |it, (_, place, words)| it.at(*place, *words));
+        self.problems.push(problem);
+    }
+
     /// Warns of boards whose squares samples cannot tell apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);

@@ -1,6 +1,8 @@
 //! Blocks with indices, each of which stands for many objects.
 
-use super::lowering::{Lowering, mentions};
+use std::collections::BTreeSet;
+
+use super::lowering::Lowering;
 use crate::{
     diagnostic::{Fix, Label},
     numbers,
@@ -9,6 +11,7 @@ use crate::{
     source::Span,
     syntax::{
         NESTING_LIMIT,
+        tokens::{Lexer, TokenKind},
         tree::{Block, Index, Name, Repetition},
     },
 };
@@ -45,29 +48,53 @@ impl<'s> Lowering<'s> {
         self.names.restore(hidden);
     }
 
-    /// The combinations of the indices' values, in order: each of those of the indices before one
-    /// goes on with all of its values. None if a count is wrong.
-    fn combinations(
-        &mut self,
-        block: &Block<'s>,
-        repetition: &Repetition<'s>,
-    ) -> Option<Vec<Box<[u32]>>> {
+    /// The combinations of the indices' values one behind the other, in order: each of those of the
+    /// indices before one goes on with all of its values. None if a count is wrong.
+    ///
+    /// Counts that depend on no index are known before memory is taken for any combination, so that
+    /// a product that is too large is reported whatever the order of its factors.
+    fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
-        let mut combinations = vec![Box::default()];
+        let mut counts = Vec::new();
         for index in &repetition.indices {
-            let mut longer: Vec<Box<[u32]>> = Vec::new();
-            for values in combinations {
-                self.set_indices(repetition, &values);
-                let told = self.problems.len();
-                let count = self.count(index).filter(|_| self.is_wanted());
-                self.say_where(told, block, repetition, &values);
-                let count = count?;
-                if longer.len().saturating_add(count) > most {
+            counts.push(match self.depends(index.count.span, repetition) {
+                true => None,
+                false => Some(self.count(index).filter(|_| self.is_wanted())?),
+            });
+        }
+        let mut combinations = Vec::new();
+        for (level, index) in repetition.indices.iter().enumerate() {
+            let behind = counts.iter().skip(level + 1).flatten();
+            let behind = behind.fold(1, |product: usize, count| product.saturating_mul(*count));
+            let mut longer: Vec<u32> = Vec::new();
+            let before = match level {
+                0 => vec![&[][..]],
+                _ => combinations.chunks_exact(level).collect(),
+            };
+            for values in before {
+                let count = match counts.get(level).copied().flatten() {
+                    Some(count) => count,
+                    None => {
+                        self.set_indices(repetition, values);
+                        let told = self.problems.len();
+                        let count = self.count(index).filter(|_| self.is_wanted());
+                        self.say_where(told, block, repetition, values);
+                        count?
+                    }
+                };
+                let so_far = longer.len() / (level + 1);
+                if so_far.saturating_add(count).saturating_mul(behind) > most {
                     let found = format!("more than {MOST_OBJECTS} combinations");
                     self.too_many(repetition, &found);
                     return None;
                 }
-                longer.extend((0..count as u32).map(|last| [&*values, &[last]].concat().into()));
+                // Where none are left behind it, there may be any number of it.
+                if behind > 0 {
+                    for last in 0..count as u32 {
+                        longer.extend_from_slice(values);
+                        longer.push(last);
+                    }
+                }
             }
             combinations = longer;
         }
@@ -79,7 +106,7 @@ impl<'s> Lowering<'s> {
         row: &'static schema::Block,
         block: &Block<'s>,
         repetition: &Repetition<'s>,
-        combinations: Vec<Box<[u32]>>,
+        combinations: Vec<u32>,
     ) {
         let changes = |value: Span, takes| takes == Type::Color || self.depends(value, repetition);
         let fields = block.fields.iter().filter_map(|field| {
@@ -100,10 +127,10 @@ impl<'s> Lowering<'s> {
             self.lowered(row, block);
         }
         let mut lowered = None;
-        let mut has_warned = false;
-        for values in combinations {
+        let mut warnings = BTreeSet::new();
+        for values in combinations.chunks_exact(repetition.indices.len().max(1)) {
             let told = self.problems.len();
-            self.set_indices(repetition, &values);
+            self.set_indices(repetition, values);
             self.is_odd = Some(values.iter().fold(0, |sum, value| sum ^ value) % 2 == 1);
             let lowered = match &mut lowered {
                 None => lowered.insert(self.lowered(row, block)),
@@ -116,12 +143,17 @@ impl<'s> Lowering<'s> {
                     again
                 }
             };
-            let is_built = self.is_wanted() && self.object(lowered, &values);
-            if is_built && has_warned {
-                self.problems.truncate(told);
+            let is_built = self.is_wanted() && self.object(lowered, values);
+            if is_built && self.problems.len() > told {
+                // What one repetition was warned of is not said of the others.
+                for problem in self.problems.split_off(told) {
+                    let place = problem.labels.first().map(|label| label.span);
+                    if warnings.insert((problem.code.clone(), place)) {
+                        self.problems.push(problem);
+                    }
+                }
             }
-            has_warned |= self.problems.len() > told;
-            self.say_where(told, block, repetition, &values);
+            self.say_where(told, block, repetition, values);
             if !is_built {
                 break;
             }
@@ -140,7 +172,7 @@ impl<'s> Lowering<'s> {
     fn depends(&self, value: Span, repetition: &Repetition<'_>) -> bool {
         let text = self.sources.text(value);
         let mut indices = repetition.indices.iter();
-        indices.any(|index| mentions(text, index.name.text))
+        indices.any(|index| has_name(text, index.name.text))
     }
 
     /// Whether an index can have its name; reports it otherwise.
@@ -163,7 +195,7 @@ impl<'s> Lowering<'s> {
 
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
-        if mentions(self.sources.text(behind), name.text) {
+        if has_name(self.sources.text(behind), name.text) {
             return;
         }
         let message = format!("the index `{}` is not used", name.text);
@@ -243,4 +275,19 @@ impl<'s> Lowering<'s> {
         self.problems
             .push(problem.at(span, "not here").help(help).fixes([fix]));
     }
+}
+
+/// Whether a name stands in a text, outside of its comments.
+fn has_name(text: &str, name: &str) -> bool {
+    // Most texts do without a look at their tokens.
+    let mut lexer = Lexer::new(text, 0);
+    text.contains(name)
+        && loop {
+            let token = lexer.token();
+            match token.kind {
+                TokenKind::End => break false,
+                TokenKind::Name if text.get(token.start..token.end) == Some(name) => break true,
+                _ => {}
+            }
+        }
 }

@@ -24,7 +24,7 @@ use super::{
     camera::{Basis, Direction, Point},
     crossing::Crossing,
     object::Object,
-    pieces::Pieces,
+    pieces::{Faces, Pieces},
     quadtree::{Item, Nearness, Quadtree},
 };
 use crate::{
@@ -67,7 +67,7 @@ struct Nearest<T: Real> {
 impl World {
     /// Prepares a scene for the sample points of its picture.
     pub fn new(scene: &Scene) -> Self {
-        Self::reaching(scene, reach(scene))
+        Self::as_far(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
 
     /// The same, given up soon after the flag is set.
@@ -76,18 +76,19 @@ impl World {
     ///
     /// The flag is set.
     pub fn new_unless(scene: &Scene, cancel: &AtomicBool) -> Result<Self, Cancelled> {
-        let world = Self::as_far(scene, reach(scene), cancel);
+        let world = Self::as_far(scene, Faces::Seen, reach(scene), cancel);
         cancel::unless_set(cancel, world)
     }
 
-    /// Prepares a scene for the points of its picture plane at most `reach` pixels from the picture's centre.
+    /// Prepares a scene for all crossings of rays through the points of its picture plane at most
+    /// `reach` pixels from the picture's centre.
     pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
-        Self::as_far(scene, reach, &cancel::NEVER)
+        Self::as_far(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    fn as_far(scene: &Scene, reach: DVec2, cancel: &AtomicBool) -> Self {
+    fn as_far(scene: &Scene, faces: Faces, reach: DVec2, cancel: &AtomicBool) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
-        let (scene, pieces) = Pieces::of(scene);
+        let (scene, pieces) = Pieces::of(scene, faces);
         let (geometry, quadtree) = prepare(&scene, &pieces, &basis, reach, cancel);
         let objects = &scene.objects[..geometry.numbers.len()];
         Self {
