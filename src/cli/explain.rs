@@ -133,7 +133,9 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
             is_scene = !is_scene;
         } else if is_scene {
             let _ = writeln!(text, "    {line}");
-        } else if let Some(words) = line.trim_start_matches('#').strip_prefix(' ') {
+        } else if line.starts_with('#')
+            && let Some(words) = line.trim_start_matches('#').strip_prefix(' ')
+        {
             let _ = writeln!(text, "{}", headings.heading(words));
         } else if line.is_empty() {
             push_wrapped(&mut text, &paragraph, width);

@@ -382,6 +382,10 @@ impl View<'_> {
     /// Whether everything in the picture or near to it, and what is held, is seen no farther than
     /// this from where it should be.
     fn agree(&self, ideal: Part, found: Part, tolerance: f64) -> bool {
+        // With few digits a distance may have become 0.
+        if ideal.is_possible() && !found.is_possible() {
+            return false;
+        }
         let size = self.projection.size;
         let mut marks = self.marks(ideal).into_iter().zip(self.marks(found));
         marks.all(|((is_held, ideal), (_, found))| {
