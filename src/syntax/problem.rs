@@ -102,8 +102,10 @@ pub fn tell_signs_once(problems: &mut Vec<Diagnostic>) {
             && matches!(&*found.fixes, [fix] if matches!(&*fix.edits, [it] if it.text.len() == 1));
         if is_sign && let Some((first, more)) = firsts.get_mut(&found.message) {
             *more += 1;
-            let edits = found.fixes.iter_mut().flat_map(|fix| fix.edits.drain(..));
-            kept[*first].fixes[0].edits.extend(edits);
+            let edits = found.fixes.drain(..).flat_map(|fix| fix.edits);
+            if let Some(fix) = kept.get_mut(*first).and_then(|it| it.fixes.first_mut()) {
+                fix.edits.extend(edits);
+            }
             continue;
         }
         if is_sign {
@@ -112,7 +114,9 @@ pub fn tell_signs_once(problems: &mut Vec<Diagnostic>) {
         kept.push(found);
     }
     for (first, more) in firsts.into_values() {
-        kept[first].message += &times(more);
+        if let Some(found) = kept.get_mut(first) {
+            found.message += &times(more);
+        }
     }
     *problems = kept;
 }
