@@ -10,8 +10,8 @@ pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 /// What to do with a scene of a program whose z points away from the viewer, or up.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// What others call things, with the heading of the reference or the word of the language where they
-/// are explained.
+/// What others call things, with the heading of the reference or the word of the language where
+/// they are explained.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),

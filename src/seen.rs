@@ -3,7 +3,7 @@
 //! In: a scene. Out: for each object its rectangle in the picture and how many pixels show it; of
 //! those that are not seen, why. A pixel counts where its middle shows the object.
 
-use std::cell::OnceCell;
+use std::{cell::OnceCell, collections::BTreeMap};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -40,42 +40,38 @@ pub fn seen(scene: &Scene) -> Vec<Seen> {
     while u64::from(width.div_ceil(step)) * u64::from(height.div_ceil(step)) > MOST_RAYS {
         step += 1;
     }
-    let counted = |mut parts: Vec<Part>, y: u32| {
+    let counted = |mut parts: Parts, y: u32| {
         for x in (0..width.div_ceil(step)).map(|x| x * step) {
-            let Some(object) = world.object_at(x, y) else {
-                continue;
-            };
-            let found = ([x, y, x, y], 1);
-            parts[object] = joined(parts[object], Some(found));
+            if let Some(object) = world.object_at(x, y) {
+                add(&mut parts, object, ([x, y, x, y], 1));
+            }
         }
         parts
     };
-    let nothing = || vec![None; scene.objects.len()];
-    let together = |one: Vec<_>, other: Vec<_>| {
-        let pairs = one.into_iter().zip(other);
-        pairs.map(|(one, other)| joined(one, other)).collect()
+    let together = |mut one: Parts, other: Parts| {
+        for (object, part) in other {
+            add(&mut one, object, part);
+        }
+        one
     };
-    let rows = height.div_ceil(step);
-    // Of very many objects each thread would hold a list.
-    let chunk = rows.div_ceil(8).max(1);
+    let rows = (0..height.div_ceil(step)).into_par_iter();
+    let rows = rows.map(|row| row * step);
     let look = || {
-        let chunks = (0..rows.div_ceil(chunk)).into_par_iter();
-        let parts = chunks.map(|first| {
-            let rows = first * chunk..rows.min((first + 1) * chunk);
-            rows.map(|row| row * step).fold(nothing(), counted)
-        });
-        parts.reduce(nothing, together)
+        let parts = rows.fold(Parts::new, counted);
+        parts.reduce(Parts::new, together)
     };
     // Without a thread nothing is known.
-    let parts = threads::install(None, look).unwrap_or_else(|_| nothing());
+    let parts = threads::install(None, look).unwrap_or_default();
     let asked = OnceCell::new();
     let sight = Sight::new(&scene.camera, &scene.image);
-    let part = |(index, part): (usize, Part)| match part {
-        Some(([left, top, right, bottom], count)) => {
+    let seen = |index: usize| match parts.get(&index) {
+        Some(&([left, top, right, bottom], count)) => {
             let size = [right - left + step, bottom - top + step];
             let [w, h] = [size[0].min(width - left), size[1].min(height - top)];
             Seen::Part([left, top, w, h], count * u64::from(step) * u64::from(step))
         }
+        // Why an object is not seen is told of those that are listed.
+        None if index >= LISTED => Seen::Nothing,
         None => {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
@@ -84,32 +80,28 @@ pub fn seen(scene: &Scene) -> Vec<Seen> {
             }
         }
     };
-    // Why an object is not seen is told of those that are listed.
-    let (listed, rest) = parts.split_at(parts.len().min(LISTED));
-    let listed = listed.iter().copied().enumerate().map(part);
-    let rest = rest.iter().map(|found| match found {
-        Some(_) => part((0, *found)),
-        None => Seen::Nothing,
-    });
-    listed.chain(rest).collect()
+    (0..scene.objects.len()).map(seen).collect()
 }
 
 /// Number of objects of which `inspect` says each what is seen.
 pub const LISTED: usize = 100;
 
-type Part = Option<([u32; 4], u64)>;
+/// The least and the greatest x and y of what is seen of an object, as x, y, x, y, and how many
+/// rays found it.
+type Part = ([u32; 4], u64);
 
-fn joined(one: Part, other: Part) -> Part {
-    let (Some((a, count)), Some((b, more))) = (one, other) else {
-        return one.or(other);
-    };
-    let corners = [
+/// What is seen, by the indices of the objects.
+type Parts = BTreeMap<usize, Part>;
+
+fn add(parts: &mut Parts, object: usize, (b, more): Part) {
+    let (a, count) = parts.entry(object).or_insert((b, 0));
+    *a = [
         a[0].min(b[0]),
         a[1].min(b[1]),
         a[2].max(b[2]),
         a[3].max(b[3]),
     ];
-    Some((corners, count + more))
+    *count += more;
 }
 
 /// The object that is seen where the middle of one would be, if that is another one.

@@ -1,9 +1,11 @@
 //! What stands under what.
 //!
-//! In a group (lines without a blank one between) these are aligned: the `=` of definitions, the names and braces of objects
-//! that stand on one line each, the values of a block's fields, and the fields of equal objects as far as their names are the
-//! same. Objects on both sides of a line of comments are no group. The braces of `image`, `camera` and `sampler` are aligned wherever they stand, as they are one group by their
-//! meaning. Lines that would have to be filled with many blanks do not share a column.
+//! In a group (lines without a blank one between) these are aligned: the `=` of definitions, the
+//! names and braces of objects that stand on one line each, the values of a block's fields, and the
+//! fields of equal objects as far as their names are the same. Objects on both sides of a line of
+//! comments are no group. The braces of `image`, `camera` and `sampler` are aligned wherever they
+//! stand, as they are one group by their meaning. Lines that would have to be filled with many
+//! blanks do not share a column.
 
 use super::{
     entries::{Block, Entry, What},
@@ -42,8 +44,8 @@ pub fn align(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Neighbours of one kind that are written on a line each stay so, even if some of them are a little too wide: a table of
-/// them is read at a glance.
+/// Neighbours of one kind that are written on a line each stay so, even if some of them are a
+/// little too wide: a table of them is read at a glance.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
         if rows.len() < LEAST_ROWS {
@@ -96,7 +98,8 @@ fn class_in_file(entry: &Entry<'_>) -> Class {
     }
 }
 
-/// Objects on both sides of a line of comments, or of an object of another layout, are too far apart to pad each other.
+/// Objects on both sides of a line of comments, or of an object of another layout, are too far
+/// apart to pad each other.
 fn class_of_objects(entry: &Entry<'_>) -> Class {
     match class_in_file(entry) {
         Class::Odd => Class::End,

@@ -202,7 +202,8 @@ fn what_is_seen_of_each_object_is_told() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is at the tangents of 39.69 and 30.29 degrees, 41.5 and 29.2 pixels left of the middle.
+        // Its outline is at the tangents of 39.69 and 30.29 degrees, 41.5 and 29.2 pixels left of
+        // the middle.
         (7, r#""box":[9,45,12,10]"#),
         (8, r#""outside":"right of the window""#),
     ] {

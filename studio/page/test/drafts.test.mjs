@@ -21,6 +21,17 @@ async function leave(page) {
   await page.context().close();
 }
 
+/** The texts of so many drafts, each restored and undone. */
+async function restoredInTurn(page, count) {
+  const texts = [];
+  for (let i = 0; i < count; i++) {
+    await andFinished(page, () => choose(page, "Restore"));
+    texts.push(await text(page));
+    await andFinished(page, () => page.keyboard.press("Control+z"));
+  }
+  return texts;
+}
+
 test("a host that is killed and another one at another port: the draft is offered, restored, and gone when it is saved", async t => {
   const started = await host(t);
   const browser = await launch(t);
@@ -84,12 +95,7 @@ test("what is written while an offer stands unanswered is kept beside it, and so
   await page.reload();
   await finished(page);
   await offered(page);
-  const left = [];
-  for (let i = 0; i < 2; i++) {
-    await andFinished(page, () => choose(page, "Restore"));
-    left.push(await text(page));
-    await andFinished(page, () => page.keyboard.press("Control+z"));
-  }
+  const left = await restoredInTurn(page, 2);
   assert.deepEqual(left.sort(), [SMALLER, LARGER].sort());
   assert.ok(await page.isHidden("#draft-bar"));
 });
@@ -244,12 +250,7 @@ test("two pages of a host keep a draft each, and both are offered", async t => {
   t.after(() => again.stop());
   const page = await open(browser, again);
   await offered(page);
-  const texts = [];
-  for (let i = 0; i < 2; i++) {
-    await andFinished(page, () => choose(page, "Restore"));
-    texts.push(await text(page));
-    await andFinished(page, () => page.keyboard.press("Control+z"));
-  }
+  const texts = await restoredInTurn(page, 2);
   assert.deepEqual(texts, [`${LARGER}// on\n`, NEARER]);
 });
 

@@ -1,5 +1,5 @@
-//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with what else
-//! there is in them.
+//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with what
+//! else there is in them.
 
 use std::{
     fs::File,

@@ -6,3 +6,4 @@ mod neovim;
 mod session;
 pub mod talk;
 mod transcripts;
+mod viewport;

@@ -1,0 +1,395 @@
+//! What a hand does in the picture: what it is shown of the objects, what it adds, and what it drags.
+
+use serde_json::{Value, json};
+
+use super::{
+    frames::{SCENE, code},
+    talk::Talk,
+};
+
+const FAILED: i32 = -32803;
+
+/// Of very many objects those that one can tell apart, and the one that is asked for.
+#[test]
+fn overlays_are_not_more_than_a_page_can_show() {
+    let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
+    let mut talk = Talk::with(&(SCENE.to_owned() + &many.collect::<String>()));
+    for (further, count, last) in [
+        (None, 1000, 999),
+        (Some(1400), 1001, 1400),
+        (Some(1), 1000, 999),
+        (Some(1503), 1000, 999),
+    ] {
+        let found = talk.ask("pinhole/overlays", json!({ "object": further }));
+        let objects = found["objects"].as_array().expect("a list");
+        let found = (objects.len(), &objects[count - 1]["index"]);
+        assert_eq!(found, (count, &json!(last)));
+        let listed = talk.ask("pinhole/objects", json!({ "object": further }));
+        assert_eq!(listed.as_array().map(Vec::len), Some(count));
+        assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
+    }
+    // Objects stand on the floor, wherever it stands.
+    let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
+    let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
+    let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
+    let listed = Talk::with(&(camera.to_owned() + &floor)).ask("pinhole/objects", json!({}));
+    let last = &listed.as_array().expect("a list")[1000..];
+    assert_eq!(last.len(), 1);
+    assert_eq!(last[0]["kind"], "checkerboard");
+    for (only, indices) in [
+        (json!([]), vec![]),
+        (json!([1400, 3]), vec![3, 1400]),
+        (json!([1504]), vec![]),
+    ] {
+        let found = talk.ask("pinhole/overlays", json!({ "only": only }));
+        let objects = found["objects"].as_array().expect("a list");
+        let found: Vec<_> = objects.iter().map(|it| it["index"].as_u64()).collect();
+        assert_eq!(found, indices.into_iter().map(Some).collect::<Vec<_>>());
+    }
+}
+
+/// A slider need not offer what the language forbids.
+#[test]
+fn a_number_has_the_limits_of_its_field() {
+    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox { center (0, 0, 0) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }";
+    let mut talk = Talk::with(text);
+    let limits = |least: Value, most: Value, open: bool, whole: bool| json!({ "least": least, "most": most, "open": open, "whole": whole });
+    let pi = std::f64::consts::PI;
+    for (before, expected) in [
+        ("radius 1", limits(json!(0.0), Value::Null, true, false)),
+        ("per_pixel 16", limits(json!(1.0), Value::Null, false, true)),
+        ("fov 1", limits(json!(0.0), json!(pi), true, false)),
+        ("size (1, 2", limits(json!(0.0), Value::Null, true, false)),
+        ("eye (0", limits(Value::Null, Value::Null, false, false)),
+        ("let a = 3", Value::Null),
+        ("radius a + 1", Value::Null),
+    ] {
+        let at = text.find(before).expect("it is there") + before.len();
+        let lines: Vec<&str> = text[..at].split('\n').collect();
+        let character = lines[lines.len() - 1].len();
+        let position = json!({ "line": lines.len() - 1, "character": character });
+        let found = talk.ask("pinhole/limits", json!({ "position": position }));
+        assert_eq!(found, expected, "{before}");
+    }
+}
+
+/// Definitions have sliders: by the comment behind them, or by the fields that they stand in.
+#[test]
+fn definitions_have_ranges() {
+    let text = "let a = 1 // [0.5:0.1:2] how large\nlet b = -2 //[-3:3]\nlet c = 3 // [3:1]\nlet n = 4\nlet t = 0.5rad // turn\n\
+        let v = (1, 2, 3) // [1:2]\nlet e = a + 1 // [1:2]\ncamera { eye (0, 0, 5) lookat (0, 0, 0) fov t }\n\
+        sampler { per_pixel n }\nsphere { radius c }\nsphere { radius a + b }";
+    let mut talk = Talk::with(text);
+    let found = talk.ask("pinhole/sliders", json!({}));
+    let found: Vec<Value> = found
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|it| {
+            let limits = &it["limits"];
+            json!([
+                it["name"],
+                limits["least"],
+                limits["most"],
+                limits["whole"],
+                it["step"]
+            ])
+        })
+        .collect();
+    let pi = std::f64::consts::PI;
+    let expected = [
+        json!(["a", 0.5, 2.0, false, 0.1]),
+        json!(["b", -3.0, 3.0, false, null]),
+        json!(["c", 0.0, null, false, null]),
+        json!(["n", 1.0, null, true, null]),
+        json!(["t", 0.0, pi, false, null]),
+    ];
+    assert_eq!(found, expected);
+}
+
+/// What is added is right, has a name that is free, and is seen.
+#[test]
+fn what_is_added_is_seen() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for before in [
+        "",
+        camera,
+        "let Sphere1 = 2\n",
+        "camera { eye (0, 0, 5) lookat (0, -1, 0) }\nsphere Sphere1 { center (0, 0, 0) }\n\
+         checkerboard { y -2 }",
+        "sphere { center (0, 1, 0) radios 1 }",
+    ] {
+        for (kind, name) in [
+            ("sphere", "Sphere"),
+            ("triangle", "Triangle1"),
+            ("box", "Box1"),
+            ("checkerboard", "Checkerboard1"),
+        ] {
+            let mut talk = Talk::with(before);
+            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            let name_found = found["name"].as_str().expect("a name");
+            assert!(name_found.starts_with(name), "{found}");
+            assert!(!before.contains(name_found), "{found}");
+            let camera = if before.contains("camera") {
+                ""
+            } else {
+                camera
+            };
+            let text = format!(
+                "{camera}{}{written}\n",
+                before.trim_end().replace("radios", "radius")
+            );
+            let mut talk = Talk::with(&text);
+            let overlays = talk.ask("pinhole/overlays", json!({}));
+            let objects = overlays["objects"]
+                .as_array()
+                .unwrap_or_else(|| panic!("{text}"));
+            let [x, y] = [0, 1].map(|i| objects[objects.len() - 1]["handles"][0]["at"][i].as_f64());
+            assert!(
+                (0.0..800.0).contains(&x.unwrap()) && (0.0..450.0).contains(&y.unwrap()),
+                "{text}"
+            );
+        }
+    }
+}
+
+/// What is added touches the board, whatever its height is, and where the board comes later.
+#[test]
+fn what_is_added_stands_on_the_board() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for (before, floor) in [
+        ("", 0.0),
+        ("checkerboard { y 0 }", 0.0),
+        ("checkerboard { y 0.25 }", 0.25),
+        ("checkerboard { y -1.37 }", -1.37),
+        ("checkerboard { y -0.2 }\ncheckerboard { y -3 }", -0.2),
+    ] {
+        for kind in ["sphere", "box"] {
+            let mut talk = Talk::with(&format!("{camera}{before}"));
+            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            let text = format!("{camera}{before}{written}");
+            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
+            let board = found["edits"][0]["newText"].as_str().expect("a text");
+            // The number of the name, the middle, and the radius or the size.
+            let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
+            let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
+            let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
+            assert!((numbers[2] - half - floor).abs() < 1e-9, "{text}");
+            if before.is_empty() {
+                assert!(board.ends_with("{ y 0 }"), "{board}");
+            }
+        }
+    }
+}
+
+/// A board is under what is there, and not where another one is.
+#[test]
+fn a_board_is_added_under_everything() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for (before, y) in [
+        ("", "y 0 }"),
+        ("sphere { center (0, 0.8, 0) radius 1 }", "y -0.2 }"),
+        ("box { center (0, 0.5, 0) size (1, 3, 1) }", "y -1 }"),
+        (
+            "triangle { v0 (0, -2, 0) v1 (1, 0, 0) v2 (0, 1, 0) }",
+            "y -2 }",
+        ),
+        ("sphere { center (0, 5, 0) radius 1 }", "y 0 }"),
+        ("checkerboard { y 0 }", "y -1 }"),
+        ("checkerboard { y 0 }\ncheckerboard { y -1 }", "y -2 }"),
+    ] {
+        let mut talk = Talk::with(&format!("{camera}{before}"));
+        let found = talk.ask("pinhole/add", json!({ "kind": "checkerboard" }));
+        let written = found["edits"][0]["newText"].as_str().expect("a text");
+        assert!(written.ends_with(y), "{before}: {written}");
+    }
+}
+
+/// A comment behind a block stays behind it when the block is copied.
+#[test]
+fn a_copy_leaves_the_comment() {
+    let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
+    let block = "sphere Ball { center (0, 0, 0) }";
+    for behind in [
+        "",
+        "  // the ball",
+        " // π\n// of the next line\n",
+        "  sphere { center (1, 1, 1) }",
+    ] {
+        let text = format!("{camera}{block}{behind}");
+        let found = Talk::with(&text).ask("pinhole/add", json!({ "object": 0 }));
+        let edit = &found["edits"][0];
+        let at = &edit["range"]["start"];
+        let own = behind.lines().next().unwrap_or_default();
+        let stays = if own.contains("//") {
+            own.chars().count()
+        } else {
+            0
+        };
+        assert_eq!(at["line"], 1, "{found}");
+        assert_eq!(at["character"], block.len() + stays, "{found}");
+        assert_eq!(
+            found["cursor"],
+            camera.len() + block.len() + stays + 1,
+            "{found}"
+        );
+        let written = edit["newText"].as_str().expect("a text");
+        assert!(written.starts_with("\nsphere Sphere1 {"), "{found}");
+    }
+}
+
+/// What shares its number with another field is refused at each place alike, with a step and
+/// without.
+#[test]
+fn a_shared_number_is_not_dragged() {
+    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
+                sphere { center (r, 0, 0) radius r }";
+    for by in [3.0, 7.0, 12.0, 30.0, 100.0] {
+        for step in [json!(8), Value::Null] {
+            let mut talk = Talk::with(text);
+            let objects = talk.ask("pinhole/overlays", json!({}));
+            let at = &objects["objects"][0]["handles"][0]["at"];
+            let to = [at[0].as_f64().expect("a number") + by, 225.0];
+            let about = json!({ "object": 0, "handle": "center", "to": to, "step": step });
+            let drag = talk.request("pinhole/drag", about);
+            talk.carrier.step();
+            assert_eq!(code(&mut talk, drag), FAILED, "{by} {step}");
+        }
+    }
+}
+
+/// With a step, numbers are those of a grid, and the place of the press leaves the text as it is.
+#[test]
+fn a_drag_snaps() {
+    let text =
+        "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nsphere { center (0.123, 0, 0) radius 1 }";
+    let mut talk = Talk::with(text);
+    let held = talk.ask("pinhole/overlays", json!({}))["objects"][0]["handles"][0]["at"][0]
+        .as_f64()
+        .unwrap();
+    for by in [-200.0, -35.0, -7.0, 0.0, 2.0, 4.9, 12.0, 81.0, 333.0] {
+        let about = json!({ "object": 0, "handle": "center", "to": [held + by, 225], "step": 8 });
+        let found = talk.ask("pinhole/drag", about);
+        let edits = found["edits"].as_array().expect("edits");
+        let x: Option<f64> = edits.first().map(|edit| {
+            edit["newText"]
+                .as_str()
+                .expect("a text")
+                .parse()
+                .expect("a number")
+        });
+        // A metre has 90 pixels here, so that a hundredth has 0.9 and a tenth 9.
+        match x {
+            None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
+            Some(x) => {
+                assert!(
+                    (x * 100.0 - (x * 100.0).round()).abs() < 1e-9,
+                    "{by}: {found}"
+                );
+                assert!((x - 0.123 - by / 90.0).abs() < 0.02, "{by}: {found}");
+            }
+        }
+    }
+}
+
+/// Who drags a ball that the camera looks at hears that the camera moves.
+/// Of several objects that one block stands for one is dragged, and all others move with it.
+#[test]
+fn an_object_of_many_is_dragged_with_all_of_its_block() {
+    for (blocks, object, handle, to, written, value, also) in [
+        (
+            "sphere Ball for i < 3 { center (i - 1, 0, 0) radius 0.3 }",
+            1,
+            "center",
+            [430, 225],
+            "0.67",
+            "Ball[1].center = (0.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "sphere A { center (0, 0, -3) }\nsphere Ball for i < 3 { center (i, 0, 0) }\nsphere { center (0, 0, -4) }",
+            2,
+            "center",
+            [520, 225],
+            " + 0.33",
+            "Ball[1].center = (1.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "sphere for i < 3, j < i { center (i, j, 0) }",
+            2,
+            "center",
+            [610, 135],
+            " + 0.33",
+            "sphere.center = (2.33, 1, 0)",
+            "sphere.center",
+        ),
+        (
+            "let c = (0, 0, 0) sphere Ball for i < 2 { center c + (i, 0, 0) }",
+            0,
+            "center",
+            [430, 225],
+            " + 0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "Ball.center",
+        ),
+        (
+            "let x = 0 sphere Ball for i < 2 { center (x, i, 0) } sphere B { center (x, -1, 0) }",
+            0,
+            "center",
+            [430, 225],
+            "0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "Ball.center, B.center",
+        ),
+        (
+            "sphere for i < 2 { center (3 * i, 0, 0) }",
+            0,
+            "radius",
+            [535, 225],
+            "",
+            "",
+            "sphere.radius",
+        ),
+        (
+            "sphere Ball for i < 1 { center (i, 0, 0) }",
+            0,
+            "center",
+            [430, 225],
+            " + 0.33",
+            "Ball[0].center = (0.33, 0, 0)",
+            "",
+        ),
+    ] {
+        let mut talk = Talk::with(&format!(
+            "camera {{ eye (0, 0, 5) lookat (0, 0, 0) }}\n{blocks}"
+        ));
+        let about = json!({ "object": object, "handle": handle, "to": to });
+        let found = talk.ask("pinhole/drag", about);
+        let list = |key: &str| {
+            let texts = found[key].as_array().unwrap().iter();
+            texts
+                .map(|it| it.as_str().unwrap().to_owned())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
+        assert_eq!(list("also"), also, "{blocks}: {found}");
+        if !written.is_empty() {
+            assert_eq!(list("values"), value, "{blocks}: {found}");
+            assert_eq!(found["edits"][0]["newText"], written, "{blocks}: {found}");
+        }
+    }
+}
+
+#[test]
+fn a_drag_tells_what_else_moves() {
+    let text = "let ball = (0, 0, 0)\ncamera { eye (0, 0, 5) lookat ball }\nsphere Ball { center ball }\nsphere { center (0, 2, 0) }";
+    let mut talk = Talk::with(text);
+    for (object, also) in [(0, json!(["camera.lookat"])), (1, json!([]))] {
+        let about = json!({ "object": object, "handle": "center", "to": [430, 225] });
+        let found = talk.ask("pinhole/drag", about);
+        assert_eq!(found["also"], also, "{found}");
+    }
+}
