@@ -41,9 +41,11 @@ pub fn seen(scene: &Scene) -> Vec<Seen> {
         step += 1;
     }
     let counted = |mut parts: Parts, y: u32| {
-        for x in (0..width.div_ceil(step)).map(|x| x * step) {
-            if let Some(object) = world.object_at(x, y) {
-                add(&mut parts, object, ([x, y, x, y], 1));
+        let row = (0..width.div_ceil(step)).map(|x| x * step);
+        let row: Vec<_> = row.map(|x| (x, world.object_at(x, y))).collect();
+        for run in row.chunk_by(|one, other| one.1 == other.1) {
+            if let (&[(left, Some(object)), ..], &[.., (right, _)]) = (run, run) {
+                add(&mut parts, object, ([left, y, right, y], run.len() as u64));
             }
         }
         parts
