@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     format::{all_scenes, formatted},
+    fuzz::ends_soon,
     parts,
     scenes::{examples, sources},
     tracer::Random,
@@ -98,6 +99,34 @@ fn garbage(effort: Effort) {
     let letters = (0..length / 4).map(|_| random.bits() % 0x11_0000);
     let many = letters.filter_map(|letter| char::from_u32(letter as u32));
     assert!(!read(many.collect::<String>()));
+}
+
+sampled_and_exhaustive!(few_words_in_any_order);
+
+/// All texts of a few words, by themselves and within a block: what reads them always goes on.
+fn few_words_in_any_order(effort: Effort) {
+    let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
+    let words: Vec<&str> = words.split(' ').collect();
+    let length = if effort == Effort::Exhaustive { 4 } else { 3 };
+    let try_one = |text: &str| {
+        let sources = Sources::new(Source::from_text("test.scn", text));
+        let reading = scene::read(&sources);
+        let has_error = reading.diagnostics.iter().any(|d| d.is_error());
+        assert_eq!(reading.scene.is_none(), has_error, "{text}");
+        assert_places(&reading.diagnostics, &sources);
+    };
+    for before in effort.of(["camera {", "", "sphere { center ("]) {
+        for number in 0..words.len().pow(length - 1) {
+            let word = |place| words[number / words.len().pow(place) % words.len()];
+            let most: Vec<&str> = (0..length - 1).map(word).collect();
+            let most = format!("{before} {}", most.join(" "));
+            // A watch for a few texts together, as each is a thread.
+            ends_soon(
+                || format!("{most} and one of {words:?}"),
+                || (words.iter()).for_each(|last| try_one(&format!("{most} {last}"))),
+            );
+        }
+    }
 }
 
 sampled_and_exhaustive!(one_thing_many_times);

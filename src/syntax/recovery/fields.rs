@@ -124,11 +124,12 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        while !self.is(0, "{") {
+        // Indices may stand here, and no `{` behind them.
+        self.skip_head();
+        if self.is(0, "{") {
             self.bump();
+            self.skip_block();
         }
-        self.bump();
-        self.skip_block();
     }
 
     /// Definitions within a block are read as if they stood before it.

@@ -237,10 +237,9 @@ impl<'s> Recovery<'_, 's> {
             let name = (!self.is(0, "{")).then(|| self.name());
             return self.open_block(Block::new(kind.span, Some(kind), name));
         }
-        let mut rest = self.here();
-        while !self.is(0, "{") {
-            rest = rest.to(self.bump());
-        }
+        let rest = self.here();
+        self.skip_head();
+        let rest = rest.to(self.behind());
         let (kind, written) = (shorten(first.text), self.written(rest));
         let words = unquoted(written).split([' ', '-', '.', '\t']);
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();

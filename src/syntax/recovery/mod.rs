@@ -335,6 +335,13 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
+    /// Passes over what stands before the next `{`, if there is one.
+    fn skip_head(&mut self) {
+        while !self.is(0, "{") && self.kind(0) != TokenKind::End {
+            self.bump();
+        }
+    }
+
     /// Passes over what follows a `{`, up to the `}` that closes it.
     fn skip_block(&mut self) {
         let mut braces = 1_usize;

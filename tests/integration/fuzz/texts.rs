@@ -69,7 +69,7 @@ fn is_laid_out(text: &str) {
 /// Texts that once were not: fixes that take the same space away, a label in the middle of a sign,
 /// a parenthesis for each of two hundred fixes in one place, and a comment with empty lines. A
 /// comment in the middle of a hyphenated name, and functions of other languages and values on a new
-/// line.
+/// line. Indices without a `{` in the place of a field.
 #[test]
 fn what_was_found_stays_mended() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));
@@ -82,6 +82,7 @@ fn what_was_found_stays_mended() {
         "sampler { method multi /* no */ - jittered }".to_owned(),
         "camera { eye\nvec3(1, 2, 3) }".to_owned(),
         "let a =\nrgba(1, 2, 3, 4)".to_owned(),
+        "camera { e for i < 8 image".to_owned(),
         "sphere { radius\nr - color olive\n(1) }".to_owned(),
     ] {
         gets_an_answer(text.clone().into());
