@@ -6,8 +6,9 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::{
+    area::Area,
     math::{Big, Real},
-    numbers::{grouped, short, short_vector},
+    numbers::{self, grouped, short, short_vector},
     scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
     seen::{self, LISTED, Seen},
     source::Source,
@@ -298,7 +299,10 @@ impl fmt::Display for Inspection {
 impl Inspection {
     fn seen_facts(&self, seen: Seen) -> Value {
         match seen {
-            Seen::Part(corners, pixels) => json!({ "box": corners, "pixels": pixels }),
+            Seen::Part(around, pixels) => {
+                let corners = [around.x, around.y, around.width, around.height];
+                json!({ "box": corners, "pixels": numbers::rounded(pixels, 1e-6) })
+            }
             Seen::Outside(place) => json!({ "box": null, "pixels": 0, "outside": place.words() }),
             Seen::HiddenBy(other) => {
                 let name = self.objects.get(other).and_then(|it| it.name.as_deref());
@@ -313,13 +317,19 @@ impl Inspection {
             return Ok(());
         }
         let all = self.size.map(f64::from).iter().product::<f64>();
-        let share = |pixels: u64| format!("{} %", short(100.0 * pixels as f64 / all));
-        writeln!(f, "\nin the picture, as far as middles of pixels show it")?;
+        let share = |pixels: f64| format!("{} %", short(100.0 * pixels / all));
+        writeln!(f, "\nin the picture")?;
         for (index, object) in self.objects.iter().enumerate().take(LISTED) {
             let name = object.name.as_deref().unwrap_or("-");
             let words = match object.seen {
-                Seen::Part([x, y, w, h], pixels) => {
-                    format!("{w} x {h} pixels at ({x}, {y}), {}", share(pixels))
+                Seen::Part(around, pixels) => {
+                    let Area {
+                        x,
+                        y,
+                        width,
+                        height,
+                    } = around;
+                    format!("{width} x {height} pixels at ({x}, {y}), {}", share(pixels))
                 }
                 Seen::Outside(place) => place.words().replace('`', ""),
                 Seen::HiddenBy(other) => {

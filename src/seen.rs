@@ -1,7 +1,7 @@
 //! What is seen of each object of a scene.
 //!
-//! In: a scene. Out: for each object its rectangle in the picture and how many pixels show it; of
-//! those that are not seen, why. A pixel counts where its middle shows the object.
+//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; of
+//! those that are not seen, why. Areas are exact as those of `exact` pictures are.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -9,69 +9,64 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
+    area::Area,
+    exact::Integrator,
     projection::Projection,
     scene::{Place, Scene, Sight, sphere_around},
     threads,
-    tracer::{World, ray},
+    tracer::{GRID, World, ray},
 };
 
-/// Maximum number of rays. A larger picture is looked at in every second row and column, or every
-/// third, and so on: the answer is then right to as many pixels.
-const MOST_RAYS: u64 = 1 << 20;
+/// Maximum work on a whole picture, in units of some 50 ns. Where a tile's part of it is spent,
+/// what the middle of a pixel shows counts for the pixel.
+const MOST_WORK: u64 = 100_000_000;
+
+/// An area smaller than this may be a rounding, in pixels.
+const LEAST: f64 = 1e-9;
 
 /// What is seen of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Seen {
-    /// Left, top, width and height in pixels of the part that is seen, and how many pixels show it.
-    Part([u32; 4], u64),
+    /// The rectangle of the pixels that show something of it, and the area that is seen, in pixels.
+    Part(Area, f64),
     /// It lies wholly outside of the picture.
     Outside(Place),
     /// Another object, by its index in the file, stands before its middle.
     HiddenBy(usize),
-    /// No middle of a pixel shows it.
+    /// It is hidden by several others, is outside of the picture by more than its bounds say, or is
+    /// too thin to be seen.
     Nothing,
 }
 
 /// Says what is seen of each object.
 pub fn seen(scene: &Scene) -> Vec<Seen> {
-    let world = World::new(scene);
-    let [width, height] = [scene.image.width, scene.image.height];
-    let mut step = 1;
-    while u64::from(width.div_ceil(step)) * u64::from(height.div_ceil(step)) > MOST_RAYS {
-        step += 1;
-    }
-    let counted = |mut parts: Parts, y: u32| {
-        let row = (0..width.div_ceil(step)).map(|x| x * step);
-        let row: Vec<_> = row.map(|x| (x, world.object_at(x, y))).collect();
-        for run in row.chunk_by(|one, other| one.1 == other.1) {
-            if let (&[(left, Some(object)), ..], &[.., (right, _)]) = (run, run) {
-                add(&mut parts, object, ([left, y, right, y], run.len() as u64));
+    let world = World::by_object(scene);
+    let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();
+    let most_work = MOST_WORK / tiles.len().max(1) as u64;
+    let look = |tile: &Area| {
+        let mut parts = Parts::new();
+        let integrator = Integrator::of(&world, |_| []).within(most_work);
+        integrator.shares(*tile, |area, shares| {
+            for &(object, share) in shares {
+                if share > LEAST && object != world.background() {
+                    add(&mut parts, object, (area, area.pixels() as f64 * share));
+                }
             }
-        }
+        });
         parts
     };
-    let together = |mut one: Parts, other: Parts| {
-        for (object, part) in other {
-            add(&mut one, object, part);
-        }
-        one
-    };
-    let rows = (0..height.div_ceil(step)).into_par_iter();
-    let rows = rows.map(|row| row * step);
-    let look = || {
-        let parts = rows.fold(Parts::new, counted);
-        parts.reduce(Parts::new, together)
-    };
+    let look = || tiles.par_iter().map(look).collect::<Vec<_>>();
     // Without a thread nothing is known.
-    let parts = threads::install(None, look).unwrap_or_default();
+    let found = threads::install(None, look).unwrap_or_default();
+    let mut parts = Parts::new();
+    // Always in the same order, so that sums are rounded alike.
+    for (object, part) in found.into_iter().flatten() {
+        add(&mut parts, object, part);
+    }
     let asked = OnceCell::new();
     let sight = Sight::new(&scene.camera, &scene.image);
     let seen = |index: usize| match parts.get(&index) {
-        Some(&([left, top, right, bottom], count)) => {
-            let size = [right - left + step, bottom - top + step];
-            let [w, h] = [size[0].min(width - left), size[1].min(height - top)];
-            Seen::Part([left, top, w, h], count * u64::from(step) * u64::from(step))
-        }
+        Some(&(pixels, area)) => Seen::Part(pixels, area),
         // Why an object is not seen is told of those that are listed.
         None if index >= LISTED => Seen::Nothing,
         None => {
@@ -88,22 +83,13 @@ pub fn seen(scene: &Scene) -> Vec<Seen> {
 /// Number of objects of which `inspect` says each what is seen.
 pub const LISTED: usize = 100;
 
-/// The least and the greatest x and y of what is seen of an object, as x, y, x, y, and how many
-/// rays found it.
-type Part = ([u32; 4], u64);
-
 /// What is seen, by the indices of the objects.
-type Parts = BTreeMap<usize, Part>;
+type Parts = BTreeMap<usize, (Area, f64)>;
 
-fn add(parts: &mut Parts, object: usize, (b, more): Part) {
-    let (a, count) = parts.entry(object).or_insert((b, 0));
-    *a = [
-        a[0].min(b[0]),
-        a[1].min(b[1]),
-        a[2].max(b[2]),
-        a[3].max(b[3]),
-    ];
-    *count += more;
+fn add(parts: &mut Parts, object: usize, (pixels, area): (Area, f64)) {
+    let (around, sum) = parts.entry(object).or_insert((pixels, 0.0));
+    *around = around.with(pixels);
+    *sum += area;
 }
 
 /// The object that is seen where the middle of one would be, if that is another one.

@@ -44,8 +44,11 @@ use std::{
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
+use glam::DVec2;
+
 use crate::{
     area::Area,
+    cancel,
     color::Color,
     tracer::{Candidate, Curve, Part, Quartering, Scratch, SubPixel, World},
 };
@@ -246,8 +249,32 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_ended()).then_some(film.pixels)
     }
 
-    /// One pixel, of what may be seen in it: in pieces where the whole has too many curves, or is
-    /// not known well enough.
+    /// Shows areas of one colour, and of each other pixel how much of it each colour has, by slots
+    /// of the palette, for a part of a picture whose checkerboards have one colour. Beyond the work
+    /// that it may spend, the middle of a pixel stands for it.
+    pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) {
+        let mut curves = Vec::new();
+        let scratch = &mut Scratch::default();
+        let _ = self.quartering.parts(part, scratch, &mut |part| {
+            match part {
+                Part::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
+                Part::Pixel { x, y, .. } if self.work() > self.most_work => {
+                    let slot = self.world.slot_at(x, y, DVec2::ZERO);
+                    show(Area::pixel(x, y), &[(slot, 1.0)]);
+                }
+                Part::Pixel {
+                    x, y, candidates, ..
+                } => {
+                    let seen = self.pixel_shares(x, y, candidates, &mut curves, &cancel::NEVER);
+                    show(Area::pixel(x, y), &seen.by_slot);
+                }
+                Part::Crowded { .. } => unreachable!("every part of an exact picture is quartered"),
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// The mean of one pixel, of what may be seen in it.
     fn pixel(
         &self,
         x: u32,
@@ -256,6 +283,25 @@ impl<'a, const N: usize> Integrator<'a, N> {
         curves: &mut Vec<Curve>,
         cancel: &AtomicBool,
     ) -> ExactPixel<N> {
+        let together = self.pixel_shares(x, y, candidates, curves, cancel);
+        let rounding = rounding(together.by_slot.len());
+        let pixel = self.mean(&together.by_slot, (together.bound + rounding).min(1.0));
+        match pixel.bound <= self.tolerance {
+            true => pixel,
+            false => self.centered(&pixel, candidates),
+        }
+    }
+
+    /// How much of one pixel each colour has: in pieces where the whole has too many curves, or is
+    /// not known well enough.
+    fn pixel_shares(
+        &self,
+        x: u32,
+        y: u32,
+        candidates: &[Candidate],
+        curves: &mut Vec<Curve>,
+        cancel: &AtomicBool,
+    ) -> Shares {
         let budget = Budget::of_pixel(self.tolerance, cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
@@ -315,12 +361,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
             together.add_part(&piece.shares, piece.area());
         }
         self.work.fetch_add(budget.spent() as u64, Relaxed);
-        let rounding = rounding(together.by_slot.len());
-        let pixel = self.mean(&together.by_slot, (together.bound + rounding).min(1.0));
-        match pixel.bound <= self.tolerance {
-            true => pixel,
-            false => self.centered(&pixel, candidates),
-        }
+        together
     }
 
     /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between

@@ -40,4 +40,18 @@ impl Colors {
             of_objects,
         }
     }
+
+    /// As if each object had a colour of its own, of which nothing is known but its slot; pieces
+    /// have that of what they are of.
+    pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
+        let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
+        let count = of_objects
+            .iter()
+            .map(|[owner, _]| *owner as usize + 1)
+            .max();
+        Self {
+            palette: vec![Color::BLACK; count.unwrap_or(0) + 1],
+            of_objects,
+        }
+    }
 }

@@ -86,6 +86,15 @@ impl World {
         Self::as_far(scene, Faces::All, reach, &cancel::NEVER)
     }
 
+    /// Prepares a scene as if each object, a checkerboard too, had one colour that nothing else has:
+    /// its slot is the object's index in the file.
+    pub fn by_object(scene: &Scene) -> Self {
+        let mut world = Self::new(scene);
+        let pieces = 0..world.object_count();
+        world.colors = Colors::by_object(pieces.map(|piece| world.owner(piece)));
+        world
+    }
+
     fn as_far(scene: &Scene, faces: Faces, reach: DVec2, cancel: &AtomicBool) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
         let (scene, pieces) = Pieces::of(scene, faces);
