@@ -27,12 +27,14 @@ mod probe;
 mod progress;
 mod render;
 mod report;
+mod sheet;
 #[cfg(feature = "preview")]
 mod show;
 #[cfg(feature = "report")]
 mod speed;
 #[cfg(feature = "studio")]
 mod studio;
+mod sweep;
 mod unified;
 #[cfg(feature = "preview")]
 mod watch;
@@ -74,6 +76,7 @@ pub fn run() -> ExitCode {
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Grade(args) => grade::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
+        Command::Sheet(args) => sheet::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]

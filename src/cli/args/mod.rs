@@ -11,7 +11,7 @@ use clap::{
 };
 use clap_complete::Shell;
 
-use super::help;
+use super::{help, sweep::Sweep};
 use crate::{area::Area, scene::Method};
 
 pub use self::judging::{DiffArgs, GradeArgs, GradeFormat, LargeArgs};
@@ -56,6 +56,9 @@ pub enum Command {
     /// Report speed against error, method by method, or how right the arithmetic is
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
+    /// Make a contact sheet: the pictures of scenes side by side, each with its name
+    #[command(after_help = help::SHEET_EXAMPLES)]
+    Sheet(SheetArgs),
     /// Explain a kind of mistake, or a word of the language
     #[command(after_help = help::EXPLAIN_EXAMPLES)]
     Explain(ExplainArgs),
@@ -95,6 +98,7 @@ impl Command {
             Self::Diff(args) => args.threads.count(),
             Self::Grade(args) => args.threads.count(),
             Self::Report(args) => args.threads.count(),
+            Self::Sheet(args) => args.threads.count(),
             _ => None,
         }
     }
@@ -231,6 +235,31 @@ pub struct ProbeArgs {
     pub overrides: Overrides,
     #[command(flatten)]
     pub format: FormatArgs,
+}
+
+/// Arguments of `sheet`.
+#[derive(Debug, clap::Args)]
+pub struct SheetArgs {
+    /// The scenes: .scn files, PNGs that Pinhole wrote, or `-` for standard input
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Where the sheet goes: a file that ends in .png, or `-` for standard output
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: PathBuf,
+    /// Show each scene N times, a field or a `let` going from one value to another: two numbers,
+    /// angles or vectors
+    #[arg(long, value_name = "TARGET=FROM..TO/N", allow_hyphen_values = true)]
+    pub sweep: Option<Sweep>,
+    /// Pictures beside each other [default: about as many as there are rows]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1000))]
+    pub columns: Option<u32>,
+    /// The greatest width of a picture in pixels; it is at most twice as high
+    #[arg(long, value_name = "PIXELS", default_value_t = 320, value_parser = value_parser!(u32).range(1..=4096))]
+    pub width: u32,
+    #[command(flatten)]
+    pub overrides: Overrides,
+    #[command(flatten)]
+    pub threads: ThreadArgs,
 }
 
 /// Arguments of `report`.

@@ -1,6 +1,7 @@
 //! The binary from outside: arguments, files, output and exit status.
 
 mod render;
+mod sheet;
 mod terminal;
 #[cfg(unix)]
 mod transcripts;

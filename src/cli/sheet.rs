@@ -1,0 +1,243 @@
+//! `sheet`: the pictures of scenes side by side, each with its name.
+
+use std::{path::Path, sync::atomic::AtomicBool};
+
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
+
+use super::{
+    Status, Trouble,
+    args::SheetArgs,
+    input::{Input, check_standard, is_standard, shown, unwritable},
+    interrupt::Interrupt,
+    output,
+    picture::{Keep, Picture, picture},
+};
+use crate::{
+    area::Area,
+    diagnostic::visible_line,
+    files::{self, Purpose},
+    film::{self, Film},
+    render::RenderError,
+    scene::{self, Count, Scene},
+    source::Source,
+    tracer::World,
+};
+
+/// A picture with the name that stands under it.
+type Cell = (Film<[u8; 3]>, String);
+
+/// Pixels between two cells, and around all of them.
+const GAP: u32 = 12;
+/// The height of the letters, and that of their line.
+const LETTERS: RasterHeight = RasterHeight::Size16;
+const LINE: u32 = 22;
+const REGULAR: FontWeight = FontWeight::Regular;
+
+/// Renders the scenes and writes the sheet.
+pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
+    check_standard(&args.scenes)?;
+    check_output(args)?;
+    let mut status = Status::Done;
+    let mut scenes = Vec::new();
+    for path in &args.scenes {
+        match scenes_of(path, args)? {
+            Some(found) => scenes.extend(found),
+            None => status = Status::SceneErrors,
+        }
+    }
+    if status != Status::Done {
+        return Ok(status);
+    }
+    let cancel = interrupt.watch();
+    let mut cells = Vec::new();
+    for (scene, name) in scenes {
+        match cell(&scene, args.width, cancel) {
+            Ok(film) => cells.push((film, name)),
+            Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
+            Err(error) => return Err(Trouble(error.to_string())),
+        }
+    }
+    let sheet = sheet(&cells, args.columns).map_err(|error| Trouble(error.to_string()))?;
+    let written = match is_standard(&args.output) {
+        true => files::write_stream(output::Programs::new(), cancel, |out| {
+            film::write_png(&sheet, None, out)
+        }),
+        false => files::write(&args.output, Purpose::Named, cancel, |out| {
+            film::write_png(&sheet, None, out)
+        }),
+    };
+    match written {
+        Err(_) if interrupt.pressed() => Ok(Status::Interrupted),
+        Err(error) => Err(unwritable(&args.output, &error)),
+        Ok(()) => Ok(Status::Done),
+    }
+}
+
+/// Refuses an output that is no PNG, or one of the scenes, or cannot be written.
+fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
+    let path = &args.output;
+    if is_standard(path) {
+        return Ok(());
+    }
+    let is_png = path
+        .extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case("png"));
+    if !is_png {
+        let path = shown(path);
+        return Err(Trouble(format!(
+            "a sheet is a PNG: {path} should end in .png"
+        )));
+    }
+    args.scenes
+        .iter()
+        .try_for_each(|scene| super::picture::check_is_not(path, scene))?;
+    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+}
+
+/// The scene of a file with its name, or those of a sweep; nothing if it has errors.
+fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)>>, Trouble> {
+    let input = Input::read(path, &args.overrides)?;
+    let Some(sweep) = &args.sweep else {
+        return Ok(input
+            .scene()
+            .scene
+            .map(|scene| vec![(scene, name(path, args))]));
+    };
+    let with = |set: String| {
+        let mut sources = input.sources.clone();
+        sources.sets.push(Source::from_text("--sweep", set));
+        Input { sources, ..input }
+    };
+    // What is wrong with the scene or an end of the sweep is told of that end.
+    if !sweep
+        .ends()
+        .into_iter()
+        .all(|set| with(set).scene().scene.is_some())
+    {
+        return Ok(None);
+    }
+    let mut scenes = Vec::new();
+    for step in sweep.steps(&input.sources)? {
+        let input = with(step.set);
+        let reading = scene::read(&input.sources);
+        let Some(scene) = reading.scene else {
+            output::to_people(&input.report(&reading));
+            return Ok(None);
+        };
+        scenes.push((scene, step.label));
+    }
+    Ok(Some(scenes))
+}
+
+/// What a file is called: without folders, if no other file has the same name.
+fn name(path: &Path, args: &SheetArgs) -> String {
+    if is_standard(path) {
+        return "standard input".to_owned();
+    }
+    let is_own = args
+        .scenes
+        .iter()
+        .filter(|it| it.file_stem() == path.file_stem())
+        .count()
+        == 1;
+    let name = match path.file_stem() {
+        Some(stem) if is_own => stem.to_string_lossy(),
+        _ => path.to_string_lossy(),
+    };
+    visible_line(&name).into_owned()
+}
+
+/// The scene's picture, rendered no wider than `width` and at most twice as high: with as many samples in a pixel as the
+/// large one has.
+fn cell(scene: &Scene, width: u32, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
+    let mut scene = scene.clone();
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let [across, down] = [whole.width, whole.height].map(f64::from);
+    let scale = f64::min(f64::from(width) / across, 2.0 * f64::from(width) / down);
+    if scale < 1.0 {
+        let scaled = |length: f64| ((length * scale).round() as u32).max(1);
+        scene.image.width = scaled(across);
+        scene.image.height = scaled(down);
+    }
+    let part = Area::whole(scene.image.width, scene.image.height);
+    if let Count::Total(total) = scene.sampler.count {
+        let share = u128::from(total) * u128::from(part.pixels()) / u128::from(whole.pixels());
+        scene.sampler.count = Count::Total((share as u64).max(1));
+    }
+    let world = World::new_unless(&scene, cancel).map_err(|_| RenderError::Cancelled)?;
+    match picture(&scene, &world, part, Keep::Bytes, cancel)? {
+        Picture::Bytes(bytes) => Ok(bytes.into_film()),
+        Picture::Light(_) | Picture::Floats(_) => unreachable!("bytes were asked for"),
+    }
+}
+
+/// All cells on white, row by row, in so many columns; else in about as many as there are rows.
+fn sheet(cells: &[Cell], columns: Option<u32>) -> Result<Film<[u8; 3]>, film::TooLarge> {
+    let count = cells.len() as u32;
+    let square = || (1..=count).find(|side| side * side >= count).unwrap_or(1);
+    let columns = columns.unwrap_or_else(square).min(count).max(1);
+    let width = cells
+        .iter()
+        .map(|(film, _)| film.width())
+        .max()
+        .unwrap_or(0);
+    let rows = cells.chunks(columns as usize);
+    let height = |row: &[Cell]| row.iter().map(|(film, _)| film.height()).max().unwrap_or(0);
+    let heights = rows.clone().map(|row| height(row) + LINE + GAP);
+    let size = [
+        columns * (width + GAP) + GAP,
+        heights.clone().sum::<u32>() + GAP,
+    ];
+    let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
+    let mut y = GAP;
+    for (row, height) in rows.zip(heights) {
+        for (column, (film, name)) in (0..).zip(row) {
+            let place = Area {
+                x: column * (width + GAP) + GAP,
+                y,
+                ..Area::whole(film.width(), film.height())
+            };
+            sheet.put(place, film.pixels());
+            write(
+                &mut sheet,
+                [place.x, y + film.height() + 4],
+                &fitting(name, width),
+            );
+        }
+        y += height;
+    }
+    Ok(sheet)
+}
+
+/// As much of a name as there is room for.
+fn fitting(name: &str, width: u32) -> String {
+    let most = width as usize / get_raster_width(REGULAR, LETTERS);
+    match name.chars().count() <= most {
+        true => name.to_owned(),
+        false => name
+            .chars()
+            .take(most.saturating_sub(2))
+            .chain("..".chars())
+            .collect(),
+    }
+}
+
+/// Writes a line of text in black on white.
+fn write(sheet: &mut Film<[u8; 3]>, [x, y]: [u32; 2], text: &str) {
+    let width = get_raster_width(REGULAR, LETTERS) as u32;
+    for (place, letter) in (0..).zip(text.chars()) {
+        let unknown = || get_raster('\u{fffd}', REGULAR, LETTERS);
+        let Some(letter) = get_raster(letter, REGULAR, LETTERS).or_else(unknown) else {
+            continue;
+        };
+        for (row, inks) in (y..).zip(letter.rows()) {
+            let pixels: Vec<[u8; 3]> = inks.iter().map(|ink| [255 - ink; 3]).collect();
+            let area = Area {
+                x: x + place * width,
+                y: row,
+                ..Area::whole(pixels.len() as u32, 1)
+            };
+            sheet.put(area, &pixels);
+        }
+    }
+}

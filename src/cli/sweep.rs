@@ -1,0 +1,132 @@
+//! `--sweep TARGET=FROM..TO/N`: the overrides of N scenes between two.
+
+use std::str::FromStr;
+
+use super::Trouble;
+use crate::{
+    numbers::{short, short_vector},
+    scene::analyze,
+    schema::Value,
+    source::{Source, Sources},
+};
+
+/// Maximum number of scenes.
+const MOST: usize = 1000;
+
+/// What a sweep changes, and between what.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    target: String,
+    from: String,
+    to: String,
+    count: usize,
+}
+
+/// A scene of a sweep.
+pub struct Step {
+    /// The `--set` argument that makes it.
+    pub set: String,
+    /// The same with as few digits as a person wants to see.
+    pub label: String,
+}
+
+impl FromStr for Sweep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || "write TARGET=FROM..TO/N, such as `camera.roll=0deg..90deg/10`".to_owned();
+        let (target, values) = text.split_once('=').ok_or_else(form)?;
+        let (values, count) = values.rsplit_once('/').ok_or_else(form)?;
+        let (from, to) = ends(values).ok_or_else(form)?;
+        let [target, from, to, count] =
+            [target, from, to, count].map(|part| part.trim().to_owned());
+        if target.is_empty() || from.is_empty() || to.is_empty() {
+            return Err(form());
+        }
+        match count.parse() {
+            Ok(count @ 2..=MOST) => Ok(Self {
+                target,
+                from,
+                to,
+                count,
+            }),
+            _ => Err(format!(
+                "`{count}` stands behind the last `/`, where a number of pictures from 2 to {MOST} is wanted"
+            )),
+        }
+    }
+}
+
+/// What stands before the first `..` outside of parentheses, and behind it.
+fn ends(values: &str) -> Option<(&str, &str)> {
+    let mut open = 0_usize;
+    let at = values.char_indices().find(|&(at, c)| {
+        match c {
+            '(' => open += 1,
+            ')' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        open == 0 && values[at..].starts_with("..")
+    });
+    let (at, _) = at?;
+    Some((&values[..at], &values[at + 2..]))
+}
+
+impl Sweep {
+    /// The first scene's argument and the last one's, as they are written.
+    pub fn ends(&self) -> [String; 2] {
+        [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
+    }
+
+    /// All of them, for a scene in which both ends have their values.
+    ///
+    /// # Errors
+    ///
+    /// There is nothing between the two, as between words or colours.
+    pub fn steps(&self, sources: &Sources) -> Result<Vec<Step>, Trouble> {
+        (0..self.count)
+            .map(|i| self.step(i, sources).ok_or_else(|| self.nothing_between()))
+            .collect()
+    }
+
+    /// The language itself says what is between: as the value of a `let` behind all others.
+    fn step(&self, i: usize, sources: &Sources) -> Option<Step> {
+        let Self {
+            target,
+            from,
+            to,
+            count,
+        } = self;
+        let text = sources.file.text();
+        let mut name = "step".to_owned();
+        while text.contains(&name) {
+            name += "_";
+        }
+        let between = format!("({from}) + (({to}) - ({from})) * {i} / {}", count - 1);
+        let with = format!("{text}\nlet {name} = {between}\n");
+        let mut sources = sources.clone();
+        sources.file = Source::from_text(sources.file.name(), with);
+        let model = analyze(&sources);
+        let definition = model.definitions().last()?;
+        let value = model.defined(definition)?;
+        let shown = match value {
+            Value::Number(number) => short(number),
+            Value::Angle(angle) => format!("{}deg", short(angle.in_degrees())),
+            Value::Vector(vector) => short_vector(vector),
+            Value::Color(_) | Value::Colors(_) | Value::FaceColors(_) | Value::Method(_) => {
+                return None;
+            }
+        };
+        Some(Step {
+            set: format!("{target}={value}"),
+            label: format!("{target}={shown}"),
+        })
+    }
+
+    fn nothing_between(&self) -> Trouble {
+        let (from, to) = (&self.from, &self.to);
+        Trouble(format!(
+            "--sweep finds nothing between `{from}` and `{to}`: it goes between two numbers, two angles or two vectors"
+        ))
+    }
+}

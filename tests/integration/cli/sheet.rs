@@ -1,0 +1,107 @@
+//! `sheet`: where each picture stands, and what is refused.
+
+use super::*;
+
+/// A scene of another size, and one with errors.
+fn with_others() -> Folder {
+    let folder = folder();
+    folder.write(
+        "b.scn",
+        "image { width 30 height 40 } camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere S { center (0, 0, 0) }",
+    );
+    folder.write("wrong.scn", "sphere {}");
+    folder
+}
+
+#[test]
+fn each_picture_of_a_sheet_is_that_of_its_scene() {
+    let folder = with_others();
+    let open = |name: &str| {
+        let picture = image::load_from_memory(&folder.read(name));
+        picture.unwrap().to_rgb8()
+    };
+    folder.done("sheet a.scn b.scn a.scn --columns 2 -o sheet.png");
+    folder.done("render a.scn");
+    folder.done("render b.scn");
+    let (sheet, a, b) = (open("sheet.png"), open("a.png"), open("b.png"));
+    let width = a.width().max(30);
+    let rows = [a.height().max(40), a.height()];
+    let size = (
+        12 + 2 * (width + 12),
+        12 + rows[0] + rows[1] + 2 * (22 + 12),
+    );
+    assert_eq!(sheet.dimensions(), size);
+    let below = 12 + rows[0] + 22 + 12;
+    for (picture, x, y) in [(&a, 12, 12), (&b, 24 + width, 12), (&a, 12, below)] {
+        let (w, h) = picture.dimensions();
+        let part = image::imageops::crop_imm(&sheet, x, y, w, h).to_image();
+        assert!(part == *picture, "at {x}, {y}");
+        // Its name.
+        let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
+        assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
+    }
+    // Smaller ones, as a scene of that size has them; and what a sweep is made of.
+    folder.done("sheet b.scn --width 15 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
+    let swept = open("swept.png");
+    for (i, x, y) in [
+        ("(0,0,0)", 12, 12),
+        ("(0.5,1,0)", 39, 12),
+        ("(1,2,0)", 12, 66),
+    ] {
+        folder.done(&format!(
+            "render b.scn -o c.png --set image.width=15 --set image.height=20 --set S.center={i}"
+        ));
+        let part = image::imageops::crop_imm(&swept, x, y, 15, 20).to_image();
+        assert!(part == open("c.png"), "{i}");
+    }
+}
+
+#[test]
+fn what_is_no_sheet_is_refused_and_nothing_is_written() {
+    let folder = with_others();
+    let before = folder.names();
+    for (line, status, words) in [
+        ("sheet a.scn", 2, "--output"),
+        ("sheet a.scn -o a.jpg", 2, "should end in .png"),
+        ("sheet a.scn -o a.scn", 2, "should end in .png"),
+        ("sheet a.scn missing.scn -o x.png", 2, "missing.scn"),
+        ("sheet a.scn wrong.scn -o x.png", 1, "missing_camera"),
+        ("sheet - - -o x.png", 2, "twice"),
+        ("sheet b.scn -o x.png --columns 0", 2, "--columns"),
+        (
+            "sheet b.scn -o x.png --sweep S.radius=1",
+            2,
+            "TARGET=FROM..TO/N",
+        ),
+        (
+            "sheet b.scn -o x.png --sweep S.radius=1../3",
+            2,
+            "TARGET=FROM..TO/N",
+        ),
+        (
+            "sheet b.scn -o x.png --sweep S.radius=1..2/1",
+            2,
+            "from 2 to 1000",
+        ),
+        (
+            "sheet b.scn -o x.png --sweep S.radius=1..-2/3",
+            1,
+            "--sweep:1:10",
+        ),
+        (
+            "sheet b.scn -o x.png --sweep S.color=red..blue/3",
+            2,
+            "nothing between",
+        ),
+        (
+            "sheet b.scn -o x.png --sweep sampler.per_pixel=1..6/3",
+            1,
+            "3.5",
+        ),
+    ] {
+        let said = folder.run(line);
+        assert_eq!(said.status, status, "{line}: {}", said.errors);
+        assert!(said.errors.contains(words), "{line}: {}", said.errors);
+        assert_eq!(folder.names(), before, "{line}");
+    }
+}
