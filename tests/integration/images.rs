@@ -7,7 +7,10 @@ use std::{fs, path::Path};
 use pinhole::film::Encoder;
 use png::{BitDepth, ColorType};
 
-use crate::scenes::{example_names, example_text, read_with, sampled};
+use crate::{
+    program::Folder,
+    scenes::{example_names, example_text, read_with, sampled},
+};
 
 fn rendered(text: &str) -> image::RgbImage {
     let scene = read_with(
@@ -78,4 +81,39 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
     }
     shown.sort();
     assert_eq!(shown, example_names());
+}
+
+/// The course's scenes are short, without a mistake and laid out, and the sheet shows them.
+#[test]
+fn the_course_is_short_and_its_sheet_shows_it() {
+    let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/course");
+    let names = crate::program::names(&course);
+    let scenes: Vec<&String> = names.iter().filter(|name| name.ends_with(".scn")).collect();
+    assert_eq!(scenes.len(), 12);
+    let folder = Folder::with([]);
+    let mut lines = 0;
+    for name in &scenes {
+        let text = fs::read_to_string(course.join(name)).unwrap();
+        lines += text.lines().count();
+        folder.write(name, &text);
+        for command in ["check", "fmt --check"] {
+            let said = folder.run(&format!("{command} {name}"));
+            assert_eq!(
+                (said.status, said.errors),
+                (0, String::new()),
+                "{command} {name}"
+            );
+        }
+    }
+    assert!(lines <= 165, "{lines} lines");
+    let scenes: Vec<&str> = scenes.iter().map(|name| name.as_str()).collect();
+    let scenes = scenes.join(" ");
+    folder.done(&format!(
+        "sheet {scenes} --columns 4 --width 240 -o sheet.png"
+    ));
+    let kept = course.join("sheet.png");
+    if std::env::var_os("PINHOLE_BLESS").is_some() {
+        fs::write(&kept, folder.read("sheet.png")).unwrap();
+    }
+    assert!(fs::read(&kept).unwrap() == folder.read("sheet.png"));
 }
