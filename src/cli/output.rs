@@ -112,6 +112,7 @@ pub fn is_watched() -> bool {
 /// screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
+    let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));
     Style {
         drawing: if is_set("NO_GRAPHICS") {
             Drawing::Narrated
@@ -121,10 +122,13 @@ pub fn style() -> Style {
             Drawing::Ascii
         },
         color: is_watched() && has_color(),
-        width: terminal_size_of(io::stderr())
-            .map_or(plain.width, |(Width(columns), _)| usize::from(columns)),
+        width: columns.unwrap_or(plain.width),
+        excerpt: columns.map_or(plain.excerpt, |columns| columns.saturating_sub(FRAME)),
     }
 }
+
+/// Columns to the left of an excerpt: the number of the line, and the frame.
+const FRAME: usize = 8;
 
 /// How a page is drawn on standard output, if that is a terminal.
 pub fn page_style() -> Option<Style> {

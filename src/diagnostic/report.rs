@@ -28,6 +28,8 @@ pub struct Style {
     pub color: bool,
     /// The terminal's width in columns; help is wrapped to it.
     pub width: usize,
+    /// The columns for lines of an excerpt: longer ones are cut, and labels wrapped.
+    pub excerpt: usize,
 }
 
 /// What a report is drawn with.
@@ -47,6 +49,7 @@ impl Default for Style {
             drawing: Drawing::Unicode,
             color: false,
             width: 100,
+            excerpt: 160,
         }
     }
 }
@@ -138,11 +141,11 @@ impl<'s> Report<'s> {
             (true, Severity::Warning) => ("\x1b[1;33m", "\x1b[0m"),
         };
         let code = &diagnostic.code;
-        let mut text = format!(
-            "{on}{word}[{code}]:{off} {}\n",
-            visible_line(&diagnostic.message)
-        );
-        let excerpts = excerpts(diagnostic, self.sources);
+        let message = visible_line(&diagnostic.message);
+        let title = format!("{on}{word}[{code}]:{off} {message}");
+        let columns = textwrap::Options::new(self.style.excerpt.max(LEAST));
+        let mut text = textwrap::fill(&title, columns.subsequent_indent("  ")) + "\n";
+        let excerpts = excerpts(diagnostic, self.sources, self.style.excerpt);
         if excerpts.is_empty()
             && let Some(help) = &diagnostic.help
         {
@@ -275,17 +278,17 @@ struct ExcerptLine {
     shown: Vec<(usize, usize)>,
 }
 
-/// A line up to this length is shown whole.
-const LONG_LINE: usize = 160;
-/// What is shown to the left and right of a label in a longer one.
-const AROUND: usize = 40;
-/// What is shown of a long label itself.
-const LONG_LABEL: usize = 80;
+/// Minimum number of columns, however narrow the terminal is.
+const LEAST: usize = 30;
+/// Columns between a label and its message.
+const HOOK: usize = 4;
+/// A message has at least so many columns, wherever its label stands.
+const LEAST_MESSAGE: usize = 16;
 /// A label over more lines than this is drawn under its first line only.
 const MOST_LINES: usize = 6;
 
 /// An excerpt for every source that the labels lie in, in the order of the labels.
-fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources) -> Vec<Excerpt<'s>> {
+fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -> Vec<Excerpt<'s>> {
     let mut ids: Vec<SourceId> = Vec::new();
     for label in &diagnostic.labels {
         if !ids.contains(&label.span.source) {
@@ -294,15 +297,20 @@ fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources) -> Vec<Excerpt<'s
     }
     let excerpt = |id| {
         let labels = diagnostic.labels.iter().filter(|l| l.span.source == id);
-        Excerpt::new(sources.get(id), labels)
+        Excerpt::new(sources.get(id), labels, columns.max(LEAST))
     };
     ids.into_iter().map(excerpt).collect()
 }
 
 impl<'s> Excerpt<'s> {
-    fn new<'l>(source: &'s Source, labels: impl Iterator<Item = &'l Label>) -> Self {
+    /// With lines of at most so many columns, as bytes count them.
+    fn new<'l>(
+        source: &'s Source,
+        labels: impl Iterator<Item = &'l Label>,
+        columns: usize,
+    ) -> Self {
         let labels: Vec<_> = labels
-            .map(|label| (shorten(label.span, source), label.message.as_str()))
+            .map(|label| (shorten(label.span, source, columns), label.message.as_str()))
             .collect();
         let mut numbers: Vec<usize> = labels
             .iter()
@@ -317,25 +325,27 @@ impl<'s> Excerpt<'s> {
             labels: Vec::new(),
         };
         for number in numbers {
-            excerpt.push_line(number, &labels);
+            excerpt.push_line(number, &labels, columns);
         }
         for (index, (span, message)) in labels.into_iter().enumerate() {
             let start = excerpt.offset_of(span.start);
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
+            let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
+            // The hook hangs at the label's middle.
+            let left = start.midpoint(end) - line + HOOK;
+            let room = columns.saturating_sub(left).max(LEAST_MESSAGE);
+            let message = textwrap::fill(&visible_line(message), room);
             // miette shows line and column of the primary label.
             excerpt.labels.push(match index {
-                0 => LabeledSpan::new_primary_with_span(
-                    Some(visible_line(message).into_owned()),
-                    inner,
-                ),
-                _ => LabeledSpan::new_with_span(Some(visible_line(message).into_owned()), inner),
+                0 => LabeledSpan::new_primary_with_span(Some(message), inner),
+                _ => LabeledSpan::new_with_span(Some(message), inner),
             });
         }
         excerpt
     }
 
-    fn push_line(&mut self, number: usize, labels: &[(Span, &str)]) {
+    fn push_line(&mut self, number: usize, labels: &[(Span, &str)], columns: usize) {
         let mut range = self.source.line_range(number);
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
@@ -348,7 +358,7 @@ impl<'s> Excerpt<'s> {
         }
         let start = self.text.len();
         let mut shown = Vec::new();
-        for piece in shown_pieces(self.source, range.clone(), labels) {
+        for piece in shown_pieces(self.source, range.clone(), labels, columns) {
             if piece.start > range.start {
                 self.text.push('…');
             }
@@ -426,43 +436,51 @@ impl SourceCode for Excerpt<'_> {
 }
 
 /// The part of a label that is drawn.
-fn shorten(span: Span, source: &Source) -> Span {
+fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = clamp(span, source);
     let first = source.line(span.start);
     let line = source.line_range(first);
     if source.line(span.end) - first >= MOST_LINES {
         span.end = line.end.max(span.start);
     }
-    if source.line(span.end) == first && line.len() > LONG_LINE {
-        let long = source.floor_char_boundary(span.start + LONG_LABEL);
+    if source.line(span.end) == first && line.len() > columns {
+        let long = source.floor_char_boundary(span.start + columns / 2);
         span.end = span.end.min(long);
     }
     span
 }
 
-/// The parts of a line that are shown: all of a short one, and of a long one what stands around its
-/// labels.
-fn shown_pieces(source: &Source, line: Range<usize>, labels: &[(Span, &str)]) -> Vec<Range<usize>> {
-    if line.len() <= LONG_LINE {
-        return vec![line];
-    }
-    let mut pieces: Vec<Range<usize>> = Vec::new();
+/// The parts of a line that are shown: all of a short one, and of a long one, or where there is no
+/// room for what a label says, a quarter of the columns to the left and right of its labels.
+fn shown_pieces(
+    source: &Source,
+    line: Range<usize>,
+    labels: &[(Span, &str)],
+    columns: usize,
+) -> Vec<Range<usize>> {
     let mut ends: Vec<usize> = labels
         .iter()
         .flat_map(|(span, _)| [span.start, span.end])
         .filter(|&end| line.start <= end && end <= line.end)
         .collect();
     ends.sort_unstable();
+    let with_message = ends.last().unwrap_or(&line.start) + HOOK + LEAST_MESSAGE;
+    if line.end.max(with_message) - line.start <= columns {
+        return vec![line];
+    }
+    let around = columns / 4;
+    let mut pieces: Vec<Range<usize>> = Vec::new();
     for end in ends {
-        let from = source.floor_char_boundary(end.saturating_sub(AROUND).max(line.start));
-        let to = source.floor_char_boundary((end + AROUND).min(line.end));
+        let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
+        let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            Some(last) if from <= last.end => last.end = last.end.max(to),
+            // An ellipsis in the place of a letter or two would help nobody.
+            Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }
     }
     if pieces.is_empty() {
-        let to = source.floor_char_boundary((line.start + 2 * AROUND).min(line.end));
+        let to = source.floor_char_boundary((line.start + 2 * around).min(line.end));
         pieces.push(line.start..to);
     }
     pieces

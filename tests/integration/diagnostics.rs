@@ -248,3 +248,32 @@ fn a_text_in_utf_16_is_one_mistake() {
         assert_eq!(found.message, "this file is UTF-16, not UTF-8");
     }
 }
+
+/// In a narrow terminal excerpts are cut around their labels, and all else is wrapped at words; of
+/// several labels in a line all are shown.
+#[test]
+fn reports_fit_into_the_terminal() {
+    let mut cut = 0;
+    for (name, sources) in fixtures() {
+        let found = scene::read(&sources).diagnostics;
+        for width in [60, 80] {
+            let style = Style {
+                width,
+                excerpt: width - 8,
+                ..Style::default()
+            };
+            let report = Report::new(&sources, style);
+            for diagnostic in found.iter().filter(|found| found.labels.len() == 1) {
+                let text = report.one(diagnostic);
+                cut += usize::from(text.contains('…'));
+                for line in text.lines() {
+                    let columns = line.chars().count();
+                    let longest = line.split(' ').map(|word| word.chars().count()).max();
+                    let is_word = longest.unwrap_or(0) + 20 > width;
+                    assert!(columns <= width || is_word, "{width}, {name}: {line}");
+                }
+            }
+        }
+    }
+    assert!(cut > 50, "{cut}");
+}
