@@ -90,7 +90,8 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let codes = explain::pages().map(|page| page.code);
     let others = ["language", "left_handed"].into_iter();
     let words = codes.chain(describe::words()).chain(others);
-    let words = words.chain(explain::headings());
+    let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
+    let words = words.chain(explain::headings()).chain(others);
     let near = suggest::nearest(explain::short(trimmed), words);
     Err(Trouble(match near {
         Some(near) => format!("there is no code `{word}`: did you mean `{near}`?"),
@@ -123,7 +124,8 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut is_scene = false;
     // The empty line after the last one ends its paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
-    for line in page.lines().chain([""]) {
+    let lines = page.lines().map(without_targets).collect::<Vec<_>>();
+    for line in lines.iter().map(String::as_str).chain([""]) {
         if !is_scene && line.starts_with('|') {
             rows.push(cells(line));
             continue;
@@ -153,6 +155,23 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     text.truncate(text.trim_end().len());
     text.push('\n');
     text
+}
+
+/// A line without the targets of its links: a terminal cannot follow them.
+fn without_targets(line: &str) -> String {
+    let link = |rest: &'_ str| {
+        let at = rest.find("](")?;
+        let start = rest.get(..at)?.rfind('[')?;
+        let end = at + rest.get(at..)?.find(')')?;
+        Some((start, at, end))
+    };
+    let (mut text, mut rest) = (String::new(), line);
+    while let Some((start, at, end)) = link(rest) {
+        text += rest.get(..start).unwrap_or_default();
+        text += rest.get(start + 1..at).unwrap_or_default();
+        rest = rest.get(end + 1..).unwrap_or_default();
+    }
+    text + rest
 }
 
 /// The cells of a row of a table in Markdown; a sign `\\|` in a cell is no border.
@@ -202,7 +221,13 @@ fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     }
 }
 
+/// A paragraph in lines that fit. An item of a list goes on below its first word.
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
+    let indent = if paragraph.starts_with("- ") {
+        "  "
+    } else {
+        ""
+    };
     let mut used = 0;
     for word in paragraph.split_whitespace() {
         let length = word.chars().count();
@@ -210,7 +235,8 @@ fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
             0 => {}
             _ if used + 1 + length > width => {
                 text.push('\n');
-                used = 0;
+                text.push_str(indent);
+                used = indent.len();
             }
             _ => {
                 text.push(' ');
@@ -236,7 +262,11 @@ mod tests {
                 let text = drawn(page.text, width, Headings::Plain);
                 for line in text.lines().filter(|line| !line.starts_with("    ")) {
                     let fits = line.chars().count() <= width || line == page.title();
-                    assert!(fits || !line.contains(' '), "{}: {line}", page.code);
+                    assert!(
+                        fits || !line.trim_start().contains(' '),
+                        "{}: {line}",
+                        page.code
+                    );
                 }
                 let is_markdown = |line: &str| line.starts_with("```") || line.starts_with("# ");
                 assert!(!text.lines().any(is_markdown), "{text}");
@@ -253,7 +283,8 @@ mod tests {
             let mut lines = text
                 .lines()
                 .filter(|line| !line.starts_with("    ") && !is_heading(line));
-            let is_wide = |line: &&str| line.chars().count() > width && line.contains(' ');
+            let is_wide =
+                |line: &&str| line.chars().count() > width && line.trim_start().contains(' ');
             let wide = lines.find(|line| is_wide(line));
             assert_eq!(wide, None, "{width}");
             assert!(!text.contains("| --"), "{text}");
@@ -268,7 +299,22 @@ mod tests {
             let found = page(word).map(|page| page.starts_with('#'));
             assert!(found.is_ok_and(|is_page| is_page), "{word}");
         }
+        for heading in explain::headings() {
+            let found = page(heading).unwrap();
+            assert!(found.starts_with(&format!("## {heading}\n")), "{heading}");
+        }
+        // A word of the language means itself, and not what others call so.
+        for (name, meant) in explain::OTHER_NAMES {
+            assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}");
+        }
         assert!(page("box.radius").is_err());
+    }
+
+    #[test]
+    fn links_lose_their_targets_and_items_hang() {
+        let page = "see [one](#a) and [`b` two](c.md)\n\n- a [list](#list) of words\n- x\n";
+        let text = "see one and\n`b` two\n\n- a list\n  of words\n- x\n";
+        assert_eq!(drawn(page, 11, Headings::Plain), text);
     }
 
     #[test]

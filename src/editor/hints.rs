@@ -1,5 +1,7 @@
 //! What a text does not say but could: shown in grey between its words.
 
+use std::ops::Range;
+
 use super::analysis::Analysis;
 use crate::{
     inspect,
@@ -19,51 +21,76 @@ pub struct Hint {
     pub text: String,
 }
 
-/// The remarks within a range of bytes, in order: what an expression comes to, the field of view that belongs to a distance, how
-/// many samples there are in all.
-pub fn hints(analysis: &Analysis<'_>, within: std::ops::Range<usize>) -> Vec<Hint> {
-    let mut hints = Vec::new();
+/// What there is to say of a value.
+struct Remark<'s> {
+    /// Where the value ends.
+    end: usize,
+    /// The name of the field or definition that has the value.
+    name: &'s str,
+    /// What an expression comes to.
+    comes_to: Option<Value>,
+    /// What follows from it together with others.
+    beside: Option<String>,
+}
+
+/// Returns the remarks on values that end within a range of bytes, in order: what an expression
+/// comes to, the field of view that belongs to a distance, how many samples there are in all.
+///
+/// All of them stand at the ends of lines: within a line, they would push apart what the formatter
+/// puts under one another. One that is not right behind its value says whose it is.
+pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
+    let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
         |value: &tree::Value<'_>| within.contains(&value.span.end) || within.end == value.span.end;
     for definition in analysis.model.definitions() {
         if touches(&definition.value) && is_computed(&definition.value) {
-            let value = analysis.model.defined(definition);
-            hints.extend(value.map(|value| Hint {
-                at: definition.value.span.end,
-                text: format!("= {value}"),
-            }));
+            remarks.push(Remark {
+                end: definition.value.span.end,
+                name: definition.name.map_or("", |name| name.text),
+                comes_to: analysis.model.defined(definition),
+                beside: None,
+            });
         }
     }
     for block in analysis.blocks() {
         for field in block.fields.iter().filter(|field| touches(&field.value)) {
-            let remarks: Vec<String> = [
-                computed(analysis, block, field),
-                beside(analysis, block, field),
-            ]
-            .into_iter()
-            .flatten()
-            .collect();
-            if !remarks.is_empty() {
-                hints.push(Hint {
-                    at: field.value.span.end,
-                    text: remarks.join(", "),
-                });
+            remarks.push(Remark {
+                end: field.value.span.end,
+                name: field.name.text,
+                comes_to: computed(analysis, block, field),
+                beside: beside(analysis, block, field),
+            });
+        }
+    }
+    remarks.sort_by_key(|remark| remark.end);
+    let mut hints: Vec<Hint> = Vec::new();
+    for remark in remarks {
+        let rest = analysis.text().get(remark.end..).unwrap_or_default();
+        let rest = rest.lines().next().unwrap_or_default().trim_end();
+        let at = remark.end + rest.len();
+        let is_behind = |value| match rest {
+            "" => format!("= {value}"),
+            _ => format!("{} = {value}", remark.name),
+        };
+        let texts = [remark.comes_to.map(is_behind), remark.beside];
+        for text in texts.into_iter().flatten() {
+            match hints.last_mut().filter(|last| last.at == at) {
+                Some(last) => last.text += &format!(", {text}"),
+                None => hints.push(Hint { at, text }),
             }
         }
     }
-    hints.sort_by_key(|hint| hint.at);
     hints
 }
 
 /// What a field's expression comes to.
-fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<String> {
+fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<Value> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
     // The words of methods are none of the text's names, whatever these are called.
     if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }
-    let value = analysis.model.value(&field.value, Some(row.takes))?;
-    Some(format!("= {value}"))
+    analysis.model.value(&field.value, Some(row.takes))
 }
 
 /// Whether a value is more than a literal.

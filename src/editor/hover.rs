@@ -6,6 +6,7 @@ use super::{
 };
 use crate::{
     color::Color,
+    diagnostic::{Diagnostic, Severity},
     explain, inspect,
     math::Angle,
     numbers::{grouped, short},
@@ -27,32 +28,37 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// What the word at a place means; and where something is wrong with it, the page on that.
+/// Returns what the word at a place means. Where something is wrong with it, the problem comes
+/// first, as a report has it, and the page that explains it last.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
-    let Some((span, more)) = mistake(analysis, at) else {
+    let Some((span, problem)) = mistake(analysis, at) else {
         return meaning;
     };
-    let mut hover = meaning.unwrap_or(Hover {
-        span,
-        markdown: String::new(),
-    });
-    if !hover.markdown.is_empty() {
-        hover.markdown.push_str("\n\n---\n\n");
+    let severity = match problem.severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    };
+    let mut parts = vec![format!("**{severity}:** {}", problem.message)];
+    parts.extend(problem.help.as_ref().map(|help| format!("help: {help}")));
+    let mut markdown = parts.join("\n\n");
+    let page = explain::page(&problem.code).map(|page| page.text.trim_end());
+    let about = meaning.as_ref().map(|meaning| meaning.markdown.as_str());
+    for more in [about, page].into_iter().flatten() {
+        markdown += "\n\n---\n\n";
+        markdown += more;
     }
-    hover.markdown.push_str(more);
-    Some(hover)
+    let span = meaning.map_or(span, |meaning| meaning.span);
+    Some(Hover { span, markdown })
 }
 
-/// The place of a problem, and the page that explains it.
-fn mistake(analysis: &Analysis<'_>, at: usize) -> Option<(Span, &'static str)> {
-    let mut found = analysis.diagnostics().iter().filter_map(|diagnostic| {
+/// The first problem whose place to jump to holds a place.
+fn mistake<'a>(analysis: &'a Analysis<'_>, at: usize) -> Option<(Span, &'a Diagnostic)> {
+    analysis.diagnostics().iter().find_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
         let holds = span.start <= at && at <= span.end && !span.range().is_empty();
-        holds.then_some((span, explain::page(&diagnostic.code)?))
-    });
-    let (span, page) = found.next()?;
-    Some((span, page.text.trim_end()))
+        holds.then_some((span, diagnostic))
+    })
 }
 
 fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {

@@ -116,7 +116,11 @@ fn relative_links_lead_to_files() {
     .to_vec();
     let (mut followed, mut missing) = (0, Vec::new());
     while let Some(path) = paths.pop() {
-        if path.is_dir() && !path.ends_with("node_modules") {
+        // Neither what is installed nor what is built.
+        let is_made = ["node_modules", "dist"]
+            .iter()
+            .any(|name| path.ends_with(name));
+        if path.is_dir() && !is_made {
             paths.extend(names(&path).into_iter().map(|name| path.join(name)));
         } else if path.extension().is_some_and(|ending| ending == "md") {
             let text = fs::read_to_string(&path).unwrap();

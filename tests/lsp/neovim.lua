@@ -42,8 +42,7 @@ found.text = lines()[4]
 vim.api.nvim_win_set_cursor(0, { 4, 21 })
 found.hover = ask("textDocument/hover").contents.value
 found.definition = ask("textDocument/definition").range
-local completions = vim.lsp.util.text_document_completion_list_to_complete_items(ask("textDocument/completion"), "")
-found.completion = completions[2].word
+found.completion = ask("textDocument/completion")[2].label
 local symbols = ask("textDocument/documentSymbol", { textDocument = vim.lsp.util.make_text_document_params() })
 found.symbol = vim.lsp.util.symbols_to_items(symbols, buffer)[6].text
 found.highlights = #ask("textDocument/documentHighlight")

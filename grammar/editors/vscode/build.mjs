@@ -1,6 +1,7 @@
-// Bundles the extension with what it uses, and the licences of that, into dist/; and fetches Pinhole's own licences.
+// Bundles the extension with what it uses, and the licences of that, into dist/; its page with the pictures in it; Pinhole's own
+// licences; and, where the environment variable BUNDLE names the program, that.
 
-import { copyFileSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { build } from "esbuild";
 
@@ -25,4 +26,15 @@ const texts = [...folders].sort().map(folder => {
 });
 writeFileSync("dist/LICENSES.txt", `dist/extension.js contains the packages below, each under its licence.\n\n${texts.join("\n\n")}`);
 
-for (const name of ["LICENSE-MIT", "LICENSE-APACHE"]) copyFileSync(`../../../${name}`, name);
+// Nothing of the page is fetched from elsewhere when the editor shows it.
+const page = readFileSync("README.md", "utf8");
+writeFileSync("dist/README.md", page.replace(/\]\(([^)]+\.png)\)/g, (_, file) => `](data:image/png;base64,${readFileSync(file, "base64")})`));
+
+const [mit, apache] = ["MIT", "APACHE"].map(name => readFileSync(`../../../LICENSE-${name}`, "utf8").trim());
+writeFileSync("LICENSE.txt", `Pinhole is licensed under either of the two licences below, at your option.\n\n${mit}\n\n\n${apache}\n`);
+
+rmSync("bin", { recursive: true, force: true });
+if (process.env.BUNDLE) {
+  mkdirSync("bin");
+  copyFileSync(process.env.BUNDLE, path.join("bin", path.basename(process.env.BUNDLE)));
+}

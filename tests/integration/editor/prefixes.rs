@@ -47,7 +47,15 @@ fn ask(analysis: &Analysis<'_>, at: usize) {
 fn ask_of_all(analysis: &Analysis<'_>) {
     let text = analysis.text();
     let hints = hints(analysis, 0..text.len());
-    assert!(hints.iter().all(|hint| text.is_char_boundary(hint.at)));
+    for hint in hints {
+        // Within a line, it would push apart what the formatter puts under one another.
+        let rest = text.get(hint.at..).expect("a place between characters");
+        let is_end = rest
+            .lines()
+            .next()
+            .is_none_or(|rest| rest.trim().is_empty());
+        assert!(is_end, "{hint:?}");
+    }
     for pair in semantic_tokens(analysis).windows(2) {
         let [before, after] = [&pair[0], &pair[1]].map(|token| token.span);
         assert!(before.end <= after.start, "tokens overlap: {pair:?}");

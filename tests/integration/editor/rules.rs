@@ -63,9 +63,17 @@ fn mistakes_are_explained_by_their_pages() {
     let markdown = |text: &str| at_cursor(text, hover).expect("a hover").markdown;
     let page = |code| explain::page(code).expect("a page").text.trim_end();
     let text = markdown("sphere { center (0, 1, 0) rad$0us 2 }");
-    assert_eq!(text, page("unknown_field"));
+    let start = "**error:** a sphere has no field `radus`\n\nhelp: did you mean `radius`? ";
+    assert!(text.starts_with(start), "{text}");
+    let end = format!("\n\n---\n\n{}", page("unknown_field"));
+    assert!(text.ends_with(&end), "{text}");
+    let text = markdown(
+        "let a = 1 sphere { center (0, 1, 0) } camera { eye (0, 1, 5) up (0$0, 0, 1) direction (0, 0, 1) }",
+    );
+    assert!(text.starts_with("**warning:** "), "{text}");
     let text = markdown("camera { eye (0, 0, 0) lookat (1, 0, 0) roll $030 }");
-    assert!(text.starts_with("`roll` of a camera: "), "{text}");
+    assert!(text.starts_with("**error:** "), "{text}");
+    assert!(text.contains("\n\n---\n\n`roll` of a camera: "), "{text}");
     let end = format!("\n\n---\n\n{}", page("bare_angle"));
     assert!(text.ends_with(&end), "{text}");
 }

@@ -1,11 +1,16 @@
-//! A real editor talks to the server: Neovim without its window, which has to be there: `cargo test -- --ignored neovim`, with `nvim` on
-//! the path.
+//! A real editor talks to the server: Neovim without its window. It has to be there, as `nvim` on
+//! the path: `cargo test -- --ignored neovim`. Versions 0.7 and 0.11 are known to do.
 
-use std::{path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use crate::{program::Folder, snapshot::assert_file};
+use super::path_with_program;
+use crate::{program::Folder, scenes::fenced, snapshot::assert_file};
 
 const SCENE: &str = "// 🎱 é: a ball
 let ball = (0, 1, 0)
@@ -13,28 +18,134 @@ camera { eye (0, 1, 5)  lookat ball  d 1 }
 sphere Ball { center ball  /* 🎱 */ radus 0.5 }
 ";
 
-/// It does what `tests/lsp/neovim.lua` says, and gets the answers beside that.
-#[test]
-#[ignore = "needs Neovim"]
-fn neovim_writes_a_scene() {
-    let folder = Folder::with([("scene.scn", SCENE)]);
+fn root(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// Neovim in a home of its own, which does what a script says and then ends. The program under test
+/// comes first on its path.
+fn neovim(folder: &Folder, script: &Path) -> Command {
     let home = folder.path("");
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp/neovim.lua");
     let mut neovim = Command::new("nvim");
     neovim
         .args(["--headless", "--clean", "-c"])
         .arg(format!("luafile {}", script.display()))
         .current_dir(&home)
         .env("PINHOLE", env!("CARGO_BIN_EXE_pinhole"))
+        .env("PLUGIN", root("grammar/editors/neovim"))
         .env("ANSWERS", folder.path("answers.json"));
     for name in ["HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME"] {
         neovim.env(name, &home);
     }
+    neovim.env("PATH", path_with_program());
+    neovim
+}
+
+fn answers(folder: &Folder, mut neovim: Command) -> Value {
     let output = neovim.output().expect("Neovim is on the path");
     assert!(folder.path("answers.json").exists(), "{output:?}");
-    let mut found: Value = serde_json::from_slice(&folder.read("answers.json")).unwrap();
+    serde_json::from_slice(&folder.read("answers.json")).expect("JSON")
+}
+
+/// It does what `tests/lsp/neovim.lua` says, and gets the answers beside that.
+#[test]
+#[ignore = "needs Neovim"]
+fn neovim_writes_a_scene() {
+    let folder = Folder::with([("scene.scn", SCENE)]);
+    let script = root("tests/lsp/neovim.lua");
+    let mut found = answers(&folder, neovim(&folder, &script));
     // Lua keeps no order.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
+}
+
+/// A text, keys, and the line that they make of it.
+type Typed = [&'static str; 3];
+
+/// Asked for by `CTRL-X CTRL-O`. Neovim 0.7 puts in the whole of a completion, 0.11 its word, so that
+/// only what both begin with is compared.
+const ASKED: &[Typed] = &[
+    ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
+    ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],
+    ["triangle { $0 }", "c e n <C-x><C-o>", "triangle { centroid"],
+    [
+        "let Big_1 = 1\nsphere { radius $0 }",
+        "B <C-x><C-o>",
+        "sphere { radius Big_1",
+    ],
+];
+
+/// Offered while typing, as the page on editors sets up Neovim 0.11.
+const OFFERED: &[Typed] = &[
+    // Nothing is put in before it is chosen.
+    ["$0\ncamera {}", "s menu p h", "sph"],
+    [
+        "$0\ncamera {}",
+        "s menu p h <C-n> <C-y>",
+        "sphere { center (0, 1, 0) }",
+    ],
+    [
+        "triangle { $0 }",
+        "v menu 1 <C-n> <C-y>",
+        "triangle { v1 (1, 0, 0) }",
+    ],
+    [
+        "let Big_1 = 1\nlet Big_2 = 2\nsphere { radius $0 }",
+        "B menu i g _ 2 <C-n> <C-y>",
+        "sphere { radius Big_2 }",
+    ],
+    ["sphere { radius $0 }", "1 2", "sphere { radius 12 }"],
+];
+
+#[test]
+#[ignore = "needs Neovim"]
+fn neovim_completes_what_is_typed() {
+    let version = Command::new("nvim").arg("--version").output();
+    let version = String::from_utf8(version.expect("Neovim is on the path").stdout).expect("text");
+    // The one of the language server's client in 0.11 is called `vim.lsp.completion`.
+    let is_new = !["v0.7.", "v0.8.", "v0.9.", "v0.10."]
+        .iter()
+        .any(|old| version.contains(old));
+
+    let found = typed(ASKED, None);
+    for ([text, keys, line], found) in ASKED.iter().zip(found["lines"].as_array().unwrap()) {
+        assert!(
+            found.as_str().unwrap().starts_with(line),
+            "{text} {keys}: {found}"
+        );
+    }
+    if !is_new {
+        return;
+    }
+    let page = fs::read_to_string(root("grammar/editors/README.md")).unwrap();
+    let snippets = fenced(&page, "lua");
+    let found = typed(
+        OFFERED,
+        snippets.into_iter().find(|it| it.contains("autotrigger")),
+    );
+    for ([text, keys, line], found) in OFFERED.iter().zip(found["lines"].as_array().unwrap()) {
+        assert_eq!(found, line, "{text} {keys}");
+    }
+    assert_eq!(found["hints"], true);
+    let behind = found["behind_lines"].as_str().unwrap();
+    assert!(behind.contains("no field `radus`"), "{behind}");
+}
+
+/// What comes of rows, with a snippet in the editor's configuration or without one.
+fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
+    let rows = rows.iter().map(|[text, keys, _]| {
+        let keys: Vec<&str> = keys.split(' ').collect();
+        json!({ "text": text, "keys": keys })
+    });
+    let rows = Value::Array(rows.collect()).to_string();
+    let folder = Folder::with([("rows.json", rows.as_str())]);
+    let mut neovim = neovim(&folder, &root("tests/lsp/neovim_types.lua"));
+    if let Some(snippet) = snippet {
+        folder.write("snippet.lua", snippet);
+        neovim.env("SNIPPET", folder.path("snippet.lua"));
+    }
+    let found = answers(&folder, neovim);
+    assert_eq!(found["failure"], Value::Null);
+    found
 }

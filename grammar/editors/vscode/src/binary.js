@@ -5,14 +5,15 @@ const os = require("node:os");
 const path = require("node:path");
 
 /**
- * The path of the program `pinhole`: the setting, if there is one, else the first on PATH or where `cargo install` puts it.
- * Undefined if no file is there.
+ * The path of the program `pinhole`: the setting, if there is one, else the first on PATH, where `cargo install` puts it, or the
+ * one that the extension was packaged with. Undefined if no file is there.
  *
  * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at `folder`.
  * @param {string | undefined} folder The workspace's folder.
+ * @param {string | undefined} extension The extension's folder.
  * @param {{ PATH?: string, CARGO_HOME?: string }} env
  */
-function findBinary(setting, folder, env = process.env) {
+function findBinary(setting, folder, extension, env = process.env) {
   const home = os.homedir();
   const wanted = setting.trim();
   if (wanted !== "") {
@@ -21,7 +22,8 @@ function findBinary(setting, folder, env = process.env) {
   }
   const cargo = path.join(env.CARGO_HOME || path.join(home, ".cargo"), "bin");
   const folders = (env.PATH ?? "").split(path.delimiter).filter(folder => path.isAbsolute(folder));
-  return [...folders, cargo].map(folder => existing(path.join(folder, "pinhole"))).find(Boolean);
+  const own = extension === undefined ? [] : [path.join(extension, "bin")];
+  return [...folders, cargo, ...own].map(folder => existing(path.join(folder, "pinhole"))).find(Boolean);
 }
 
 /** The file of this name, which on Windows may leave out its ending. */

@@ -6,6 +6,9 @@ const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 const { findBinary } = require("./binary");
 
+/** Where the extension is, whose folder `bin` may have the program. */
+let home;
+
 /** The server's client while it runs. */
 let client;
 
@@ -13,10 +16,12 @@ let client;
 let turn = Promise.resolve();
 
 function activate(context) {
+  home = context.extensionPath;
   context.subscriptions.push(
     vscode.commands.registerCommand("pinhole.render", render),
     vscode.commands.registerCommand("pinhole.watch", watch),
     vscode.commands.registerCommand("pinhole.restart", () => next(restart)),
+    vscode.commands.registerCommand("pinhole.use", use),
     vscode.workspace.onDidChangeConfiguration(change => {
       if (change.affectsConfiguration("pinhole.path")) next(restart);
     }),
@@ -61,22 +66,49 @@ async function restart() {
 /** The program, or undefined after a message that says what to do. */
 function binary() {
   const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
-  const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath);
+  const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath, home);
   if (found === undefined) {
-    const where = setting.trim() === "" ? "on PATH and in ~/.cargo/bin" : `at ${setting}, where the setting pinhole.path says`;
-    const message = `Pinhole's program was sought ${where}, and is not there. Install it by "cargo install --path ." from Pinhole's folder, or set pinhole.path.`;
-    vscode.window.showErrorMessage(message, "Open Setting").then(answer => {
-      if (answer !== undefined) vscode.commands.executeCommand("workbench.action.openSettings", "pinhole.path");
+    const where = setting.trim() === "" ? "neither on PATH nor in ~/.cargo/bin" : `not at ${setting}, where the setting pinhole.path says`;
+    const message = `The program pinhole is ${where}. Without it, scenes are highlighted, and no more.`;
+    vscode.window.showErrorMessage(message, "Choose File…", "How to Get It").then(answer => {
+      if (answer === "Choose File…") return chooseBinary();
+      // The extension's own page begins with it.
+      if (answer === "How to Get It") return vscode.commands.executeCommand("extension.open", "pinhole.pinhole");
     });
   }
   return found;
+}
+
+/** Sets the program to a file that the user chooses; the change of the setting starts the server. */
+async function chooseBinary() {
+  const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
+  if (file === undefined) return;
+  await vscode.workspace.getConfiguration("pinhole").update("path", file.fsPath, vscode.ConfigurationTarget.Global);
+}
+
+/**
+ * Makes the file that is open a scene where another extension has its ending, and offers that for every such file. The
+ * server runs by then: the command activates the extension.
+ */
+async function use() {
+  const document = vscode.window.activeTextEditor?.document;
+  if (document === undefined) return;
+  await vscode.languages.setTextDocumentLanguage(document, "pinhole");
+  const ending = path.extname(document.uri.path);
+  if (ending === "") return;
+  const every = `Every *${ending}`;
+  const answer = await vscode.window.showInformationMessage("This file is a Pinhole scene until it is closed.", every);
+  if (answer !== every) return;
+  const files = vscode.workspace.getConfiguration("files");
+  const associations = { ...files.inspect("associations")?.globalValue, [`*${ending}`]: "pinhole" };
+  await files.update("associations", associations, vscode.ConfigurationTarget.Global);
 }
 
 /** The file of the scene that is being edited, saved; or undefined after a message. */
 async function savedScene() {
   const document = vscode.window.activeTextEditor?.document;
   if (document?.languageId !== "pinhole") {
-    vscode.window.showInformationMessage("Open a scene (.scn) to render it.");
+    vscode.window.showInformationMessage("Open a scene to render it. If another extension has its ending, run “Pinhole: Use Pinhole for This File” first.");
     return undefined;
   }
   // One that is not saved because it has no name yet, or by the user's choice, is not rendered.

@@ -1,6 +1,7 @@
 // The extension as it is packaged, in a stand-in for VS Code, with the real program.
 
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { homedir, tmpdir } from "node:os";
@@ -39,6 +40,9 @@ async function started(t, options) {
 }
 
 const timeout = 20_000;
+
+/** What follows from the answer to a message, which nothing waits for. */
+const settled = () => new Promise(resolve => setTimeout(resolve, 50));
 
 test("a scene that is open gets its diagnostics and every answer has a provider", { timeout }, async t => {
   const document = scene(SCENE.replace("eye", "eyes"));
@@ -88,8 +92,32 @@ test("Pinhole: Render on Every Save watches in a terminal", { timeout }, async t
 test("a program that is missing is named with what to do", { timeout }, async t => {
   const { seen } = await started(t, { setting: "/nowhere/pinhole" });
   const [{ kind, message, choices }] = seen.messages;
-  assert.deepEqual([kind, choices, seen.messages.length], ["error", ["Open Setting"], 1]);
-  assert.match(message, /\/nowhere\/pinhole.*pinhole\.path.*cargo install/s);
+  assert.deepEqual([kind, choices, seen.messages.length], ["error", ["Choose File…", "How to Get It"], 1]);
+  assert.match(message, /\/nowhere\/pinhole.*pinhole\.path/s);
+});
+
+test("a program that is missing can be chosen, or its page opened", { timeout }, async t => {
+  const chosen = await started(t, { setting: "/nowhere/pinhole", answers: ["Choose File…"], file: "/a/pinhole" });
+  await settled();
+  assert.deepEqual(chosen.seen.updates, [["path", "/a/pinhole", chosen.vscode.ConfigurationTarget.Global]]);
+  const asked = await started(t, { setting: "/nowhere/pinhole", answers: ["How to Get It"] });
+  await settled();
+  assert.deepEqual(asked.seen.executed, [["extension.open", "pinhole.pinhole"]]);
+});
+
+test("a file that another extension has taken becomes a scene, and then all with its ending", { timeout }, async t => {
+  const taken = { ...scene(SCENE), languageId: "godot" };
+  const { vscode, seen } = await started(t, { documents: [taken], setting: whole(), answers: ["Every *.scn"] });
+  await seen.commands.get("pinhole.use")();
+  assert.deepEqual(seen.languages, [[taken, "pinhole"]]);
+  assert.deepEqual(seen.updates, [["associations", { "*.old": "text", "*.scn": "pinhole" }, vscode.ConfigurationTarget.Global]]);
+});
+
+test("the icon is the picture of its scene", () => {
+  const folder = new URL("..", import.meta.url).pathname;
+  const [file, cwd] = [path.join(folder, "icon.png"), folder];
+  const icon = execFileSync(whole(), ["render", "icon.scn", "-o", "-"], { cwd, stdio: ["ignore", "pipe", "ignore"] });
+  assert.ok(icon.equals(readFileSync(file)), "render icon.scn anew");
 });
 
 test("the program is the setting's, or the first on the path, or cargo's", () => {
@@ -101,15 +129,17 @@ test("the program is the setting's, or the first on the path, or cargo's", () =>
     return file;
   };
   const [first, second, cargo] = [place("first", "pinhole"), place("second", "pinhole"), place("cargo", "bin", "pinhole")];
+  const own = place("own", "bin", "pinhole");
   const env = { PATH: ["relative", path.join(folder, "empty"), path.dirname(first), path.dirname(second)].join(path.delimiter), CARGO_HOME: path.join(folder, "cargo") };
-  assert.equal(findBinary("", undefined, env), first);
-  assert.equal(findBinary("", undefined, { ...env, PATH: "" }), cargo);
-  assert.equal(findBinary(second, undefined, env), second);
-  assert.equal(findBinary(" second/pinhole ", folder, env), second);
-  assert.equal(findBinary("third/pinhole", folder, env), undefined);
-  assert.equal(findBinary("second", folder, env), undefined, "a folder is no program");
+  assert.equal(findBinary("", undefined, undefined, env), first);
+  assert.equal(findBinary("", undefined, undefined, { ...env, PATH: "" }), cargo);
+  assert.equal(findBinary("", undefined, path.join(folder, "own"), { PATH: "", CARGO_HOME: folder }), own, "as packaged");
+  assert.equal(findBinary(second, undefined, undefined, env), second);
+  assert.equal(findBinary(" second/pinhole ", folder, undefined, env), second);
+  assert.equal(findBinary("third/pinhole", folder, undefined, env), undefined);
+  assert.equal(findBinary("second", folder, undefined, env), undefined, "a folder is no program");
   chmodSync(first, 0o644);
-  if (process.getuid?.() !== 0) assert.equal(findBinary("", undefined, env), second);
+  if (process.getuid?.() !== 0) assert.equal(findBinary("", undefined, undefined, env), second);
   symlinkSync(second, path.join(folder, "link"));
   assert.equal(findBinary(path.relative(homedir(), path.join(folder, "link")), undefined, env), path.join(folder, "link"));
 });

@@ -51,15 +51,22 @@ class TabInputText {
 /** An enumeration or class of which only the existence matters. */
 const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
-/** A fresh editor with these documents. `path` is the setting `pinhole.path`. */
-export function editor({ documents = [], setting = "" } = {}) {
-  const seen = { messages: [], executed: [], terminals: [], providers: {}, diagnostics: new Map(), commands: new Map() };
-  const show = kind => async (message, ...choices) => { seen.messages.push({ kind, message, choices }); };
+/**
+ * A fresh editor with these documents. `setting` is that of `pinhole.path`; `answers` are what the user chooses where a message
+ * offers it, and `file` what he chooses in a dialog.
+ */
+export function editor({ documents = [], setting = "", answers = [], file } = {}) {
+  const seen = { messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
+  const show = kind => async (message, ...choices) => {
+    seen.messages.push({ kind, message, choices });
+    return choices.find(choice => answers.includes(choice));
+  };
   const members = {
     Uri, Position, Range, Diagnostic, TabInputText, CodeActionKind,
     version: "1.91.0",
     env: { appName: "test", language: "en", machineId: "test" },
     ViewColumn: { Beside: -2 },
+    ConfigurationTarget: { Global: 1 },
     ProgressLocation: { Notification: 15, Window: 10 },
     Disposable: class { constructor(end) { this.dispose = end; } static from() { return disposable(); } },
     EventEmitter: class {
@@ -79,17 +86,24 @@ export function editor({ documents = [], setting = "" } = {}) {
       tabGroups: { all: [{ tabs: documents.map(({ uri }) => ({ input: new TabInputText(uri) })) }], onDidChangeTabs: disposable, onDidChangeTabGroups: disposable },
       visibleTextEditors: [], visibleNotebookEditors: [], terminals: seen.terminals,
       showErrorMessage: show("error"), showInformationMessage: show("information"), showWarningMessage: show("warning"),
+      showOpenDialog: async () => file && [Uri.file(file)],
       withProgress: (_, run) => run({ report() {} }, { isCancellationRequested: false, onCancellationRequested: disposable }),
       createTerminal(options) { const terminal = { ...options, show() {}, dispose() {} }; seen.terminals.push(terminal); return terminal; },
       createOutputChannel: () => partly({ onDidChangeLogLevel: disposable, logLevel: 0 }),
     }),
     workspace: partly({
       textDocuments: documents, notebookDocuments: [], workspaceFolders: undefined,
-      getConfiguration: () => ({ get: (name, preset) => (name === "path" ? setting : preset), inspect() {} }),
+      getConfiguration: () => ({
+        get: (name, preset) => (name === "path" ? setting : preset),
+        inspect: name => (name === "associations" ? { globalValue: { "*.old": "text" } } : undefined),
+        async update(...change) { seen.updates.push(change); },
+      }),
       fs: { async stat() {} },
     }),
     languages: new Proxy({}, {
-      get: (_, name) => name === "match"
+      get: (_, name) => name === "setTextDocumentLanguage"
+        ? async (...change) => { seen.languages.push(change); }
+        : name === "match"
         ? ((selector, document) => [selector].flat().some(({ language }) => language === document.languageId) ? 10 : 0)
         : name === "createDiagnosticCollection"
         ? () => partly({ set: (uri, list) => { seen.diagnostics.set(uri.toString(), list); seen.onDiagnostics?.(); } })
