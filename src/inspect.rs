@@ -256,7 +256,7 @@ fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
     }
 }
 
-/// The same for people.
+/// The same for people, who want no list of a million objects.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
@@ -281,7 +281,7 @@ impl fmt::Display for Inspection {
         }
         writeln!(f)?;
         writeln!(f, "objects")?;
-        for (index, object) in self.objects.iter().enumerate() {
+        for (index, object) in self.objects.iter().enumerate().take(LISTED) {
             let kind = object.shape.kind();
             let name = object.name.as_deref().unwrap_or("-");
             let line = object.line;
@@ -290,6 +290,10 @@ impl fmt::Display for Inspection {
                 "  {index:<3} {kind:<12} {name:<10} line {line:<4} {}",
                 summary(&object.shape)
             )?;
+        }
+        let more = self.objects.len().saturating_sub(LISTED) as u64;
+        if more > 0 {
+            writeln!(f, "  {} more, which --format json lists", grouped(more))?;
         }
         self.write_seen(f)
     }

@@ -273,3 +273,20 @@ fn nothing_is_seen_of_what_lies_outside_of_the_picture() {
     }
     assert!(outside > 50, "{outside}");
 }
+
+/// People see a hundred objects, and programs all.
+#[test]
+fn of_very_many_objects_the_first_ones_are_listed() {
+    let scene =
+        "camera { eye (0, 0, 10) lookat (0, 0, 0) } sphere for i < 1100 { center (i, 0, 0) }";
+    let folder = Folder::with([("a.scn", scene)]);
+    let said = folder.run("inspect a.scn").errors;
+    assert_eq!(said.matches("line 1").count(), 100);
+    assert!(
+        said.contains("  1_000 more, which --format json lists"),
+        "{said}"
+    );
+    assert!(said.contains("  1_000 more, of which"), "{said}");
+    let json = folder.done("inspect a.scn --format json").json();
+    assert_eq!(json["objects"].as_array().unwrap().len(), 1100);
+}
