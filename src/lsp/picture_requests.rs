@@ -75,8 +75,8 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     Ok(sliders.map(written).collect())
 }
 
-/// A block that is new, or that stands there another time. Without a scene, it is put where a
-/// camera would see it that is to come.
+/// A block that is new, or that stands there another time. In a text with errors it is put beside
+/// what can be read of it.
 fn add(
     params: &Value,
     converter: Converter<'_>,

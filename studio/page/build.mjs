@@ -60,6 +60,8 @@ if (host === "static") {
     .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "")
     // A link to a site leads everybody to it.
     .replace('<p id="share-local">', '<p id="share-local" hidden>')
+    // A site has no port of its own choice.
+    .replace('<span id="kept-served">', '<span id="kept-served" hidden>')
     // The engine in the browser writes no EXR.
     .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>');
 }

@@ -1,6 +1,8 @@
 //! A block that is new: one of a kind, in front of the camera, or one that stands there already, a
 //! little aside.
 
+use std::{borrow::Cow, sync::Arc};
+
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -13,11 +15,14 @@ use crate::{
     editor::Analysis,
     numbers::{rounded, short, short_vector, significant},
     projection::Projection,
-    scene::{Part, Scene, Shape},
+    scene::{Part, Parts, SMALLEST, Scene, Shape},
     schema,
-    source::SourceId,
+    source::{Source, SourceId, Sources},
     tracer::vertices,
 };
+
+/// Number of rows in which a free place is looked for: a scene of more objects is not made by hand.
+const ROWS: i32 = 100;
 
 /// A block that is new.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,21 +39,23 @@ pub struct Added {
 /// below the eye, and beside what is there already. None if that is no kind of an object.
 pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option<Added> {
     let row = schema::block(kind).filter(|row| row.is_object)?;
-    let (place, size) = scene.map_or((DVec3::Y, 1.0), free_place);
-    let across = scene.map_or(DVec3::Z, |scene| {
-        let from = scene.camera.eye - place;
-        match from.x.abs() > from.z.abs() {
-            true => DVec3::X * from.x.signum(),
-            false => DVec3::Z * from.z.signum(),
-        }
-    });
+    let scene = match scene {
+        Some(scene) => Cow::Borrowed(scene),
+        None => Cow::Owned(sketch(analysis)?),
+    };
+    let (place, size) = free_place(&scene);
+    let from = scene.camera.eye - place;
+    let across = match from.x.abs() > from.z.abs() {
+        true => DVec3::X * from.x.signum(),
+        false => DVec3::Z * from.z.signum(),
+    };
     let (at, across, size) = (short_vector(place), short_vector(across), short(size));
     let twice = short(2.0 * size.parse().unwrap_or(1.0));
     let fields = match row.name {
         "sphere" => format!("center {at}  radius {size}"),
         "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})"),
         "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
-        _ => format!("y {}", short(scene.map_or(0.0, free_height))),
+        _ => format!("y {}", short(free_height(&scene))),
     };
     let name = free_name(analysis, kind);
     let text = analysis.text();
@@ -62,6 +69,25 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         ),
         name: Some(name),
         cursor: text[..end].encode_utf16().count() + gap.len(),
+    })
+}
+
+/// The scene of a text with errors, as far as it can be read: the smallest scene's parts stand in
+/// for those that fail, so that what is added is beside what was added before.
+fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
+    let smallest = Sources::new(Source::from_text("", SMALLEST));
+    let smallest = Analysis::new(&smallest).scene()?;
+    let Parts {
+        image,
+        camera,
+        sampler,
+        objects,
+    } = analysis.model.parts.clone();
+    Some(Scene {
+        image: image.unwrap_or(smallest.image),
+        camera: camera.unwrap_or(smallest.camera),
+        sampler: sampler.unwrap_or(smallest.sampler),
+        objects: Arc::new(objects),
     })
 }
 
@@ -160,14 +186,16 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let middles =
         shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
     let taken: Vec<DVec3> = middles.collect();
-    let place = |steps: i32| {
-        let aside = projection.right * (2.5 * size * f64::from(steps));
-        let at = projection.eye + projection.ahead * distance + aside;
+    let place = |steps: i32, row: i32| {
+        let [aside, behind] = [steps, row].map(|steps| 2.5 * size * f64::from(steps));
+        let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
         // What stands on a floor keeps all digits of its height.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_free = |at: &DVec3| taken.iter().all(|it| it.distance(*at) > 1.5 * size);
-    let places = [0, 1, -1, 2, -2, 3, -3].map(place);
-    (places.into_iter().find(is_free).unwrap_or(places[0]), size)
+    // Each row has seven places, and the next one is behind it.
+    let row = |row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(steps, row));
+    let found = (0..ROWS).flat_map(row).find(is_free);
+    (found.unwrap_or(place(0, 0)), size)
 }

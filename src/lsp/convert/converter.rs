@@ -163,7 +163,7 @@ impl Converter<'_> {
         let values: Vec<[usize; 2]> = values.map(|value| [value.start, value.end]).collect();
         without_nulls(json!({
             "title": match is_made_up {
-                true => format!("{}, to put in your own value", fix.title),
+                true => format!("{}, then type over its value", fix.title),
                 false => fix.title.clone(),
             },
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },

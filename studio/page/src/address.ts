@@ -28,30 +28,18 @@ export function takeToken(): string | null {
 }
 
 /** What the host knows this tab by. Reloading keeps it, and another tab has its own. */
-class Session {
-  token: string | null = null;
+export const session = {
+  token: remembered(TOKEN, "sessionStorage"),
   /** Whether the token comes from an address that was just opened. */
-  isFresh = false;
+  isFresh: false,
 
-  constructor() {
-    const token = takeToken();
-    if (token !== null) this.begin(token);
-    else this.token = remembered(TOKEN, "sessionStorage");
-  }
-
-  /** Begins with the token of an address. */
-  begin(token: string): void {
-    this.keep(token);
-    this.isFresh = true;
-  }
-
-  /** Keeps the token that the host has given. */
-  keep(token: string): void {
-    this.token = token;
-    this.isFresh = false;
+  /** Keeps the token that the host has given, or that an address has. */
+  keep(token: string, from: "host" | "address"): void {
+    Object.assign(this, { token, isFresh: from === "address" });
     // A browser that forbids it wants the printed address after reloading.
     remember(TOKEN, token, "sessionStorage");
-  }
-}
+  },
+};
 
-export const session = new Session();
+const token = takeToken();
+if (token !== null) session.keep(token, "address");

@@ -88,7 +88,6 @@ class Connection implements Transport {
 
   /** Tries at once where there is no connection: there is a new reason to hope for one. */
   retry(): void {
-    if (this.state === "open") return;
     clearTimeout(this.timer);
     this.attempts = 0;
     this.enter("connecting");
@@ -171,7 +170,7 @@ const webSocket: Connector = (opened, receive, closed) => {
   socket.addEventListener("message", event => {
     if (isOpen) return receive(String(event.data));
     isOpen = true;
-    session.keep(JSON.parse(String(event.data)).params.token);
+    session.keep(JSON.parse(String(event.data)).params.token, "host");
     opened(socket);
   });
   socket.addEventListener("close", ({ code }) => closed(code === UNKNOWN

@@ -36,7 +36,8 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    const all = fixes.length > 0 ? ofAll : [];
+    // What mends all stands once, by the first that it mends.
+    const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
       to: editor.offset(diagnostic.range.end),
@@ -95,8 +96,9 @@ function diagnosed(): [Diagnostic, number, number][] {
 export function showProblems(): void {
   const found = diagnosed();
   const { length } = found;
-  setText(button, length === 0 ? "No problems" : length === 1 ? "1 problem" : `${length} problems`);
-  button.toggleAttribute("data-some", length > 0);
+  const worst = found.some(([it]) => it.severity === "error") ? "problem" : "warning";
+  button.dataset["worst"] = length === 0 ? "" : worst;
+  setText(button, length === 0 ? "No problems" : `${length} ${worst}${length === 1 ? "" : "s"}`);
   const list = byId("problem-list");
   const isWhole = isOpen();
   list.hidden = length === 0;

@@ -40,20 +40,29 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Hears of a pointer that was pressed until it is let go. */
+/** Hears of a pointer that was pressed until it is let go, or given up: by Escape, or by the
+ *  function that this returns. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
-  end: () => void): void {
+  end: () => void, cancel: () => void): () => void {
   const following = new AbortController();
+  // In the capture phase, so that the key is not taken for a command as well.
+  const how = { capture: true, signal: following.signal };
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
     act: (event: PointerEvent) => void) => document.addEventListener(type,
-    event => event.pointerId === pressed.pointerId && act(event), { signal: following.signal });
-  const over = () => {
+    event => event.pointerId === pressed.pointerId && act(event), how);
+  const over = (act: () => void) => {
+    if (!following.signal.aborted) act();
     following.abort();
-    end();
   };
   hear("pointermove", move);
-  hear("pointerup", over);
-  hear("pointercancel", over);
+  for (const type of ["pointerup", "pointercancel"] as const) hear(type, () => over(end));
+  document.addEventListener("keydown", event => {
+    if (event.key !== "Escape") return;
+    event.stopPropagation();
+    event.preventDefault();
+    over(cancel);
+  }, how);
+  return () => over(cancel);
 }
 
 /** Does one thing after the other: of those that come while one is done, the newest alone. */

@@ -1,6 +1,6 @@
 // Drafts: what is written and not saved, kept while one writes, and offered again after a reload, a
 // crash, or a host that was lost. Each page has a key of its own, under which it writes over none
-// of the others. The served host keeps drafts in a file; the static page in this browser.
+// of the others. This browser keeps them until the served host has them, or where there is none.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -9,6 +9,7 @@ import { editor } from "./editor";
 import { files } from "./files";
 import { Refusal, type Draft } from "./protocol";
 import { say } from "./status";
+import { setText } from "./visible";
 
 /** How long a text waits until it is kept, in milliseconds, however fast one types. */
 const BEHIND = 500;
@@ -17,7 +18,7 @@ const MOST = 10;
 /** So many are offered at once. */
 const OFFERED = 3;
 
-const store = isServed ? undefined : createStore("pinhole-drafts", "drafts");
+const store = createStore("pinhole-drafts", "drafts");
 
 let timer = 0;
 const freshId = () => `${Date.now()} ${Math.random()}`;
@@ -29,9 +30,11 @@ const due = new Map<string, Draft | null>();
 /** What is offered and not answered yet, the newest first. */
 let offers: Draft[] = [];
 const bar = byId("draft-bar");
+const kept = byId("connection-kept");
+setText(byId("kept-port"), location.port);
 
 byId("draft-later").addEventListener("click", () => (bar.hidden = true));
-addEventListener("pagehide", () => void keepDraft());
+for (const type of ["beforeunload", "pagehide"]) addEventListener(type, () => void keepDraft());
 files.onLeave = leave;
 files.onSaved = text => void keepDraft(text);
 
@@ -45,13 +48,17 @@ async function keepDraft(saved?: string): Promise<void> {
   const { isUnsaved, textToSave } = files;
   if (isUnsaved || isKept) due.set(id, isUnsaved ? newDraft() : null);
   isKept = isUnsaved;
-  for (const it of offers) if (it.text === saved || it.text === textToSave) forget(it);
+  // What is shown before there is a scene is still a draft.
+  const there = [saved, editor.uri === "" ? undefined : textToSave];
+  for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
     try {
       await stored(id, draft);
-      if (due.get(id) === draft) due.delete(id);
+      if (due.get(id) !== draft) return;
+      due.delete(id);
+      if (isServed) await del(id, store);
     } catch (error) {
-      // Without a connection the text is kept when there is one.
+      // Without a connection the host gets it when there is one.
       if (error instanceof Refusal) say(`No draft is kept: ${error.message}`, "warning");
     }
   }));
@@ -62,9 +69,13 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers what other pages have kept. */
-export async function offerDrafts(kept: Draft[] | undefined): Promise<void> {
-  offers = kept ?? (isServed ? [] : await all().catch(() => []));
+/** Offers what other pages have kept: here, which is newer, or with the host. */
+export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
+  kept.dataset["kept"] = editor.uri === "" ? "early" : "alone";
+  offers = hosts;
+  show();
+  const here = await all().catch((): Draft[] => []);
+  offers = [...here, ...offers.filter(it => here.every(({ id }) => id !== it.id))];
   show();
   await keepDraft();
 }
@@ -74,7 +85,7 @@ function show(): void {
   byId("draft-choices").replaceChildren(...offers.slice(0, OFFERED).map(draft => {
     const time = new Date(draft.time * 1000)
       .toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
-    const other = isServed && draft.base !== files.at.seen
+    const other = isServed && editor.uri !== "" && draft.base !== files.at.seen
       ? " The file holds something else; Save will ask." : "";
     const { length } = draft.text.split("\n");
     const row = create("li", "", `${draft.name}, of ${time}, ${length} lines.${other}`);
@@ -87,9 +98,9 @@ function show(): void {
 function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     leave();
-    files.restore(draft);
+    files.restore(draft.text, draft.base);
   }
-  forget(draft);
+  if (!isRestored || editor.uri !== "") forget(draft);
   void keepDraft();
   editor.view.focus();
 }
@@ -116,8 +127,14 @@ const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.t
 
 /** Keeps a draft under its key, or forgets what is kept there. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
-  if (isServed) return connection.request("studio/draft", draft ?? { id, text: null });
+  // A browser that forbids it, or takes its time, is no reason not to tell the host.
+  const here = storedHere(id, draft).catch(() => {});
+  await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
+}
+
+async function storedHere(id: string, draft: Draft | null): Promise<void> {
   if (draft === null) return del(id, store);
   await set(id, draft, store);
+  kept.dataset["kept"] = "here";
   await delMany((await all()).slice(MOST).map(({ id }) => id), store);
 }

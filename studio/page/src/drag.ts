@@ -2,7 +2,6 @@
 // it was at the press, and on where the hand was then and is now, but not on the way between: the
 // server is asked about that text, which it has under an address of its own meanwhile.
 
-import { ChangeSet, type Text } from "@codemirror/state";
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
@@ -15,17 +14,13 @@ import { setText } from "./visible";
 /** What is held, and where it was seen at the press; without an object it is the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
-/** Why a drag could not be done stays readable for so many milliseconds after it. */
-const REFUSAL_STAYS = 5000;
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
 // What a drag says stands where the hand is, while it lasts.
 const note = byId("drag-note");
-let staying = new AbortController();
 
 function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
-  staying.abort();
   note.hidden = text === "";
   note.dataset["tone"] = tone;
   setText(note, text);
@@ -34,27 +29,17 @@ function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void 
   style.setProperty("--y", `${y}px`);
 }
 
-/** A refusal stays until something else is done, or for a while. */
-function endNote(): void {
-  const clear = () => showNote("", "plain", [0, 0]);
-  if (note.hidden || note.dataset["tone"] !== "warning") return clear();
-  const { signal } = (staying = new AbortController());
-  for (const type of ["pointerdown", "keydown"]) {
-    addEventListener(type, clear, { capture: true, signal });
-  }
-  const timer = setTimeout(clear, REFUSAL_STAYS);
-  signal.addEventListener("abort", () => clearTimeout(timer));
-}
+const clearNote = () => showNote("", "plain", [0, 0]);
+// Why a drag could not be done stays readable until something else is done.
+for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
+  if (!(frames.dragging instanceof Drag)) clearNote();
+}, { capture: true });
 
 let count = 0;
 
 /** Asks for one edit at a time, always about the newest place of the hand. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
-  /** The text at the press, what has become of it, and by which changes. */
-  private base!: Text;
-  private current!: Text;
-  private written!: ChangeSet;
   /** Where the hand is. */
   private target: Point;
   private isOpen = false;
@@ -76,18 +61,12 @@ export class Drag {
 
   /** The drag before this one may not have come to its end yet. */
   private async begin(before: Drag | null, hold: () => Promise<Held | null> | Held) {
-    this.take();
+    this.gesture = new Gesture(editor.view);
     if (before !== null) {
       await before.done;
-      this.take();
+      this.gesture = new Gesture(editor.view);
     }
     return hold();
-  }
-
-  private take(): void {
-    this.base = this.current = editor.view.state.doc;
-    this.written = ChangeSet.empty(this.base.length);
-    this.gesture = new Gesture(editor.view);
   }
 
   to(target: Point): void {
@@ -101,7 +80,7 @@ export class Drag {
   end(): void { void this.work.then(() => this.finish()); }
 
   cancel(): void {
-    this.back();
+    this.gesture.cancel();
     this.finish();
   }
 
@@ -111,7 +90,7 @@ export class Drag {
   });
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
-    const { base, press, uri } = this;
+    const { gesture, gesture: { base }, press, uri } = this;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
     // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
@@ -122,11 +101,11 @@ export class Drag {
       const answer = await editor.request<Dragged | null>("pinhole/drag", about);
       if (this.over) return;
       if (answer === null) return this.say(BROKEN, "warning");
-      if (editor.view.state.doc !== this.current) {
+      if (!gesture.isAlone) {
         this.say(OTHERWISE, "warning");
         return this.finish();
       }
-      this.write(editor.changes(answer.edits, base));
+      gesture.write(editor.changes(answer.edits, base));
       const also = answer.also?.length ? `; also ${answer.also.join(", ")}` : "";
       this.say(answer.values.join(", ") + also, "plain");
       await frames.coarse;
@@ -138,29 +117,11 @@ export class Drag {
     }
   }
 
-  /** Has changes of the text at the press in the place of those that stand there. */
-  private write(changes: ChangeSet): void {
-    const { base, current } = this;
-    const text = changes.apply(base);
-    if (!text.eq(current)) this.gesture.apply(this.written.invert(base).compose(changes));
-    this.written = changes;
-    this.current = editor.view.state.doc;
-  }
-
-  /** Whoever has changed the text otherwise keeps it. */
-  private back(): void {
-    if (this.over || editor.view.state.doc !== this.current) return;
-    this.gesture.cancel(this.written.invert(this.base));
-    this.current = editor.view.state.doc;
-  }
-
   private finish(): void {
     if (this.over) return;
-    // What has come back to where it was has not been.
-    if (this.current.eq(this.base)) this.back();
     this.over = true;
     this.gesture.end();
-    endNote();
+    if (note.dataset["tone"] !== "warning") clearNote();
     if (this.isOpen) editor.closeAside(this.uri);
     this.settle();
     frames.released(this);

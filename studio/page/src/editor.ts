@@ -11,7 +11,7 @@ import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec,
   type Extension, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
-  highlightSpecialChars, keymap, lineNumbers, type ViewUpdate } from "@codemirror/view";
+  highlightSpecialChars, keymap, lineNumbers, tooltips, type ViewUpdate } from "@codemirror/view";
 import type { Position, Range, TextEdit } from "vscode-languageserver-protocol";
 import { connection } from "./connection";
 import { byId, meta } from "./dom";
@@ -71,6 +71,16 @@ export function withLf(text: string): string {
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
 
+/** The language client. What is asked about a place of a text that has changed has no answer. */
+class SceneClient extends LSPClient {
+  override async request<Params, Result>(method: string, params: Params): Promise<Result> {
+    const { doc } = editor.view.state;
+    const answer = await super.request<Params, Result>(method, params);
+    const isLate = method === "textDocument/hover" && editor.view.state.doc !== doc;
+    return isLate ? null as Result : answer;
+  }
+}
+
 class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
@@ -80,7 +90,7 @@ class SceneEditor {
   onUpdate: (update: ViewUpdate) => void = () => {};
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
-    this.client = new LSPClient({
+    this.client = new SceneClient({
       // A busy machine may take its time; a lost connection is told by the connection.
       timeout: 60_000,
       sanitizeHTML: sanitized,
@@ -92,9 +102,14 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
+        // What is typed before the scene is there would be lost.
+        EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
+        // The tools above the text stay free.
+        tooltips({ tooltipSpace: ({ dom }) => ({ left: 0, right: innerWidth, bottom: innerHeight,
+          top: dom.getBoundingClientRect().top }) }),
         bracketMatching(), closeBrackets(), closingBrace, replacedLines, gestureHistory(),
         sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",
@@ -168,8 +183,8 @@ class SceneEditor {
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
-    this.view.dispatch({ effects: StateEffect.appendConfig.of(
-      this.client.plugin(this.uri, "pinhole")) });
+    this.view.dispatch({ effects: StateEffect.appendConfig.of([
+      Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
   /** Puts another text in place. No more changes than differs, so that the cursor stays. */

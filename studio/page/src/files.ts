@@ -7,7 +7,7 @@ import { StateEffect, type Extension, type Transaction } from "@codemirror/state
 import { connection, isServed } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { editor, withLf } from "./editor";
-import { Refusal, type Draft, type HostedFile, type Saved } from "./protocol";
+import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say } from "./status";
 import { setText, visibleLine } from "./visible";
 
@@ -36,7 +36,8 @@ class Scene {
   /** What it starts with, which is not worth saving; null for a file. */
   untouched: string | null = null;
 
-  constructor(public name = "scene.scn") {}
+  /** Of a copy that is not saved yet, `of` is the scene in whose place it comes then. */
+  constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
   /** The text of its file as far as it is known, or what it starts with. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
@@ -61,6 +62,8 @@ class Files {
   onSaved: (text: string) => void = () => {};
   /** Told before another scene comes in the place of one. */
   onLeave: () => void = () => {};
+  /** What was restored before the host's scene was there, in whose place it comes. */
+  private early: [text: string, base: string | null | undefined] | null = null;
   /** The host's scene, and the one that the page shows. */
   private hosts = new Scene();
   at = this.hosts;
@@ -68,6 +71,8 @@ class Files {
 
   constructor() {
     byId("save").addEventListener("click", () => void this.save());
+    byId("save-as").addEventListener("click",
+      () => void this.save(new Scene(this.at.name, this.at)));
     byId("open").addEventListener("click", () => void this.open());
     byId("file").addEventListener("change", ({ target }) => {
       const [file] = (target as HTMLInputElement).files ?? [];
@@ -112,16 +117,17 @@ class Files {
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Puts a draft in place. */
-  restore(draft: Draft): void {
-    if (this.at.seen !== null) this.at.base = draft.base;
-    editor.replace(draft.text);
+  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from. */
+  restore(text: string, base?: string | null): void {
+    if (editor.uri === "") this.early = [text, base];
+    if (base !== undefined && this.at.seen !== null) this.at.base = base;
+    editor.replace(text);
     this.show();
   }
 
   /** The host says what file it has: at first, after the connection was lost, when a new scene
    *  has got its name, and when the file has changed. */
-  hosted({ name, text, reason, saved }: HostedFile, linked: string | null): void {
+  hosted({ name, text, reason, saved }: HostedFile): void {
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // What becomes of the host's file is told when its scene is there again, and is saved.
     if (this.at !== this.hosts) return this.show();
@@ -131,9 +137,9 @@ class Files {
       this.at.untouched = saved ? null : start;
       editor.open(start);
       this.tellLone();
-      if (linked !== null) editor.replace(linked);
+      if (this.early !== null) this.restore(...this.early);
       // Who opens a link has the scene in it, whatever happens to the page.
-      if (!isServed) this.at.untouched = editor.text;
+      if (!isServed && this.early?.[1] === undefined) this.at.untouched = editor.text;
       if (saved && text === null) this.tellGone(reason);
     } else if (isServed && saved) {
       this.at.untouched = null;
@@ -183,11 +189,11 @@ class Files {
     if (document.title !== title) document.title = title;
   }
 
-  async save(): Promise<void> {
+  async save(scene = this.at): Promise<void> {
     try {
-      if (!isServed) await this.saveLocal();
-      else if (this.at.isNew) this.askName();
-      else await this.saveAs(this.at.name);
+      if (!isServed) await this.saveLocal(scene);
+      else if (scene.isNew) this.askName(scene);
+      else await this.saveAs(scene, scene.name);
     } catch (error) { this.failed(error as Error); }
     this.show();
   }
@@ -197,9 +203,9 @@ class Files {
     if (name !== "AbortError") say(message, "warning");
   }
 
-  private async saveAs(name: string): Promise<void> {
+  private async saveAs(scene: Scene, name: string): Promise<void> {
     if (connection.state !== "open") throw new Error(NOT_SAVED);
-    const { at: scene, hosts, textToSave: text } = this;
+    const { hosts, textToSave: text } = this;
     const { isGone, isNew, base } = scene;
     const isHosts = scene === hosts && !isNew;
     const isTaken = !isHosts && !hosts.isNew && name === hosts.name;
@@ -224,6 +230,7 @@ class Files {
   private saved(scene: Scene, name: string, text: string): void {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
+    if (scene.of === this.at) this.at = scene;
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);
@@ -231,18 +238,18 @@ class Files {
   }
 
   /** Asks for the name of a new file, and saves it. While that fails, the dialog stays. */
-  private askName(): void {
+  private askName(scene: Scene): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
     const problem = byId("name-problem");
     setText(problem, "");
-    field.value = this.at.name;
+    field.value = scene.name;
     byId("name-form").onsubmit = async event => {
       if ((event.submitter as HTMLButtonElement | null)?.value === "") return;
       event.preventDefault();
       const name = field.value.trim();
       try {
-        await this.saveAs(name.endsWith(".scn") ? name : `${name}.scn`);
+        await this.saveAs(scene, name.endsWith(".scn") ? name : `${name}.scn`);
         dialog.close();
       } catch (error) {
         setText(problem, (error as Error).message);
@@ -254,8 +261,8 @@ class Files {
     field.select();
   }
 
-  private async saveLocal(): Promise<void> {
-    const { at: scene, textToSave: text } = this;
+  private async saveLocal(scene: Scene): Promise<void> {
+    const { textToSave: text } = this;
     const about = { ...SCENES, suggestedName: scene.name };
     scene.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
     if (scene.handle === null) download(scene.name, text, "text/plain");

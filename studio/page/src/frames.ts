@@ -4,7 +4,7 @@
 import { connection } from "./connection";
 import { fromBase64 } from "./dom";
 import { editor } from "./editor";
-import { isSuperseded, type Frame } from "./protocol";
+import { isSuperseded, type Frame, type Overlays } from "./protocol";
 
 /** How fine a picture is. */
 export type Fineness = "coarse" | "sharp" | "final";
@@ -42,10 +42,7 @@ class Frames {
   private generation = 0;
   private shown = 0;
   private size: [number, number] = [1280, 720];
-  private askedFor = this.size;
   private lastTook = Infinity;
-  /** The generation whose picture the server has refused. */
-  private refused = 0;
 
   /** What was dragged is no more, unless something else is dragged already. */
   released(dragged: object): void {
@@ -53,22 +50,10 @@ class Frames {
     this.onRest();
   }
 
-  /** The size of the scene's picture, as soon as something else knows it. A picture that was
-   *  refused is asked for anew: it may have been too large. */
-  resized(size: [number, number]): void {
-    this.size = size;
-    this.retry();
-  }
-
-  private retry(): void {
-    const isOther = String(this.size) !== String(this.askedFor);
-    if (isOther && this.refused === this.generation) this.changed();
-  }
-
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
     if (editor.uri === "" || connection.state !== "open") return;
-    const [width, height] = (this.askedFor = this.size);
+    const [width, height] = this.size;
     const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE,
       Math.sqrt((width * height) / MOST_PIXELS), 1));
     const coarse = Math.max(least, Math.round(Math.sqrt((width * height) / COARSE_PIXELS)));
@@ -116,11 +101,19 @@ class Frames {
     } catch (error) {
       if (isSuperseded(error) || generation !== this.generation
         || connection.state !== "open") return false;
-      this.refused = generation;
       this.onState(error as Error);
-      this.retry();
+      void this.resize(generation);
       return false;
     }
+  }
+
+  /** A picture was refused: it may have been too large, as it has another size than was thought. */
+  private async resize(generation: number): Promise<void> {
+    const seen = await editor.ask<Overlays>("pinhole/overlays", { only: [] });
+    const isOther = seen !== null && String(seen.size) !== String(this.size);
+    if (generation !== this.generation || !isOther) return;
+    this.size = seen.size;
+    this.changed();
   }
 }
 

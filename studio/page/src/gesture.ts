@@ -2,8 +2,8 @@
 // takes back. What it changes is marked, so that one sees which numbers move.
 
 import { history, historyField, isolateHistory } from "@codemirror/commands";
-import { Annotation, Compartment, EditorState, StateField, type ChangeSpec, type Extension, type
-  Range, type TransactionSpec } from "@codemirror/state";
+import { Annotation, ChangeSet, Compartment, EditorState, StateField, type ChangeSpec, type
+  Extension, type Range, type Text, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */
@@ -59,38 +59,57 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
+/** Depends on the text as it was at the beginning and on what was written last, but not on what was
+ *  written between. Who else changes the text keeps that: then it does nothing more. */
 export class Gesture {
-  private steps = 0;
+  /** The text at the beginning, what has become of it, and by which changes. */
+  readonly base: Text;
+  private current: Text;
+  private written: ChangeSet;
   private over = false;
   private readonly past: Extension;
 
   constructor(private readonly view: EditorView) {
     const past = view.state.field(historyField, false);
     this.past = historyField.init(() => past);
+    this.base = this.current = view.state.doc;
+    this.written = ChangeSet.empty(this.base.length);
   }
 
-  /** Changes the text, and shows the first place of it. */
-  apply(spec: ChangeSpec): void {
-    if (this.over) return;
-    const changes = this.view.state.changes(spec);
+  /** Whether nobody else has changed the text. */
+  get isAlone(): boolean { return this.view.state.doc === this.current; }
+
+  /** Has a change of the text at the beginning in the place of those that stand there, and shows
+   *  its first place. */
+  write(spec: ChangeSpec): void {
+    if (this.over || !this.isAlone) return;
+    const { base, current, view, written } = this;
+    this.written = ChangeSet.of(spec, base.length, "\n");
+    if (this.written.apply(base).eq(current)) return;
+    const changes = written.invert(base).compose(this.written);
     let place = 0;
     changes.iterChangedRanges((_fromOld, _toOld, from) => (place ||= from));
-    const annotations = this.steps++ === 0 ? [step.of("first"), isolateHistory.of("before")]
+    const annotations = current === base ? [step.of("first"), isolateHistory.of("before")]
       : [step.of("next")];
-    this.view.dispatch({ changes, annotations,
+    view.dispatch({ changes, annotations,
       effects: EditorView.scrollIntoView(place, { y: "nearest" }) });
+    this.current = view.state.doc;
   }
 
+  /** Ends; what has come back to where it was has not been. */
   end(): void {
     if (this.over) return;
+    if (this.isAlone && this.current.eq(this.base)) return this.cancel();
     this.over = true;
-    if (this.steps > 0) this.view.dispatch({ annotations: isolateHistory.of("after") });
+    this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Ends as if nothing had happened, by a change that leads back: neither Undo nor Redo knows. */
-  cancel(back: ChangeSpec): void {
+  /** Ends as if nothing had happened: neither Undo nor Redo knows. */
+  cancel(): void {
     if (this.over) return;
+    if (!this.isAlone) return this.end();
     this.over = true;
-    if (this.steps > 0) rewrite(this.view, { changes: back }, this.past);
+    const { base, current, view, written } = this;
+    if (current !== base) rewrite(view, { changes: written.invert(base) }, this.past);
   }
 }

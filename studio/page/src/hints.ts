@@ -1,6 +1,6 @@
 // Between the letters: values that the server works out, and a swatch before each colour.
 
-import { StateEffect, StateField } from "@codemirror/state";
+import { StateEffect, StateField, type Text } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
   type DecorationSet } from "@codemirror/view";
 import type { Color, ColorInformation, ColorPresentation, InlayHint } from
@@ -11,15 +11,13 @@ import { Gesture } from "./gesture";
 
 /** A colour as it is written. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
+const colorAt = (doc: Text, at: number) => COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
 const setHints = StateEffect.define<DecorationSet>();
 
 export const hintField = StateField.define<DecorationSet>({
   create: () => Decoration.none,
-  update(hints, transaction) {
-    let next = hints.map(transaction.changes);
-    for (const effect of transaction.effects) if (effect.is(setHints)) next = effect.value;
-    return next;
-  },
+  update: (hints, { changes, effects }) =>
+    effects.findLast(it => it.is(setHints))?.value ?? hints.map(changes),
   provide: field => EditorView.decorations.from(field),
 });
 
@@ -70,8 +68,7 @@ export const openSwatch: Command = view => {
   const { state: { doc, selection: { main } }, dom } = view;
   const swatch = [...dom.querySelectorAll<HTMLInputElement>(".swatch")].find(it => {
     const at = view.posAtDOM(it);
-    const { length } = COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
-    return at <= main.head && main.head <= at + length;
+    return at <= main.head && main.head <= at + colorAt(doc, at).length;
   });
   swatch?.focus();
   swatch?.showPicker();
@@ -102,16 +99,17 @@ export async function refreshHints(): Promise<void> {
 
 /** Writes a picked colour over the one at an offset, in the way it is written there. */
 async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
-  const { doc } = editor.view.state;
-  const written = COLOR.exec(doc.sliceString(offset, offset + 200))?.[0] ?? "";
+  const written = colorAt(gesture.base, offset);
   const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
   const color = { red: channel(1), green: channel(3), blue: channel(5), alpha: 1 };
-  const range = editor.range(offset, offset + written.length);
+  const { length } = colorAt(editor.view.state.doc, offset);
+  const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
   const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
     ?? ways?.[0];
-  if (way?.textEdit !== undefined) gesture.apply(editor.changes([way.textEdit]));
+  if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
+    insert: way.label });
 }
 
 function hex({ red, green, blue }: Color): string {

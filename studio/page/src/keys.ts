@@ -18,7 +18,7 @@ const ARROWS: Record<string, Point> =
 
 /** Where keys mean something of their own: all of them, or those that arrows and Space are. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
-const SAVE = "Control+s"; // works there, too
+const SAVE = ["Control+s", "Control+Shift+s"]; // work there, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** A key as it stands at its control. */
@@ -64,7 +64,7 @@ function down(event: KeyboardEvent): void {
   const arrow = ARROWS[key];
   const on = event.target as Element;
   const whole = nameOf(event);
-  const isElsewhere = on.closest(TEXT) !== null && whole !== SAVE;
+  const isElsewhere = on.closest(TEXT) !== null && !SAVE.includes(whole);
   if (event.defaultPrevented || isElsewhere) return;
   const isOfControl = on.closest(CONTROL) !== null && on.closest("#stage") === null;
   if (isOfControl && (arrow !== undefined || key === " " || key === "Escape")) return;

@@ -32,7 +32,8 @@ divider.addEventListener("pointerdown", event => {
   // On narrow screens the picture is above the text.
   const move = ({ clientX, clientY }: PointerEvent) =>
     share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
-  followPointer(event, move, () => {});
+  const before = Number(divider.getAttribute("aria-valuenow"));
+  followPointer(event, move, () => {}, () => share(before));
 });
 divider.addEventListener("keydown", event => {
   const direction = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: 1, ArrowDown: -1 }[event.key];

@@ -55,10 +55,17 @@ frames.onState = state => {
     : "The text has errors. This is its last good picture.");
   else status.stale(`No picture of the newest text: ${state.message}`);
 };
-frames.onRest = rested;
+frames.onRest = () => {
+  rested();
+  if (waiting !== null) void hosted(waiting);
+};
 
 function changed(): void {
-  if (editor.uri === "") return;
+  if (editor.uri === "") {
+    const isAlone = connection.state !== "open" && editor.text !== "";
+    status.connection(connection.state, isAlone);
+    return status.stale(isAlone ? "Without a connection there is no picture." : null);
+  }
   frames.changed();
   void refreshOutlines();
   files.show();
@@ -89,24 +96,34 @@ picture.onView = () => {
 
 connection.onHang = isHanging => status.connection(isHanging ? "hanging" : "open", true);
 connection.onState = state => {
-  status.connection(state, editor.uri !== "");
-  if (state === "open") {
-    editor.connected();
-    changed();
-  } else editor.client.disconnect();
+  status.connection(state, editor.text !== "");
+  if (state === "open") editor.connected();
+  else editor.client.disconnect();
+  if (state !== "open" && editor.uri === "") void offerDrafts();
+  changed();
 };
 
-const linked = sceneInAddress();
+async function openLink(): Promise<void> {
+  const text = await sceneInAddress();
+  if (text !== null) files.restore(text);
+}
+
+const linked = openLink();
 editor.onNotification = (method, params) => {
   if (method === "textDocument/publishDiagnostics") void publishDiagnostics(params);
   if (method === "studio/progress") showProgress(params.share);
   if (method === "studio/file") void hosted(params);
 };
 
+/** What the host has said of its file while a hand moved something: it has to wait for that. */
+let waiting: HostedFile | null = null;
+
 async function hosted(file: HostedFile): Promise<void> {
-  const text = await linked;
+  await linked;
   const first = editor.uri === "";
-  files.hosted(file, text);
+  waiting = frames.dragging === null ? null : file;
+  if (waiting !== null) return;
+  files.hosted(file);
   if (!first) return;
   changed();
   void offerDrafts(file.drafts);
@@ -115,11 +132,10 @@ async function hosted(file: HostedFile): Promise<void> {
 addEventListener("hashchange", async () => {
   const token = takeToken();
   if (token !== null && connection.state !== "open") {
-    session.begin(token);
+    session.keep(token, "address");
     connection.retry();
   }
-  const text = await sceneInAddress();
-  if (text !== null) editor.replace(text);
+  await openLink();
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));

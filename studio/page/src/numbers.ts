@@ -51,8 +51,7 @@ export function format(value: number, step: number): string {
   const [, fraction = "", power = "0"] = /^\d+(?:\.(\d+))?(?:e(.*))?$/
     .exec(String(Number(step.toPrecision(12)))) ?? [];
   const decimals = Math.max(0, fraction.length - Number(power));
-  const rounded = Number(value.toFixed(Math.min(decimals, 100)));
-  return String(Object.is(rounded, -0) ? 0 : rounded);
+  return String(Number(value.toFixed(Math.min(decimals, 100))) + 0); // no minus before a zero
 }
 
 /** Says between which numbers the one at an offset may be; null if nobody knows. */
@@ -76,33 +75,18 @@ function offered(literal: Literal, limits: Limits | null): [number, number] {
 
 /** Turns one number through a gesture, as far as its limits allow, which the server knows. */
 export class Turn {
-  private readonly gesture: Gesture;
-  private to: number;
-  private written: string;
+  readonly gesture = new Gesture(editor.view);
   private readonly bounds: Promise<[number, number]>;
-  private wanted = 0;
-  /** Whether somebody else has changed the number. */
-  isOver = false;
 
   constructor(private readonly literal: Literal) {
-    this.gesture = new Gesture(editor.view);
-    this.to = literal.to;
-    this.written = editor.view.state.sliceDoc(literal.from, literal.to);
     this.bounds = limitsOf(literal.to).then(limits => bounds(literal, limits));
   }
 
   async set(value: number): Promise<void> {
-    const { from, step } = this.literal;
-    this.wanted = value;
+    const { from, to, step } = this.literal;
     const [least, most] = await this.bounds;
-    const text = format(Math.min(most, Math.max(least, this.wanted)), step);
-    const now = editor.view.state.sliceDoc(from, this.to);
-    // Whoever has changed the number otherwise keeps it.
-    this.isOver ||= now !== this.written;
-    if (text === now || this.isOver) return;
-    this.gesture.apply({ from, to: this.to, insert: text });
-    this.to = from + text.length;
-    this.written = text;
+    const insert = format(Math.min(most, Math.max(least, value)), step);
+    this.gesture.write({ from, to, insert });
   }
 
   end(): void { void this.bounds.then(() => this.gesture.end()); }
@@ -112,11 +96,22 @@ export class Turn {
 export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;
+  limits: Limits | null = null;
 
   constructor(readonly literal: () => Literal | null) {
-    this.range.type = "range";
-    this.range.addEventListener("input", () => void this.set(Number(this.range.value)));
-    this.range.addEventListener("change", () => this.end());
+    const { range } = this;
+    range.type = "range";
+    // After Escape the browser goes on with its drag until the pointer is let go.
+    let isOff = false;
+    range.addEventListener("input", () => isOff ? this.show() : void this.set(Number(range.value)));
+    range.addEventListener("change", () => this.end());
+    range.addEventListener("pointerdown", event => followPointer(event, () => {}, () => {}, () => {
+      isOff = true;
+      addEventListener("pointerup", () => (isOff = false), { once: true, capture: true });
+      this.turn?.gesture.cancel();
+      this.end();
+      this.show();
+    }));
   }
 
   async set(value: number): Promise<void> {
@@ -132,10 +127,13 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number between the ends that its limits leave. */
-  offer(found: Literal, limits: Limits | null): void {
-    const [min, max] = offered(found, limits);
+  /** Shows the number between the ends that its limits leave, unless a hand holds it. */
+  show(): Literal | null {
+    const found = this.literal();
+    if (found === null || this.turn !== null) return found;
+    const [min, max] = offered(found, this.limits);
     Object.assign(this.range, { min, max, step: found.step, value: found.value });
+    return found;
   }
 }
 
@@ -162,13 +160,7 @@ function createSlider({ state }: EditorView): TooltipView {
   const dom = create("div", "slider");
   const dial = new Dial(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
   const { range, literal } = dial;
-  let limits: Limits | null = null;
-  const adapt = () => {
-    const found = literal();
-    if (found === null || dial.turn !== null) return;
-    range.setAttribute("aria-label", `Value ${found.value}`);
-    dial.offer(found, limits);
-  };
+  const adapt = () => range.setAttribute("aria-label", `Value ${dial.show()?.value ?? ""}`);
   range.addEventListener("keydown", event => {
     if (event.key !== "Escape" && event.key !== "Enter") return;
     event.preventDefault();
@@ -182,7 +174,7 @@ function createSlider({ state }: EditorView): TooltipView {
   grip.addEventListener("pointerdown", event => scrub(event, literal()));
   dom.append(less, range, more, grip);
   void limitsOf((state.field(sliderField) ?? 0) + 1).then(found => {
-    limits = found;
+    dial.limits = found;
     adapt();
   });
   return { dom, mount: adapt, update: ({ docChanged }) => { if (docChanged) adapt(); } };
@@ -196,10 +188,11 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
   document.body.classList.add("scrubbing");
   const move = (next: PointerEvent) => void turn.set(
     literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
-  followPointer(event, move, () => {
+  const over = (act: () => void) => () => {
     document.body.classList.remove("scrubbing");
-    turn.end();
-  });
+    act();
+  };
+  followPointer(event, move, over(() => turn.end()), over(() => turn.gesture.cancel()));
   return true;
 }
 

@@ -56,10 +56,7 @@ export const refreshOutlines = newestOf<void>(async () => {
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
   // A text with errors has the last good picture, which nothing can be taken hold of in.
   overlays.isTrue = answer !== null;
-  if (answer !== null && editor.view.state.doc === doc) {
-    overlays.data = answer;
-    frames.resized(answer.size);
-  }
+  if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();
   selection.draw();
 });

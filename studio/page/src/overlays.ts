@@ -75,9 +75,7 @@ class OverlayLayer {
     const path = (name: string, lines: readonly Polyline[]) => {
       const d = lines.map(line => `M${line.join("L")}`).join("");
       if (d === "") return;
-      // A dark line under a light one is seen on every ground.
-      group.append(createSvg("path", { d, class: `line under ${name}` }),
-        createSvg("path", { d, class: `line ${name}` }));
+      group.append(...twice({ d }, name));
     };
     if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
     if (this.isOn("near")) {
@@ -88,12 +86,9 @@ class OverlayLayer {
     const vanishing = this.isOn("vanishing") ? data.vanishing : [];
     for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
     if (this.isOn("outlines")) for (const { outline } of data.objects) path("outline", outline);
-    const outline = (index: number | null, name: string) => {
-      const object = this.isTrue ? data.objects.find(it => it.index === index) : undefined;
-      if (object !== undefined) path(`outline ${name}`, object.outline);
-    };
-    outline(this.hovered, "hovered");
-    outline(this.selected, "selected");
+    for (const name of this.isTrue ? ["hovered", "selected"] as const : []) {
+      path(`outline ${name}`, data.objects.find(it => it.index === this[name])?.outline ?? []);
+    }
     for (const { axis, point } of vanishing) {
       if (point !== null) this.mark(point, `axis-${axis}`, axis);
     }
@@ -119,8 +114,7 @@ class OverlayLayer {
     const label = createSvg("text", { x: atX + (isRight ? -12 : 12), class: `mark ${name}`,
       y: Math.max(16, atY - 9), "text-anchor": isRight ? "end" : "start" });
     setText(label, `${text} (${point.map(it => Math.round(it)).join(", ")})`);
-    this.svg.append(createSvg("path", { ...shape, class: `line under ${name}` }),
-      createSvg("path", { ...shape, class: `line ${name}` }), label);
+    this.svg.append(...twice(shape, name), label);
   }
 
   /** Why something that is switched on is not to be seen. */
@@ -149,6 +143,11 @@ class OverlayLayer {
       this.svg.append(dot);
     });
   }
+}
+
+/** A light line over a dark one, which is seen on every ground. */
+function twice(shape: Record<string, string>, name: string): SVGElement[] {
+  return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
 }
 
 /** The lines between the pixels that can be seen. */

@@ -16,8 +16,9 @@ const CLICK = 4;
 /** What other buttons than the left one do. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** The drag that a button or a finger has begun, and where each pointer is. */
-let drag: Drag | null = null;
+/** Gives up what a button or a finger has begun. */
+let giveUp = (): void => {};
+/** Where each pointer is. */
 const places = new Map<number, Point>();
 const { stage } = picture;
 
@@ -27,18 +28,6 @@ for (const end of ["pointerup", "pointercancel"] as const) {
   stage.addEventListener(end, event => places.delete(event.pointerId));
 }
 stage.addEventListener("contextmenu", event => event.preventDefault());
-// In the capture phase, so that the key is not taken for a command as well.
-stage.addEventListener("keydown", event => {
-  if (event.key !== "Escape" || drag === null) return;
-  giveUp();
-  event.stopImmediatePropagation();
-  event.preventDefault();
-}, { capture: true });
-
-function giveUp(): void {
-  drag?.cancel();
-  drag = null;
-}
 
 function press(event: PointerEvent): void {
   const at = picture.local(event);
@@ -59,27 +48,24 @@ function press(event: PointerEvent): void {
 }
 
 function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | null> | Held): void {
-  const own = (drag = new Drag(start, hold));
+  const drag = new Drag(start, hold);
   let moved = false;
   const move = (next: PointerEvent) => {
-    if (drag !== own) return;
     tools.held = next;
     const [x, y] = picture.toPicture(picture.local(next));
     moved ||= Math.hypot(x - start[0], y - start[1]) * picture.zoom > CLICK;
-    if (moved) own.to([x, y]);
+    if (moved) drag.to([x, y]);
   };
-  followPointer(event, move, () => {
-    if (drag !== own) return;
-    own.end();
-    drag = null;
-  });
+  giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }
 
 /** Selects what is under the pointer, and holds it by its centre. */
 async function grab(point: Point): Promise<Held | null> {
+  const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });
   const object = pick?.object ?? null;
-  selection.select(object);
+  // What was chosen before the answer came stays chosen.
+  if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
   const overlays = await editor.ask<Overlays>("pinhole/overlays", { only });

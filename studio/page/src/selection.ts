@@ -26,12 +26,14 @@ interface Placed { object: SceneObject; from: number; to: number }
 export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
 
 class Selection {
-  /** The index of the object that is selected. */
-  index: number | null = null;
+  /** The object that is selected. */
+  selected: Placed | undefined;
   onChange: () => void = () => {};
+  /** How often something was chosen. */
+  choices = 0;
   private placed: Placed[] = [];
-  /** Whether the object at the cursor is not to be selected, until the cursor moves. */
-  private deselected = false;
+  /** The one of its block that was chosen; null if nothing was, until the cursor moves. */
+  private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
 
@@ -65,13 +67,15 @@ class Selection {
 
   /** Selects the object that the cursor has been moved into. */
   cursorMoved(): void {
-    this.deselected = false;
+    this.choices++;
+    if (this.chosen === null) this.chosen = undefined;
     this.follow();
   }
 
   /** Selects an object and shows its line; nothing for null. */
   select(object: SceneObject | null): void {
-    this.deselected = object === null;
+    this.choices++;
+    this.chosen = object;
     if (object === null) return this.follow();
     // The list has the first objects alone.
     const isListed = this.placed.some(it => it.object.index === object.index);
@@ -89,24 +93,23 @@ class Selection {
   private follow(): void {
     const { head } = editor.view.state.selection.main;
     const touching = this.placed.filter(it => it.from < it.to && it.from <= head && head <= it.to);
-    // At the border of two it is the second one.
-    const found = this.deselected ? undefined : touching.find(it => head < it.to) ?? touching[0];
-    const index = found?.object.index ?? null;
-    this.menu.value = index === null ? "" : String(index);
-    const isSame = index === this.index;
-    this.index = index;
+    // At the border of two it is the second one; of a repeated block it is the one that was chosen.
+    const first = touching.find(it => head < it.to) ?? touching[0];
+    const isChosen = ({ from, object: { index, name } }: Placed) => from === first?.from
+      && (name === null ? index === this.chosen?.index : name === this.chosen?.name);
+    const found = this.chosen === null ? undefined : touching.find(isChosen) ?? first;
+    if (this.chosen !== null) this.chosen = found?.object;
+    const before = this.index;
+    this.selected = found;
+    this.menu.value = String(this.index ?? "");
     this.offer();
-    if (isSame) return;
-    overlays.select(index);
+    if (this.index === before) return;
+    overlays.select(this.index);
     this.draw();
     this.onChange();
   }
 
-  /** Where the selected object's block stands in the text. */
-  get block(): { from: number; to: number } | undefined {
-    const found = this.placed.find(it => it.object.index === this.index);
-    return found && { from: found.from, to: found.to };
-  }
+  get index(): number | null { return this.selected?.object.index ?? null; }
 
   private offer(): void {
     for (const id of ["duplicate", "delete"]) {
@@ -189,7 +192,7 @@ async function add(about: object): Promise<void> {
 /** Takes the selected block away, with its line if nothing else is there. */
 function remove(): void {
   const { view, view: { state: { doc } } } = editor;
-  const found = selection.block;
+  const found = selection.selected;
   if (found === undefined) return;
   const [first, last] = [doc.lineAt(found.from), doc.lineAt(found.to)];
   const rest = doc.sliceString(first.from, found.from) + doc.sliceString(found.to, last.to);

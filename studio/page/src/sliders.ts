@@ -24,10 +24,8 @@ export function mapSliders(changes: ChangeDesc): void {
 }
 
 function show({ dial, value }: Row): void {
-  const found = dial.literal();
-  if (found === null) return;
-  setText(value, editor.view.state.sliceDoc(found.from, found.end));
-  if (dial.turn === null) dial.range.value = String(found.value);
+  const found = dial.show();
+  if (found !== null) setText(value, editor.view.state.sliceDoc(found.from, found.end));
 }
 
 /** The text has come to rest: sliders are those of its definitions. */
@@ -43,8 +41,7 @@ export async function refreshSliders(): Promise<void> {
   sliders.forEach(({ range, limits, step }, i) => {
     const row = rows[i] as Row;
     Object.assign(row, { at: editor.offset(range.start), step });
-    const found = row.dial.literal();
-    if (found !== null) row.dial.offer(found, limits);
+    row.dial.limits = limits;
     show(row);
   });
 }
@@ -89,8 +86,8 @@ function play(row: Row): void {
     range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
     await dial.set(Number(range.value));
     await frames.coarse;
-    // Whoever drags something, changes the number otherwise, or undoes that, has it rest.
-    if (frames.dragging !== dial || (dial.turn?.isOver ?? true)) stop();
+    // Whoever drags something, changes the text otherwise, or undoes that, has it rest.
+    if (frames.dragging !== dial || !dial.turn?.gesture.isAlone) stop();
     else requestAnimationFrame(() => void go());
   };
   void go();

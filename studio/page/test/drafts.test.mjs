@@ -2,7 +2,7 @@
 // another program that saves the file.
 
 import assert from "node:assert/strict";
-import { readdirSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { andFinished, FIGURE, finished, host, launch, menu, open, openFile, rested, serve, STATE, text, type } from "./helpers.mjs";
@@ -98,6 +98,99 @@ test("what is written while an offer stands unanswered is kept beside it, and so
   const left = await restoredInTurn(page, 2);
   assert.deepEqual(left.sort(), [SMALLER, LARGER].sort());
   assert.ok(await page.isHidden("#draft-bar"));
+});
+
+for (const way of ["a reload of its tab, and its address there", "its address in another tab"]) {
+  test(`what is typed while the host is dead is there again, at the same port: ${way}`, async t => {
+    const started = await host(t);
+    const browser = await launch(t);
+    const page = await open(browser, started);
+    page.on("dialog", dialog => dialog.accept());
+    // Something that the host has, and on from there what it has not.
+    await andFinished(page, () => type(page, LARGER));
+    await kept(page);
+    await started.stop("SIGKILL");
+    await page.waitForSelector("#connection-bar:not([hidden])");
+    await page.locator(".cm-line").last().click();
+    await page.keyboard.type("// typed", { delay: 20 });
+    const typed = await text(page);
+    assert.match(typed, /radius 1\.5[^]*\/\/ typed$/);
+    await kept(page);
+    const { port } = new URL(started.address);
+    assert.match(await page.innerText("#connection-kept"), new RegExp(`kept in this browser.*--port ${port}`));
+    const again = await serve(started.file, { port });
+    t.after(() => again.stop());
+    let next = page;
+    if (way.startsWith("a reload")) {
+      await page.reload();
+      await offered(page);
+      assert.match(await page.textContent("#connection"), /Studio was started anew/);
+      assert.equal(await page.locator("#draft-choices li").count(), 1);
+      // It can be read and taken away at once, and goes on when there is a connection.
+      await choose(page, "Restore");
+      assert.equal(await text(page), typed);
+      assert.match(await page.innerText("#connection-kept"), /^The text can be changed when there is a connection/);
+      await page.click(".cm-content");
+      await page.keyboard.type("lost");
+      assert.equal(await text(page), typed, "what would be lost is not taken");
+      const [download] = await Promise.all([page.waitForEvent("download"), page.click("#connection-download")]);
+      assert.equal(readFileSync(await download.path(), "utf8"), typed);
+      await page.reload();
+      await offered(page);
+      await page.goto(again.address);
+      await finished(page);
+    } else {
+      next = await page.context().newPage();
+      await page.close();
+      await next.goto(again.address);
+      await finished(next);
+    }
+    await offered(next);
+    assert.equal(await next.locator("#draft-choices li").count(), 1);
+    await andFinished(next, () => choose(next, "Restore"));
+    assert.equal(await text(next), typed);
+    assert.equal(started.text(), FIGURE);
+    await next.keyboard.press("Control+s");
+    await next.waitForFunction(() => document.querySelector("#file-state").textContent === "");
+    assert.equal(started.text(), typed);
+    if (next === page) {
+      await page.reload();
+      await finished(page);
+      await page.waitForTimeout(300);
+      assert.ok(await page.isHidden("#draft-bar"));
+    }
+    // Nothing is left in the browser that the host has.
+    await kept(next);
+    const left = await next.evaluate(() => new Promise(resolve => {
+      indexedDB.open("pinhole-drafts").onsuccess = ({ target: { result } }) => {
+        result.transaction("drafts").objectStore("drafts").count().onsuccess = ({ target }) => resolve(target.result);
+      };
+    }));
+    assert.equal(left, 0);
+  });
+}
+
+test("a draft that is shown before there is a connection goes on as one, and Save asks for what is newer", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  page.on("dialog", dialog => dialog.accept());
+  await started.stop("SIGKILL");
+  await type(page, LARGER);
+  await kept(page);
+  started.write(NEARER);
+  const again = await serve(started.file, { port: new URL(started.address).port });
+  t.after(() => again.stop());
+  await page.reload();
+  await offered(page);
+  await choose(page, "Restore");
+  await page.goto(again.address);
+  await finished(page);
+  assert.equal(await text(page), LARGER);
+  assert.equal(await page.textContent("#file-state"), "not saved");
+  assert.ok(await page.isHidden("#draft-bar"));
+  await page.keyboard.press("Control+s");
+  await page.waitForSelector("#conflict-dialog[open]");
+  assert.equal(started.text(), NEARER);
 });
 
 test("reloading offers the draft; Forget forgets it, and Undo back to the file does", async t => {

@@ -100,6 +100,59 @@ test("Escape in a drag leaves nothing to redo, and what was to redo stays", asyn
   assert.ok(await page.isDisabled("#redo"));
 });
 
+test("Escape takes back whatever a pointer turns: a slider, a number, the divider", async t => {
+  const scene = `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`;
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForSelector(".slider-row");
+  const middle = async selector => {
+    const { x, y, width, height } = await page.locator(selector).first().boundingBox();
+    return [x + width / 2, y + height / 2];
+  };
+  const thumb = async selector => {
+    const { x, y, width, height } = await page.locator(selector).first().boundingBox();
+    const part = await page.locator(selector).first().evaluate(it => (it.value - it.min) / (it.max - it.min));
+    return [x + 8 + (width - 16) * part, y + height / 2];
+  };
+  const number = () => page.locator(".cm-line", { hasText: "eye" }).getByText("3.5");
+  const around = { before: () => {}, after: () => {}, share: () => page.getAttribute("#divider", "aria-valuenow") };
+  const ways = {
+    "the slider of a definition": { from: () => thumb(".slider-row input") },
+    "the slider of a number": { before: () => number().click(), from: () => thumb(".slider input") },
+    "its grip": { before: () => number().click(), from: () => middle(".slider .grip") },
+    "a number with Alt": { before: () => page.keyboard.down("Alt"), from: async () => {
+      const { x, y, width, height } = await number().boundingBox();
+      return [x + width / 2, y + height / 2];
+    }, after: () => page.keyboard.up("Alt") },
+  };
+  for (const [name, given] of Object.entries(ways)) {
+    const { before, from, after } = { ...around, ...given };
+    await before();
+    await hand(page, await from(), [40, 0], { hold: true });
+    await rested(page);
+    assert.notEqual(await text(page), scene, `${name} turns nothing`);
+    await page.keyboard.press("Escape");
+    // The hand goes on before it lets go.
+    await page.mouse.move(500, 300, { steps: 4 });
+    await page.mouse.up();
+    await after();
+    await rested(page);
+    assert.equal(await text(page), scene, name);
+    assert.ok(await page.isDisabled("#undo") && (await page.isDisabled("#redo")), name);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.inputValue(".slider-row input"), "1", name);
+  }
+  // The slider turns again.
+  await hand(page, await thumb(".slider-row input"), [60, 0]);
+  await rested(page);
+  assert.notEqual(await text(page), scene);
+  const share = await around.share();
+  await hand(page, await middle("#divider"), [80, 0], { hold: true });
+  assert.notEqual(await around.share(), share);
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  assert.equal(await around.share(), share);
+});
+
 test("what a drag says stands at the hand, and is gone afterwards; the footer says nothing that is not true any more", async t => {
   const page = await open(await launch(t), await host(t));
   const from = await onPage(page, BALL);

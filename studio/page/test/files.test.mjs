@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, finished, host, launch, menu, open, pixels, rendered, rested, serve, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, menu, onPage, open, pixels, rendered, rested, serve, text, type } from "./helpers.mjs";
 
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
@@ -243,6 +243,63 @@ test("a new scene gets its name by Save", async t => {
   assert.equal(readFileSync(path.join(folder, "other.scn"), "utf8"), FIGURE);
 });
 
+test("Save as makes a file beside the host's, and goes on with that", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, LARGER));
+  await menu(page, "File", "#save-as");
+  // Nothing that is there is written over.
+  await page.waitForSelector("#name-dialog[open]");
+  assert.equal(await page.inputValue("#name-field"), "scene.scn");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));
+  await page.keyboard.press("Escape");
+  assert.equal(await page.textContent("#file-name"), "scene.scn");
+  for (const name of ["second", "third"]) {
+    await page.click(".cm-content", { position: { x: 2, y: 5 } });
+    await page.keyboard.press("Control+Shift+s");
+    await page.fill("#name-field", name);
+    await page.keyboard.press("Enter");
+    await page.waitForFunction(name => document.querySelector("#file-name").textContent === `${name}.scn`, name);
+    assert.equal(await page.textContent("#file-state"), "");
+    assert.equal(readFileSync(path.join(started.folder, `${name}.scn`), "utf8"), LARGER);
+  }
+  await type(page, NEARER);
+  await page.keyboard.press("Control+s");
+  await saved(page);
+  assert.equal(readFileSync(path.join(started.folder, "third.scn"), "utf8"), NEARER);
+  assert.equal(readFileSync(path.join(started.folder, "second.scn"), "utf8"), LARGER);
+  assert.equal(started.text(), FIGURE);
+  // Undo is one of the text, and no draft is left of what was saved.
+  await page.click("#undo");
+  assert.equal(await text(page), LARGER);
+  assert.equal(await page.textContent("#file-name"), "third.scn");
+  await page.click("#redo");
+  await page.waitForTimeout(900);
+  await page.reload();
+  await finished(page);
+  await page.waitForTimeout(300);
+  assert.ok(await page.isHidden("#draft-bar"));
+  assert.equal(await text(page), FIGURE);
+});
+
+test("Save as of a new scene is Save", async t => {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const started = await serve(null, { folder });
+  t.after(() => started.stop());
+  const page = await open(await launch(t), started);
+  await andFinished(page, () => type(page, FIGURE));
+  await menu(page, "File", "#save-as");
+  await page.fill("#name-field", "first");
+  await page.keyboard.press("Enter");
+  await saved(page);
+  await andFinished(page, () => type(page, LARGER));
+  await page.keyboard.press("Control+s");
+  await saved(page);
+  assert.equal(readFileSync(path.join(folder, "first.scn"), "utf8"), LARGER);
+});
+
 test("a name gets its ending, and one that will not do stays in the dialog with the reason", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -319,6 +376,50 @@ for (const [choice, onDisk, onPage] of [
     }
   });
 }
+
+test("what another program saves while a hand moves something waits until it lets go", async t => {
+  const started = await host(t, `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`);
+  const before = started.text();
+  const page = await open(await launch(t), started);
+  await page.waitForSelector(".slider-row");
+  const slider = async () => {
+    const { x, y, width, height } = await page.locator(".slider-row input").boundingBox();
+    return [x + 8 + (width - 16) / 3, y + height / 2];
+  };
+  for (const from of [() => onPage(page, [455, 320]), slider]) {
+    await hand(page, await from(), [60, 0], { hold: true });
+    await rested(page);
+    const dragged = await text(page);
+    assert.notEqual(dragged, before);
+    started.write(before.replace("8)", "6)"));
+    await page.waitForTimeout(1000);
+    assert.ok(await page.isHidden("#conflict-dialog"));
+    // The hand goes on.
+    const [x, y] = await from();
+    await page.mouse.move(x + 90, y, { steps: 6 });
+    await rested(page);
+    assert.notEqual(await text(page), dragged);
+    await page.mouse.up();
+    await page.waitForSelector("#conflict-dialog[open]");
+    await page.getByRole("button", { name: "Take the file's text" }).click();
+    await rested(page);
+    assert.equal(await text(page), started.text());
+    started.write(before);
+    await page.waitForFunction(() => !document.querySelector(".cm-content").textContent.includes("3.5, 6)"));
+    await rested(page);
+    assert.equal(await text(page), before);
+  }
+  // Where nothing was moved, the page follows.
+  await page.mouse.move(...(await onPage(page, [455, 320])));
+  await page.mouse.down();
+  await page.waitForTimeout(200);
+  started.write(before.replace("8)", "6)"));
+  await page.waitForTimeout(1000);
+  assert.equal(await text(page), before);
+  await page.mouse.up();
+  await page.waitForFunction(() => document.querySelector(".cm-content").textContent.includes("3.5, 6)"));
+  assert.ok(await page.isHidden("#conflict-dialog"));
+});
 
 test("a picture that takes long tells how far it is, and Cancel ends it at once", async t => {
   const slow = FIGURE.replace(/image\s*{[^}]*}/, "").replace(/sampler\s*{[^}]*}/, "") + "\nimage { width 4096  height 4096 }\nsampler { method regular  per_pixel 65536 }\n";

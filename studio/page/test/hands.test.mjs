@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { andFinished, choose, comparing, decoded, drag, FIGURE, finished, host, launch, onPage, open, pixels, rendered, text } from "./helpers.mjs";
+import { andFinished, choose, comparing, decoded, drag, FIGURE, finished, hand, handle, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
 /** Where the middle of figure 9.9's ball is seen: well inside of it. */
 const BALL = [455, 320];
@@ -51,6 +51,89 @@ test("a click names and selects what is seen, and jumps to its line; the cursor 
   await page.locator(".cm-line", { hasText: "box" }).getByText("Crate").click();
   await page.waitForSelector('.handle[aria-label="Crate: center"]');
   assert.equal(await page.locator("#objects option:checked").textContent(), "Crate (box)");
+});
+
+test("a click selects the member of a repetition that is clicked, and the cursor its first one", async t => {
+  for (const name of ["Pearl", ""]) {
+    const scene = `camera { eye (0, 0, 12)  lookat (0, 0, 0) }\nsampler { per_pixel 1 }\nsphere { center (0, -3, 0) }\nsphere ${name} for i < 5 { center (2 * i - 4, 0, 0)  radius 0.6 }\n`;
+    const page = await open(await launch(t), await host(t, scene));
+    await rested(page);
+    const chosen = () => page.locator("#objects").evaluate(it => it.value);
+    const at = i => [400 + 225 * (2 * i - 4) / 6, 225];
+    for (const i of [3, 1, 4, 0]) {
+      await page.mouse.click(...(await onPage(page, at(i))));
+      await rested(page);
+      assert.equal(await chosen(), String(i + 1), name);
+      const [x, y] = await onPage(page, at(i));
+      const [hx, hy] = await handle(page, await page.locator(".handle").first().getAttribute("aria-label"));
+      assert.ok(Math.hypot(hx - x, hy - y) < 3, `${i}: ${hx - x} ${hy - y}`);
+    }
+    // What is dragged stays what is selected, and so it is when a block comes before it.
+    const before = await text(page);
+    await hand(page, await onPage(page, at(3)), [0, 40]);
+    await rested(page);
+    assert.notEqual(await text(page), before);
+    assert.equal(await chosen(), "4");
+    await page.click("#undo");
+    await rested(page);
+    assert.equal(await chosen(), "4");
+    await page.locator(".cm-line").getByText("sampler").click();
+    await rested(page);
+    assert.equal(await chosen(), "");
+    for (const key of ["Control+End", "ArrowUp"]) await page.keyboard.press(key);
+    await rested(page);
+    assert.equal(await chosen(), "1");
+    await page.context().close();
+  }
+});
+
+test("what is chosen while the answer to a click is waited for stays chosen", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await rested(page);
+  process.kill(started.pid, "SIGSTOP");
+  await page.mouse.click(...(await onPage(page, [455, 320])));
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  process.kill(started.pid, "SIGCONT");
+  await page.waitForSelector('.handle[aria-label="Crate: center"]');
+  await rested(page);
+  assert.ok(await page.isVisible('.handle[aria-label="Crate: center"]'));
+  await page.mouse.click(...(await onPage(page, [455, 320])));
+  await page.waitForSelector('.handle[aria-label="Ball: center"]');
+});
+
+test("a hand that takes the body beside a handle moves the body", async t => {
+  const browser = await launch(t);
+  const started = await host(t, FIGURE.replace("d      2.75", "d      5.5"));
+  const page = await open(browser, started);
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  await page.waitForSelector(".handle");
+  const box = /^box.*$/m;
+  const places = await page.locator(".handle").evaluateAll(all => all.map(it => {
+    const { x, y, width, height } = it.getBoundingClientRect();
+    return [it.ariaLabel, x + width / 2, y + height / 2];
+  }));
+  for (const [label, x, y] of places) {
+    const isFace = !label.endsWith("center");
+    // Towards the middle of the box, where the box is under the hand.
+    const [, mx, my] = places.find(([label]) => label.endsWith("center"));
+    const far = Math.hypot(mx - x, my - y);
+    const part = isFace ? 11 / far : 0;
+    const from = [x + (mx - x) * part, y + (my - y) * part];
+    await hand(page, from, [24, 0]);
+    await rested(page);
+    const line = box.exec(await text(page))[0];
+    assert.match(line, /size \(0\.5, 1\.5, 2\)/, `beside ${label}`);
+    assert.notEqual(line, box.exec(started.text())[0], `beside ${label}`);
+    await page.click("#undo");
+    await rested(page);
+    if (!isFace) continue;
+    await hand(page, [x + 3, y - 3], [24, -20]);
+    await rested(page);
+    assert.doesNotMatch(box.exec(await text(page))[0], /size \(0\.5, 1\.5, 2\)/, label);
+    await page.click("#undo");
+    await rested(page);
+  }
 });
 
 test("an axis holds a drag", async t => {
@@ -203,7 +286,12 @@ test("a finger drags, and two fingers zoom without a change of the text", async 
 
 test("a phone has tabs for picture and text, and targets of 44 pixels", async t => {
   const page = await open(await launch(t), await host(t), { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  // A tall one has room for the text below the picture.
+  const [editor, stage] = [await page.locator("#editor").boundingBox(), await page.locator("#stage").boundingBox()];
+  assert.ok(await page.isVisible("#editor") && editor.y >= stage.y + stage.height && editor.height > 150);
+  await page.setViewportSize({ width: 390, height: 640 });
   assert.ok(await page.isVisible("#stage") && await page.isHidden("#editor"));
+  await page.setViewportSize({ width: 390, height: 844 });
   await page.selectOption("#objects", { label: "Crate (box)" });
   await page.waitForSelector(".handle");
   const targets = "header button, header summary, #tabs button, .tools select, .tools button, .tools summary, .tools label span, footer button, .handle";

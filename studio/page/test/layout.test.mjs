@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
-import { andFinished, FIGURE, finished, hand, handle, host, launch, menu, onPage, open, openFile, rested, site, text, type } from "./helpers.mjs";
+import { andFinished, FIGURE, finished, hand, handle, host, launch, menu, onPage, open, openFile, rested, site, tab, text, type } from "./helpers.mjs";
 
 const { SITE } = process.env;
 
@@ -88,6 +88,28 @@ for (const [name, start] of HOSTS) {
     assert.deepEqual(page.complaints, []);
   });
 }
+
+test("what is added while the text has errors stands side by side, and is seen when they are mended", async t => {
+  const slip = "sphere Slip { center (0, 1, 0)  radios 1 }\n";
+  const page = await open(await launch(t), await host(t));
+  await type(page, `${FIGURE}${slip}`);
+  await page.waitForSelector("#stale:not([hidden])");
+  for (const kind of ["sphere", "sphere", "box", "triangle"]) {
+    await menu(page, "+ Add", `[data-kind=${kind}]`);
+    await rested(page);
+  }
+  const added = (await text(page)).split(slip)[1];
+  const places = [...added.matchAll(/(?:center|centroid) (\([^)]*\))/g)].map(([, place]) => place);
+  assert.equal(new Set(places).size, 4, added);
+  await page.click("#problem-list .fix");
+  await finished(page);
+  await page.waitForFunction(() => document.querySelector("#problems").textContent === "No problems");
+  for (const name of ["Sphere1", "Sphere2", "Box1", "Triangle1"]) {
+    await page.locator("#objects").selectOption(await page.locator("#objects option", { hasText: name }).getAttribute("value"));
+    await page.waitForSelector(`.handle[aria-label^="${name}: "]`);
+    assert.ok(await page.locator(".handle").first().isVisible(), name);
+  }
+});
 
 test("an opened file of this computer is a new scene, of a host, too", async t => {
   const started = await host(t);
@@ -332,13 +354,19 @@ test("at each size the picture takes what there is", async t => {
 
 test("on a phone the header and the tools have two rows each, on its side the tools have one, and selecting moves nothing", async t => {
   const [started, browser] = [await host(t), await launch(t)];
-  for (const [width, height, header, tools] of [[390, 844, 110, 115], [360, 740, 110, 115], [844, 390, 60, 62], [768, 1024, 60, 62]]) {
+  for (const [width, height, header, tools] of [[390, 844, 110, 115], [360, 740, 110, 115], [320, 640, 110, 115], [844, 390, 60, 62], [768, 1024, 60, 62]]) {
     const page = await open(browser, started, { viewport: { width, height }, hasTouch: true, isMobile: true });
     const stage = await page.locator("#stage").boundingBox();
     await page.selectOption("#objects", { label: "Ball (sphere)" });
     await page.waitForSelector("#along:not([hidden])");
     for (const [at, most] of [["header", header], [".tools", tools]]) assert.ok((await page.locator(at).boundingBox()).height <= most, `${at} at ${width}`);
     assert.deepEqual(await page.locator("#stage").boundingBox(), stage, `${width}`);
+    await andFinished(page, () => type(page, `${FIGURE}// more\n`));
+    await tab(page, "picture");
+    const { scrollWidth, clientWidth, right } = await page.locator("#file-state").evaluate(it => ({ scrollWidth: it.scrollWidth, clientWidth: it.clientWidth, right: it.getBoundingClientRect().right }));
+    assert.ok(scrollWidth <= clientWidth + 1 && right <= (await page.locator("#undo").boundingBox()).x, `not saved is cut at ${width}`);
+    await page.locator("#undo").click();
+    await finished(page);
     const cut = await page.evaluate(() => [...document.querySelectorAll("button, summary")].filter(it => it.checkVisibility({ visibilityProperty: true }) && it.scrollWidth > it.clientWidth + 1).map(it => it.textContent));
     assert.deepEqual(cut, [], `${width}`);
     await page.context().close();

@@ -33,6 +33,27 @@ test("a link holds the scene, and asks nobody else", async t => {
   assert.equal(await text(other), scene);
 });
 
+test("a link in a tab without a connection shows its scene, and goes on with the printed address", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  const page = await open(browser, started);
+  const scene = FIGURE.replace("radius 1", "radius 1.5");
+  await andFinished(page, () => type(page, scene));
+  const address = await link(page);
+  const other = await page.context().newPage();
+  await other.goto(address);
+  await other.waitForFunction(() => /no token/.test(document.querySelector("#connection").textContent));
+  await other.waitForSelector("#stale:not([hidden])");
+  assert.equal(await text(other), scene);
+  assert.match(await other.textContent("#stale"), /no picture/);
+  assert.ok(await other.isVisible("#connection-download"));
+  await other.goto(started.address);
+  await finished(other);
+  assert.equal(await text(other), scene);
+  assert.ok(await other.isHidden("#stale"));
+  assert.equal(started.text(), FIGURE);
+});
+
 test("a link that is pasted into an open page changes it, too", async t => {
   const page = await open(await launch(t), await host(t));
   const scene = FIGURE.replace("radius 1", "radius 1.5");

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, open, pixels, rendered, rested, text, type } from "./helpers.mjs";
+import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, menu, open, pixels, rendered, rested, tab, text, type } from "./helpers.mjs";
 
 /** Waits until the text is this one. */
 async function until(page, expected) {
@@ -209,4 +209,42 @@ test("a key has its picture asked for before all else, also where it selects ano
     assert.deepEqual(asked.filter(it => it !== "studio/alive").slice(0, 2), ["textDocument/didChange", "pinhole/frame"], asked.join());
     assert.ok(asked.includes("pinhole/overlays"));
   }
+});
+
+test("what is said of a word never covers the tools above the text", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  for (const [width, height] of [[380, 760], [1280, 760], [1280, 330], [390, 560]]) {
+    const page = await open(browser, started, { viewport: { width, height } });
+    await tab(page, "text");
+    await page.waitForSelector(".hint");
+    for (const word of ["let", "camera", "image"]) {
+      await page.mouse.move(width - 20, height - 8);
+      const { x, y } = await page.locator(".cm-line .tok-keyword", { hasText: word }).first().boundingBox();
+      await page.mouse.move(x + 5, y + 8, { steps: 3 });
+      const tooltip = page.locator(".cm-tooltip-hover");
+      await tooltip.waitFor();
+      const [said, edge] = [await tooltip.boundingBox(), (await page.locator("#editor").boundingBox()).y];
+      assert.ok(said.y >= edge && said.y + said.height <= height, `${word} at ${width} × ${height}: ${said.y}, ${said.height}`);
+      // All of it can be read.
+      assert.ok(await tooltip.evaluate(it => it.scrollHeight <= it.clientHeight + 1 || getComputedStyle(it).overflowY === "auto"));
+    }
+    await page.context().close();
+  }
+});
+
+test("a hint on a word that is gone when it comes is none", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await page.waitForSelector(".hint");
+  for (const act of [() => menu(page, "File", "#new"), () => type(page, "let a = 1\n")]) {
+    const word = await page.locator(".cm-line .tok-propertyName").last().boundingBox({ timeout: 5000 });
+    process.kill(started.pid, "SIGSTOP");
+    await page.mouse.move(word.x + 5, word.y + 8, { steps: 3 });
+    await page.waitForTimeout(700);
+    await act();
+    process.kill(started.pid, "SIGCONT");
+    await rested(page);
+  }
+  assert.deepEqual(page.complaints, []);
 });

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { choose, comparing, decoded, FIGURE, hand, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
+const SCENE = `let r = 1 // [0.5:0.1:2]\n${FIGURE.replace("radius 1", "radius r")}`;
 const STEPS = Number(process.env.STEPS ?? 60);
 const SEED = Number(process.env.SEED ?? 1);
 
@@ -12,7 +13,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
   let state = SEED;
   const random = () => (state = (state * 1_103_515_245 + 12_345) % 2 ** 31) / 2 ** 31;
   const one = all => all[Math.floor(random() * all.length)];
-  const started = await host(t);
+  const started = await host(t, SCENE);
   const page = await open(await launch(t), started);
   const place = () => onPage(page, [100 + 1080 * random(), 60 + 600 * random()]);
   const way = () => [Math.round(160 * random() - 80), Math.round(120 * random() - 60)];
@@ -27,6 +28,20 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
       await rested(page);
       const before = await text(page);
       await hand(page, await place(), way(), { hold: true });
+      await page.keyboard.press("Escape");
+      await page.mouse.up();
+      await rested(page);
+      assert.equal(await text(page), before);
+    },
+    async slider() {
+      await rested(page);
+      const before = await text(page);
+      // A text with errors has its first problem in the place of sliders.
+      if (await page.isHidden(".slider-row input")) return;
+      const { x, y, width, height } = await page.locator(".slider-row input").boundingBox();
+      const isTaken = random() < 0.5;
+      await hand(page, [x + width * random(), y + height / 2], [way()[0] / 2, 0], { hold: isTaken });
+      if (!isTaken) return;
       await page.keyboard.press("Escape");
       await page.mouse.up();
       await rested(page);
@@ -63,5 +78,5 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
   assert.equal(await pixels(page), await decoded(page, rendered(started.folder, end)), `${done}`);
   while (await page.isEnabled("#undo")) await page.click("#undo");
   await rested(page);
-  assert.equal(await text(page), FIGURE, `${done}`);
+  assert.equal(await text(page), SCENE, `${done}`);
 });

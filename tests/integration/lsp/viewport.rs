@@ -154,6 +154,33 @@ fn what_is_added_is_seen() {
     }
 }
 
+/// What is added one after the other is at different places, also where the text has errors.
+#[test]
+fn what_is_added_is_beside_what_is_there() {
+    let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for before in [
+        "",
+        camera,
+        "sphere { radios 1 }\n",
+        "camera { eye (0, 0, 5) }\n",
+        "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nbox { sice 1 }\n",
+        "image { width 0 }\n",
+    ] {
+        let mut text = before.to_owned();
+        let mut places = Vec::new();
+        for i in 0..12 {
+            let kind = ["sphere", "box", "triangle"][i % 3];
+            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            let (_, place) = written.split_once('(').expect("a place");
+            let (place, _) = place.split_once(')').expect("a vector");
+            assert!(!places.contains(&place.to_owned()), "{text}{written}");
+            places.push(place.to_owned());
+            text = format!("{}{written}\n", text.trim_end());
+        }
+    }
+}
+
 /// What is added touches the board, whatever its height is, and where the board comes later.
 #[test]
 fn what_is_added_stands_on_the_board() {
