@@ -52,7 +52,8 @@ const policy = [
 const renderer = new Renderer();
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-const reference = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "");
+// What is for the command line stands at its end: overrides, the layout of `fmt`, columns of reports.
+const reference = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").replace(/^## Overrides\n[^]*/m, "");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));
 if (host === "static") {
   page = page
