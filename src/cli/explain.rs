@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn links_lose_their_targets_and_items_hang() {
         let page = "see [one](#a) and [`b` two](c.md)\n\n- a [list](#list) of words\n- x\n";
-        let text = "see one and\n`b` two\n\n- a list\n  of words\n- x\n";
+        let text = "see one and\n`b` two\n\n- a list of\n  words\n- x\n";
         assert_eq!(drawn(page, 11, Headings::Plain), text);
     }
 
