@@ -10,7 +10,7 @@ use crate::{
     math::{Big, Real},
     numbers::{self, grouped, short, short_vector},
     scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
-    seen::{self, LISTED, Seen},
+    seen::{self, LEAST, LISTED, Seen},
     source::Source,
     tracer::{Basis, vertices},
 };
@@ -35,6 +35,8 @@ pub struct Inspection {
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// The objects in file order.
     pub objects: Vec<ObjectFacts>,
+    /// Whether the areas that are seen of them are exact.
+    pub is_exact: bool,
 }
 
 /// A camera in numbers.
@@ -86,7 +88,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
         Count::Total(_) => None,
     };
     let basis = Basis::new(&scene.camera, &scene.image);
-    let seen = seen::seen(scene);
+    let (seen, is_exact) = seen::seen(scene);
     let objects = scene.objects.iter().zip(seen);
     let objects = objects.map(|(object, seen)| ObjectFacts {
         name: object.name.clone(),
@@ -104,6 +106,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
         total: total_samples(scene.sampler.count, &scene.image),
         seed: scene.sampler.seed,
         objects: objects.collect(),
+        is_exact,
     }
 }
 
@@ -220,6 +223,7 @@ impl Inspection {
             },
             "vanishing_points": vanishing_points.collect::<Vec<_>>(),
             "objects": objects.collect::<Vec<_>>(),
+            "seen_exactly": self.is_exact,
         })
     }
 }
@@ -305,14 +309,14 @@ impl Inspection {
         match seen {
             Seen::Part(around, pixels) => {
                 let corners = [around.x, around.y, around.width, around.height];
-                json!({ "box": corners, "pixels": numbers::rounded(pixels, 1e-6) })
+                json!({ "box": corners, "pixels": numbers::rounded(pixels, LEAST) })
             }
-            Seen::Outside(place) => json!({ "box": null, "pixels": 0, "outside": place.words() }),
+            Seen::Outside(place) => json!({ "box": null, "pixels": 0.0, "outside": place.words() }),
             Seen::HiddenBy(other) => {
                 let name = self.objects.get(other).and_then(|it| it.name.as_deref());
-                json!({ "box": null, "pixels": 0, "hidden_by": name, "hidden_by_index": other })
+                json!({ "box": null, "pixels": 0.0, "hidden_by": name, "hidden_by_index": other })
             }
-            Seen::Nothing => json!({ "box": null, "pixels": 0 }),
+            Seen::Nothing => json!({ "box": null, "pixels": 0.0 }),
         }
     }
 
@@ -322,7 +326,11 @@ impl Inspection {
         }
         let all = self.size.map(f64::from).iter().product::<f64>();
         let share = |pixels: f64| format!("{} %", short(100.0 * pixels / all));
-        writeln!(f, "\nin the picture")?;
+        let about = match self.is_exact {
+            true => "",
+            false => ", about: by the middles of pixels where there are too many outlines",
+        };
+        writeln!(f, "\nin the picture{about}")?;
         for (index, object) in self.objects.iter().enumerate().take(LISTED) {
             let name = object.name.as_deref().unwrap_or("-");
             let words = match object.seen {

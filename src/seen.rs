@@ -1,7 +1,8 @@
 //! What is seen of each object of a scene.
 //!
 //! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; of
-//! those that are not seen, why. Areas are exact as those of `exact` pictures are.
+//! those that are not seen, why. Areas are those of `exact` pictures, as long as the work on them is
+//! bounded; then middles of pixels count, and it is said.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -21,8 +22,8 @@ use crate::{
 /// what the middle of a pixel shows counts for the pixel.
 const MOST_WORK: u64 = 100_000_000;
 
-/// An area smaller than this may be a rounding, in pixels.
-const LEAST: f64 = 1e-9;
+/// The least area that counts as seen, in pixels: areas are told to as much.
+pub const LEAST: f64 = 1e-6;
 
 /// What is seen of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,38 +39,40 @@ pub enum Seen {
     Nothing,
 }
 
-/// Says what is seen of each object.
-pub fn seen(scene: &Scene) -> Vec<Seen> {
+/// Says what is seen of each object, and whether all areas are exact.
+pub fn seen(scene: &Scene) -> (Vec<Seen>, bool) {
     let world = World::by_object(scene);
     let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();
     let most_work = MOST_WORK / tiles.len().max(1) as u64;
     let look = |tile: &Area| {
-        let mut parts = Parts::new();
+        let mut areas = SeenAreas::new();
         let integrator = Integrator::of(&world, |_| []).within(most_work);
-        integrator.shares(*tile, |area, shares| {
+        let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                if share > LEAST && object != world.background() {
-                    add(&mut parts, object, (area, area.pixels() as f64 * share));
+                // Less may be a rounding.
+                if share > 1e-9 && object != world.background() {
+                    add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }
             }
         });
-        parts
+        (areas, is_exact)
     };
     let look = || tiles.par_iter().map(look).collect::<Vec<_>>();
     // Without a thread nothing is known.
     let found = threads::install(None, look).unwrap_or_default();
-    let mut parts = Parts::new();
+    let mut areas = SeenAreas::new();
+    let is_exact = found.iter().all(|(_, is_exact)| *is_exact);
     // Always in the same order, so that sums are rounded alike.
-    for (object, part) in found.into_iter().flatten() {
-        add(&mut parts, object, part);
+    for (object, area) in found.into_iter().flat_map(|(areas, _)| areas) {
+        add(&mut areas, object, area);
     }
     let asked = OnceCell::new();
     let sight = Sight::new(&scene.camera, &scene.image);
-    let seen = |index: usize| match parts.get(&index) {
-        Some(&(pixels, area)) => Seen::Part(pixels, area),
+    let seen = |index: usize| match areas.get(&index) {
+        Some(&(around, area)) if area >= LEAST => Seen::Part(around, area),
         // Why an object is not seen is told of those that are listed.
-        None if index >= LISTED => Seen::Nothing,
-        None => {
+        _ if index >= LISTED => Seen::Nothing,
+        _ => {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Seen::Outside(place),
@@ -77,17 +80,17 @@ pub fn seen(scene: &Scene) -> Vec<Seen> {
             }
         }
     };
-    (0..scene.objects.len()).map(seen).collect()
+    ((0..scene.objects.len()).map(seen).collect(), is_exact)
 }
 
-/// Number of objects of which `inspect` says each what is seen.
+/// Number of objects that `inspect` lists for people, and of which it says why one is not seen.
 pub const LISTED: usize = 100;
 
 /// What is seen, by the indices of the objects.
-type Parts = BTreeMap<usize, (Area, f64)>;
+type SeenAreas = BTreeMap<usize, (Area, f64)>;
 
-fn add(parts: &mut Parts, object: usize, (pixels, area): (Area, f64)) {
-    let (around, sum) = parts.entry(object).or_insert((pixels, 0.0));
+fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
+    let (around, sum) = areas.entry(object).or_insert((pixels, 0.0));
     *around = around.with(pixels);
     *sum += area;
 }

@@ -147,7 +147,8 @@ Examples:
   pinhole sheet figure.scn -o roll.png --sweep camera.roll=0deg..90deg/10
   pinhole sheet figure.scn -o methods.png --set sampler.per_pixel=4 --columns 3
 
-Each picture is rendered anew at its size on the sheet, with as many samples in a pixel as the scene asks for. Under it stands the \
+Each picture is rendered anew at its size on the sheet, with as many samples in a pixel as the scene asks for; of \
+PNGs that carry a crop, too, the whole is shown. Under it stands the \
 name of its file, or what a sweep has come to. If a scene has errors, there is no sheet.";
 
 pub const EXPLAIN_EXAMPLES: &str = "\

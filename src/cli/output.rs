@@ -123,7 +123,7 @@ pub fn style() -> Style {
         },
         color: is_watched() && has_color(),
         width: columns.unwrap_or(plain.width),
-        excerpt: columns.map_or(plain.excerpt, |columns| columns.saturating_sub(FRAME)),
+        excerpt: columns.map(|columns| columns.saturating_sub(FRAME)),
     }
 }
 

@@ -300,7 +300,7 @@ impl Output {
 }
 
 /// Refuses to write a picture over its scene.
-pub fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
+fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
     match input::is_same_file(path, scene) {
         false => Ok(()),
         true => Err(Trouble(format!(

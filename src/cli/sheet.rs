@@ -1,6 +1,9 @@
 //! `sheet`: the pictures of scenes side by side, each with its name.
 
-use std::{path::Path, sync::atomic::AtomicBool};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 
@@ -10,7 +13,7 @@ use super::{
     input::{Input, check_standard, is_standard, shown, unwritable},
     interrupt::Interrupt,
     output,
-    picture::{Keep, Picture, picture},
+    picture::{Keep, Output, Picture, picture},
 };
 use crate::{
     area::Area,
@@ -23,8 +26,8 @@ use crate::{
     tracer::World,
 };
 
-/// A picture with the name that stands under it.
-type Cell = (Film<[u8; 3]>, String);
+/// What stands on a sheet: a scene of the size of its picture there, and its name.
+type Entry = (Scene, String);
 
 /// Pixels between two cells, and around all of them.
 const GAP: u32 = 12;
@@ -49,15 +52,15 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         return Ok(status);
     }
     let cancel = interrupt.watch();
-    let mut cells = Vec::new();
-    for (scene, name) in scenes {
-        match cell(&scene, args.width, cancel) {
-            Ok(film) => cells.push((film, name)),
-            Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-            Err(error) => return Err(Trouble(error.to_string())),
-        }
-    }
-    let sheet = sheet(&cells, args.columns).map_err(|error| Trouble(error.to_string()))?;
+    let entries = scenes
+        .into_iter()
+        .map(|(scene, name)| (reduced(scene, args.width), name));
+    let entries: Vec<Entry> = entries.collect();
+    let sheet = match sheet(&entries, args.columns, cancel) {
+        Ok(sheet) => sheet,
+        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
+        Err(error) => return Err(Trouble(error.to_string())),
+    };
     let written = match is_standard(&args.output) {
         true => files::write_stream(output::Programs::new(), cancel, |out| {
             film::write_png(&sheet, None, out)
@@ -76,22 +79,17 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 /// Refuses an output that is no PNG, or one of the scenes, or cannot be written.
 fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
     let path = &args.output;
-    if is_standard(path) {
-        return Ok(());
-    }
     let is_png = path
         .extension()
         .is_some_and(|it| it.eq_ignore_ascii_case("png"));
-    if !is_png {
+    if !is_png && !is_standard(path) {
         let path = shown(path);
         return Err(Trouble(format!(
             "a sheet is a PNG: {path} should end in .png"
         )));
     }
-    args.scenes
-        .iter()
-        .try_for_each(|scene| super::picture::check_is_not(path, scene))?;
-    files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
+    let output = |scene: &PathBuf| Output::of(scene, Some(path))?.check(scene);
+    args.scenes.iter().try_for_each(output)
 }
 
 /// The scene of a file with its name, or those of a sweep; nothing if it has errors.
@@ -108,12 +106,14 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
         sources.sets.push(Source::from_text("--sweep", set));
         Input { sources, ..input }
     };
-    // What is wrong with the scene or an end of the sweep is told of that end.
-    if !sweep
-        .ends()
-        .into_iter()
-        .all(|set| with(set).scene().scene.is_some())
-    {
+    // What is to be said of the scene is said once, and of an end what is wrong with it.
+    let [first, last] = sweep.ends().map(with);
+    if first.scene().scene.is_none() {
+        return Ok(None);
+    }
+    let reading = scene::read(&last.sources);
+    if reading.scene.is_none() {
+        output::to_people(&last.report(&reading));
         return Ok(None);
     }
     let mut scenes = Vec::new();
@@ -124,7 +124,11 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
             output::to_people(&input.report(&reading));
             return Ok(None);
         };
-        scenes.push((scene, step.label));
+        let name = match args.scenes.len() {
+            1 => step.label,
+            _ => format!("{} {}", name(path, args), step.label),
+        };
+        scenes.push((scene, name));
     }
     Ok(Some(scenes))
 }
@@ -147,10 +151,9 @@ fn name(path: &Path, args: &SheetArgs) -> String {
     visible_line(&name).into_owned()
 }
 
-/// The scene's picture, rendered no wider than `width` and at most twice as high: with as many samples in a pixel as the
-/// large one has.
-fn cell(scene: &Scene, width: u32, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
-    let mut scene = scene.clone();
+/// A scene whose picture is no wider than `width` and at most twice as high, with as many samples
+/// in a pixel as before.
+fn reduced(mut scene: Scene, width: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
     let scale = f64::min(f64::from(width) / across, 2.0 * f64::from(width) / down);
@@ -159,48 +162,63 @@ fn cell(scene: &Scene, width: u32, cancel: &AtomicBool) -> Result<Film<[u8; 3]>,
         scene.image.width = scaled(across);
         scene.image.height = scaled(down);
     }
-    let part = Area::whole(scene.image.width, scene.image.height);
     if let Count::Total(total) = scene.sampler.count {
-        let share = u128::from(total) * u128::from(part.pixels()) / u128::from(whole.pixels());
+        let pixels = Area::whole(scene.image.width, scene.image.height).pixels();
+        let share = u128::from(total) * u128::from(pixels) / u128::from(whole.pixels());
         scene.sampler.count = Count::Total((share as u64).max(1));
     }
-    let world = World::new_unless(&scene, cancel).map_err(|_| RenderError::Cancelled)?;
-    match picture(&scene, &world, part, Keep::Bytes, cancel)? {
+    scene
+}
+
+fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
+    let whole = Area::whole(scene.image.width, scene.image.height);
+    let world = World::new_unless(scene, cancel).map_err(|_| RenderError::Cancelled)?;
+    match picture(scene, &world, whole, Keep::Bytes, cancel)? {
         Picture::Bytes(bytes) => Ok(bytes.into_film()),
         Picture::Light(_) | Picture::Floats(_) => unreachable!("bytes were asked for"),
     }
 }
 
-/// All cells on white, row by row, in so many columns; else in about as many as there are rows.
-fn sheet(cells: &[Cell], columns: Option<u32>) -> Result<Film<[u8; 3]>, film::TooLarge> {
-    let count = cells.len() as u32;
+/// All pictures on white, row by row, in so many columns; else in about as many as there are rows.
+fn sheet(
+    entries: &[Entry],
+    columns: Option<u32>,
+    cancel: &AtomicBool,
+) -> Result<Film<[u8; 3]>, RenderError> {
+    let count = entries.len() as u32;
     let square = || (1..=count).find(|side| side * side >= count).unwrap_or(1);
     let columns = columns.unwrap_or_else(square).min(count).max(1);
-    let width = cells
+    let width = entries
         .iter()
-        .map(|(film, _)| film.width())
+        .map(|(scene, _)| scene.image.width)
         .max()
         .unwrap_or(0);
-    let rows = cells.chunks(columns as usize);
-    let height = |row: &[Cell]| row.iter().map(|(film, _)| film.height()).max().unwrap_or(0);
+    let rows = entries.chunks(columns as usize);
+    let height = |row: &[Entry]| {
+        row.iter()
+            .map(|(scene, _)| scene.image.height)
+            .max()
+            .unwrap_or(0)
+    };
     let heights = rows.clone().map(|row| height(row) + LINE + GAP);
     let size = [
         columns * (width + GAP) + GAP,
         heights.clone().sum::<u32>() + GAP,
     ];
+    // Whether there is memory for it shows before anything is rendered.
     let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
     let mut y = GAP;
     for (row, height) in rows.zip(heights) {
-        for (column, (film, name)) in (0..).zip(row) {
+        for (column, (scene, name)) in (0..).zip(row) {
             let place = Area {
                 x: column * (width + GAP) + GAP,
                 y,
-                ..Area::whole(film.width(), film.height())
+                ..Area::whole(scene.image.width, scene.image.height)
             };
-            sheet.put(place, film.pixels());
+            sheet.put(place, rendered(scene, cancel)?.pixels());
             write(
                 &mut sheet,
-                [place.x, y + film.height() + 4],
+                [place.x, y + place.height + 4],
                 &fitting(name, width),
             );
         }

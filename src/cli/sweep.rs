@@ -23,7 +23,7 @@ pub struct Sweep {
 }
 
 /// A scene of a sweep.
-pub struct Step {
+pub struct SweepStep {
     /// The `--set` argument that makes it.
     pub set: String,
     /// The same with as few digits as a person wants to see.
@@ -83,14 +83,14 @@ impl Sweep {
     /// # Errors
     ///
     /// There is nothing between the two, as between words or colours.
-    pub fn steps(&self, sources: &Sources) -> Result<Vec<Step>, Trouble> {
+    pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         (0..self.count)
             .map(|i| self.step(i, sources).ok_or_else(|| self.nothing_between()))
             .collect()
     }
 
     /// The language itself says what is between: as the value of a `let` behind all others.
-    fn step(&self, i: usize, sources: &Sources) -> Option<Step> {
+    fn step(&self, i: usize, sources: &Sources) -> Option<SweepStep> {
         let Self {
             target,
             from,
@@ -117,7 +117,7 @@ impl Sweep {
                 return None;
             }
         };
-        Some(Step {
+        Some(SweepStep {
             set: format!("{target}={value}"),
             label: format!("{target}={shown}"),
         })
@@ -126,7 +126,7 @@ impl Sweep {
     fn nothing_between(&self) -> Trouble {
         let (from, to) = (&self.from, &self.to);
         Trouble(format!(
-            "--sweep finds nothing between `{from}` and `{to}`: it goes between two numbers, two angles or two vectors"
+            "--sweep finds nothing between `{from}` and `{to}`: it goes between two numbers, angles or vectors with a finite difference"
         ))
     }
 }

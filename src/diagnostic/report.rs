@@ -28,8 +28,9 @@ pub struct Style {
     pub color: bool,
     /// The terminal's width in columns; help is wrapped to it.
     pub width: usize,
-    /// The columns for lines of an excerpt: longer ones are cut, and labels wrapped.
-    pub excerpt: usize,
+    /// A terminal's columns for lines of an excerpt, to which they are cut, and their labels and the
+    /// title wrapped. Without a terminal only very long lines are cut.
+    pub excerpt: Option<usize>,
 }
 
 /// What a report is drawn with.
@@ -49,7 +50,7 @@ impl Default for Style {
             drawing: Drawing::Unicode,
             color: false,
             width: 100,
-            excerpt: 160,
+            excerpt: None,
         }
     }
 }
@@ -143,9 +144,15 @@ impl<'s> Report<'s> {
         let code = &diagnostic.code;
         let message = visible_line(&diagnostic.message);
         let title = format!("{on}{word}[{code}]:{off} {message}");
-        let columns = textwrap::Options::new(self.style.excerpt.max(LEAST));
-        let mut text = textwrap::fill(&title, columns.subsequent_indent("  ")) + "\n";
-        let excerpts = excerpts(diagnostic, self.sources, self.style.excerpt);
+        let columns = self.style.excerpt.map(|columns| columns.max(LEAST));
+        let mut text = match columns {
+            Some(columns) => {
+                let columns = textwrap::Options::new(columns).subsequent_indent("  ");
+                textwrap::fill(&title, columns) + "\n"
+            }
+            None => title + "\n",
+        };
+        let excerpts = excerpts(diagnostic, self.sources, columns.unwrap_or(LONG_LINE));
         if excerpts.is_empty()
             && let Some(help) = &diagnostic.help
         {
@@ -278,6 +285,8 @@ struct ExcerptLine {
     shown: Vec<(usize, usize)>,
 }
 
+/// Where no terminal says how wide it is, a line up to this length is shown whole.
+const LONG_LINE: usize = 160;
 /// Minimum number of columns, however narrow the terminal is.
 const LEAST: usize = 30;
 /// Columns between a label and its message.
@@ -297,7 +306,7 @@ fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -
     }
     let excerpt = |id| {
         let labels = diagnostic.labels.iter().filter(|l| l.span.source == id);
-        Excerpt::new(sources.get(id), labels, columns.max(LEAST))
+        Excerpt::new(sources.get(id), labels, columns)
     };
     ids.into_iter().map(excerpt).collect()
 }

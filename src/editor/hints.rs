@@ -1,4 +1,4 @@
-//! What a text does not say but could: shown in grey between its words.
+//! What a text does not say but could: shown in grey at the ends of its lines.
 
 use std::ops::Range;
 
@@ -37,7 +37,8 @@ struct Remark<'s> {
 /// comes to, the field of view that belongs to a distance, how many samples there are in all.
 ///
 /// All of them stand at the ends of lines: within a line, they would push apart what the formatter
-/// puts under one another. One that is not right behind its value says whose it is.
+/// puts under one another. A value that does not stand right behind its expression has the name of
+/// its field.
 pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
@@ -68,11 +69,11 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
         let rest = analysis.text().get(remark.end..).unwrap_or_default();
         let rest = rest.lines().next().unwrap_or_default().trim_end();
         let at = remark.end + rest.len();
-        let is_behind = |value| match rest {
+        let shown = |value| match rest {
             "" => format!("= {value}"),
             _ => format!("{} = {value}", remark.name),
         };
-        let texts = [remark.comes_to.map(is_behind), remark.beside];
+        let texts = [remark.comes_to.map(shown), remark.beside];
         for text in texts.into_iter().flatten() {
             match hints.last_mut().filter(|last| last.at == at) {
                 Some(last) => last.text += &format!(", {text}"),

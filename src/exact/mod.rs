@@ -34,6 +34,7 @@ mod by_key;
 mod checker;
 mod clip;
 mod conic_segment;
+mod part_pixels;
 mod region;
 mod slabs;
 
@@ -60,6 +61,7 @@ use self::{
         Sum, UNIT,
         board_pixels::{BoardBatches, BoardPixel},
     },
+    part_pixels::PartPixels,
     region::{Regions, Shares},
 };
 
@@ -184,7 +186,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self
     }
 
-    /// The same, which gives up once it has spent so many units of work.
+    /// The same, which gives up once it has spent so many units of work; [`shares`](Self::shares)
+    /// goes on by the middles of pixels.
     pub fn within(mut self, most_work: u64) -> Self {
         self.most_work = most_work;
         self
@@ -250,9 +253,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Shows areas of one colour, and of each other pixel how much of it each colour has, by slots
-    /// of the palette, for a part of a picture whose checkerboards have one colour. Beyond the work
-    /// that it may spend, the middle of a pixel stands for it.
-    pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) {
+    /// of the palette. Wants a world made by [`World::by_object`]. Beyond the work that may be
+    /// spent, the middle of a pixel stands for it. Says whether each share is known to a millionth.
+    pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
+        let mut is_exact = true;
         let mut curves = Vec::new();
         let scratch = &mut Scratch::default();
         let _ = self.quartering.parts(part, scratch, &mut |part| {
@@ -260,18 +264,21 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 Part::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
                 Part::Pixel { x, y, .. } if self.work() > self.most_work => {
                     let slot = self.world.slot_at(x, y, DVec2::ZERO);
+                    is_exact = false;
                     show(Area::pixel(x, y), &[(slot, 1.0)]);
                 }
                 Part::Pixel {
                     x, y, candidates, ..
                 } => {
                     let seen = self.pixel_shares(x, y, candidates, &mut curves, &cancel::NEVER);
+                    is_exact &= seen.bound <= 1e-6;
                     show(Area::pixel(x, y), &seen.by_slot);
                 }
                 Part::Crowded { .. } => unreachable!("every part of an exact picture is quartered"),
             }
             ControlFlow::Continue(())
         });
+        is_exact
     }
 
     /// The mean of one pixel, of what may be seen in it.
@@ -476,25 +483,5 @@ fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,
         _ => (2 * colors + 2) as f64 * UNIT,
-    }
-}
-
-/// The pixels of a part of the picture.
-struct PartPixels<const N: usize> {
-    part: Area,
-    pixels: Vec<ExactPixel<N>>,
-}
-
-impl<const N: usize> PartPixels<N> {
-    fn fill(&mut self, part: Area, mean: [f64; N]) {
-        for y in part.y..part.y + part.height {
-            let start = self.part.index(part.x, y);
-            self.pixels[start..start + part.width as usize].fill(ExactPixel { mean, bound: 0.0 });
-        }
-    }
-
-    fn set(&mut self, x: u32, y: u32, pixel: ExactPixel<N>) {
-        let index = self.part.index(x, y);
-        self.pixels[index] = pixel;
     }
 }

@@ -52,8 +52,9 @@ const policy = [
 const renderer = new Renderer();
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-// What is for the command line stands at its end: overrides, the layout of `fmt`, columns of reports.
-const reference = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").replace(/^## Overrides\n[^]*/m, "");
+// Its end is left out: overrides and columns are for the command line, and the layout is seen by Shift-Alt-F.
+const [reference, ...end] = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").split("\n## Overrides\n");
+if (end.length !== 1) throw new Error("the reference has no section on overrides to end before");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));
 if (host === "static") {
   page = page

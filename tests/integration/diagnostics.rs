@@ -249,8 +249,8 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal excerpts are cut around their labels, and all else is wrapped at words; of
-/// several labels in a line all are shown.
+/// In a narrow terminal excerpts are cut around a label, and all else is wrapped at words. (Several
+/// labels in a line may need more room.)
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;
@@ -259,7 +259,7 @@ fn reports_fit_into_the_terminal() {
         for width in [60, 80] {
             let style = Style {
                 width,
-                excerpt: width - 8,
+                excerpt: Some(width - 8),
                 ..Style::default()
             };
             let report = Report::new(&sources, style);

@@ -105,7 +105,7 @@ fn the_course_is_short_and_its_sheet_shows_it() {
             );
         }
     }
-    assert!(lines <= 165, "{lines} lines");
+    assert!(lines <= 150, "{lines} lines");
     let scenes: Vec<&str> = scenes.iter().map(|name| name.as_str()).collect();
     let scenes = scenes.join(" ");
     folder.done(&format!(

@@ -6,8 +6,8 @@
 ;;; Commentary:
 
 ;; A mode for *.scn, and how eglot and lsp-mode, whichever is there, start Pinhole's language server
-;; in it.  The mode itself colours comments, numbers, `let' and `for'; what needs to know the
-;; language comes from the server.
+;; in it.  The mode itself colours comments, numbers, colour codes, `let', `for' and the heads of
+;; blocks; what needs to know the language comes from the server.
 
 ;;; Code:
 

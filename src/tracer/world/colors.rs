@@ -41,8 +41,7 @@ impl Colors {
         }
     }
 
-    /// As if each object had a colour of its own, of which nothing is known but its slot; pieces
-    /// have that of what they are of.
+    /// Gives each object a slot of its own; a piece has that of the object that it belongs to.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

@@ -86,8 +86,8 @@ impl World {
         Self::as_far(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as if each object, a checkerboard too, had one colour that nothing else has:
-    /// its slot is the object's index in the file.
+    /// Prepares a scene as if each object, also a checkerboard, had one colour of its own: the slot
+    /// is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();

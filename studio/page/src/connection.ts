@@ -86,7 +86,7 @@ class Connection implements Transport {
     }, text => isCurrent() && this.receive(text), why => isCurrent() && this.lose(why));
   }
 
-  /** Tries at once where there is no connection: there is a new reason to hope for one. */
+  /** Tries at once, for a caller without a connection who has a new reason to hope for one. */
   retry(): void {
     clearTimeout(this.timer);
     this.attempts = 0;

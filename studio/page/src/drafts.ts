@@ -128,7 +128,7 @@ const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.t
 /** Keeps a draft under its key, or forgets what is kept there. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
   // A browser that forbids it, or takes its time, is no reason not to tell the host.
-  const here = storedHere(id, draft).catch(() => {});
+  const here = storedHere(id, draft).catch(error => { if (!isServed) throw error; });
   await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
 }
 

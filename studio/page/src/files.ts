@@ -31,6 +31,7 @@ class Scene {
   /** Whether the file has gone since. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
+  copy: Scene | null = null; // what it was saved as, which has come in its place
   /** Whether the host is still to make a file of it, under a name that Save asks for. */
   isNew = isServed;
   /** What it starts with, which is not worth saving; null for a file. */
@@ -100,11 +101,10 @@ class Files {
   /** Follows the text to the scene that it belongs to. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
-      if (it.is(turns)) this.at = it.value.to;
+      if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
     }
   }
 
-  /** The name as people may see it. */
   private get shownName(): string { return visibleLine(this.at.name); }
 
   get isUnsaved(): boolean {
@@ -230,7 +230,7 @@ class Files {
   private saved(scene: Scene, name: string, text: string): void {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
-    if (scene.of === this.at) this.at = scene;
+    if (scene.of === this.at) this.at = this.at.copy = scene;
     // A host without a file has that one from now on.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);

@@ -40,6 +40,20 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
         let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
         assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
     }
+    // A warning is told once, however often the scene is read, and of two scenes the names are told.
+    let sweep = "sheet w.scn b.scn --sweep camera.eye=(0,0,5)..(0,0,6)/3 -o x.png";
+    folder.write(
+        "w.scn",
+        "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere S { center (0, 0, 0) }",
+    );
+    let said = folder.run(sweep);
+    assert_eq!(said.status, 0, "{}", said.errors);
+    assert_eq!(
+        said.errors.matches("outside_picture").count(),
+        2,
+        "{}",
+        said.errors
+    );
     // Smaller ones, as a scene of that size has them; and what a sweep is made of.
     folder.done("sheet b.scn --width 15 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
     let swept = open("swept.png");

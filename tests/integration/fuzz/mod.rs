@@ -26,7 +26,7 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, tracer::Random};
 
-/// So long may one input take: milliseconds, but for a busy machine.
+/// The time that an input may take. It takes milliseconds; a busy machine may stop for longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Runs something that has to end soon. What hangs cannot be stopped, so it ends the tests, and

@@ -1,6 +1,6 @@
-//! A real editor talks to the server: Emacs without its window, by each of its two clients. It has to
-//! be there, as `emacs` on the path, with eglot and lsp-mode: `cargo test -- --ignored emacs`.
-//! Versions 28.2, 1.9 and 8.0 are known to do.
+//! A real editor talks to the server: Emacs without its window, by each of its two clients. It has
+//! to be there, as `emacs` on the path, with eglot and lsp-mode: `cargo test -- --ignored emacs`.
+//! Emacs 28.2, eglot 1.9 and lsp-mode 8.0 are known to work.
 
 use std::{path::Path, process::Command};
 

@@ -1,4 +1,5 @@
-//! The language server: the binary over pipes (`session`, `neovim`, `emacs`), and in this process, where it is known what it has done by when.
+//! The language server: the binary over pipes (`session`, `neovim`, `emacs`), and in this process,
+//! where it is known what it has done by when.
 
 pub mod client;
 mod emacs;

@@ -68,11 +68,11 @@ function binary() {
   const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
   const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath, home);
   if (found === undefined) {
-    const where = setting.trim() === "" ? "neither on PATH nor in ~/.cargo/bin" : `not at ${setting}, where the setting pinhole.path says`;
+    const where = setting.trim() === "" ? "neither on PATH nor where cargo installs programs (~/.cargo/bin)" : `not at ${setting}, where the setting pinhole.path says`;
     const message = `The program pinhole is ${where}. Without it, scenes are highlighted, and no more.`;
     vscode.window.showErrorMessage(message, "Choose File…", "How to Get It").then(answer => {
       if (answer === "Choose File…") return chooseBinary();
-      // The extension's own page begins with it.
+      // The extension's own page has a section on it.
       if (answer === "How to Get It") return vscode.commands.executeCommand("extension.open", "pinhole.pinhole");
     });
   }
@@ -83,7 +83,11 @@ function binary() {
 async function chooseBinary() {
   const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
   if (file === undefined) return;
-  await vscode.workspace.getConfiguration("pinhole").update("path", file.fsPath, vscode.ConfigurationTarget.Global);
+  const configuration = vscode.workspace.getConfiguration("pinhole");
+  // A workspace's own setting would win.
+  const { workspaceValue } = configuration.inspect?.("path") ?? {};
+  const { Global, Workspace } = vscode.ConfigurationTarget;
+  await configuration.update("path", file.fsPath, workspaceValue === undefined ? Global : Workspace);
 }
 
 /**

@@ -141,5 +141,5 @@ test("the program is the setting's, or the first on the path, or cargo's", () =>
   chmodSync(first, 0o644);
   if (process.getuid?.() !== 0) assert.equal(findBinary("", undefined, undefined, env), second);
   symlinkSync(second, path.join(folder, "link"));
-  assert.equal(findBinary(path.relative(homedir(), path.join(folder, "link")), undefined, env), path.join(folder, "link"));
+  assert.equal(findBinary(path.relative(homedir(), path.join(folder, "link")), undefined, undefined, env), path.join(folder, "link"));
 });

@@ -1,0 +1,27 @@
+//! The computed pixels of a part of the picture.
+
+use super::ExactPixel;
+use crate::area::Area;
+
+/// The pixels of a part of the picture.
+pub(super) struct PartPixels<const N: usize> {
+    pub part: Area,
+    /// Row by row.
+    pub pixels: Vec<ExactPixel<N>>,
+}
+
+impl<const N: usize> PartPixels<N> {
+    /// A part of them that shows one colour.
+    pub fn fill(&mut self, part: Area, mean: [f64; N]) {
+        for y in part.y..part.y + part.height {
+            let start = self.part.index(part.x, y);
+            self.pixels[start..start + part.width as usize].fill(ExactPixel { mean, bound: 0.0 });
+        }
+    }
+
+    /// One of them.
+    pub fn set(&mut self, x: u32, y: u32, pixel: ExactPixel<N>) {
+        let index = self.part.index(x, y);
+        self.pixels[index] = pixel;
+    }
+}
