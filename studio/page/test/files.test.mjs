@@ -101,6 +101,7 @@ test("a change outside of half a character's units changes the character", async
   assert.equal(await text(page), `// 😁\n${FIGURE}`);
   // Half of one, as some programs paste it, is none.
   await page.click(".cm-content");
+  await page.keyboard.press("Control+Home");
   await andFinished(page, () =>
     page.evaluate(() => {
       const clipboardData = new DataTransfer();
