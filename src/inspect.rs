@@ -1,6 +1,6 @@
 //! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the objects.
 
-use std::{cmp::Ordering, fmt};
+use std::{borrow::Cow, cmp::Ordering, fmt};
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -79,6 +79,17 @@ pub struct ObjectFacts {
     pub shape: Shape,
     /// What is seen of it.
     pub seen: Seen,
+}
+
+impl ObjectFacts {
+    /// Its name, or else its indices, by which the members of a block are told apart.
+    fn shown_name(&self) -> Cow<'_, str> {
+        match (&self.name, &*self.indices) {
+            (Some(name), _) => Cow::Borrowed(name),
+            (None, []) => Cow::Borrowed("-"),
+            (None, indices) => Cow::Owned(format!("{indices:?}")),
+        }
+    }
 }
 
 /// Says what a scene means; `source` is the file that it was read from.
@@ -287,7 +298,7 @@ impl fmt::Display for Inspection {
         writeln!(f, "objects")?;
         for (index, object) in self.objects.iter().enumerate().take(LISTED) {
             let kind = object.shape.kind();
-            let name = object.name.as_deref().unwrap_or("-");
+            let name = object.shown_name();
             let line = object.line;
             writeln!(
                 f,
@@ -332,7 +343,7 @@ impl Inspection {
         };
         writeln!(f, "\nin the picture{about}")?;
         for (index, object) in self.objects.iter().enumerate().take(LISTED) {
-            let name = object.name.as_deref().unwrap_or("-");
+            let name = object.shown_name();
             let words = match object.seen {
                 Seen::Part(around, pixels) => {
                     let Area {

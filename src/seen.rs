@@ -1,8 +1,8 @@
 //! What is seen of each object of a scene.
 //!
 //! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; of
-//! those that are not seen, why. Areas are those of `exact` pictures, as long as the work on them is
-//! bounded; then middles of pixels count, and it is said.
+//! those that are not seen, why. Areas are those of `exact` pictures. Where they would take too much
+//! work, the middles of pixels count instead, and the answer says so.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -34,8 +34,8 @@ pub enum Seen {
     Outside(Place),
     /// Another object, by its index in the file, stands before its middle.
     HiddenBy(usize),
-    /// It is hidden by several others, is outside of the picture by more than its bounds say, or is
-    /// too thin to be seen.
+    /// It is hidden by several others, or too thin to be seen; or it lies outside of the picture,
+    /// and a box around it does not.
     Nothing,
 }
 

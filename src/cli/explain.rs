@@ -88,8 +88,8 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
         return Ok(page.into());
     }
     let codes = explain::pages().map(|page| page.code);
-    let others = ["language", "left_handed"].into_iter();
-    let words = codes.chain(describe::words()).chain(others);
+    let pages = ["language", "left_handed"].into_iter();
+    let words = codes.chain(describe::words()).chain(pages);
     let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
     let words = words.chain(explain::headings()).chain(others);
     let near = suggest::nearest(explain::short(trimmed), words);

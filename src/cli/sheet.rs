@@ -103,7 +103,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
     };
     let with = |set: String| {
         let mut sources = input.sources.clone();
-        sources.sets.push(Source::from_text("--sweep", set));
+        let name = format!("{}, --sweep", sources.file.name());
+        sources.sets.push(Source::from_text(name, set));
         Input { sources, ..input }
     };
     // What is to be said of the scene is said once, and of an end what is wrong with it.
@@ -203,7 +204,7 @@ fn sheet(
     let heights = rows.clone().map(|row| height(row) + LINE + GAP);
     let size = [
         columns * (width + GAP) + GAP,
-        heights.clone().sum::<u32>() + GAP,
+        heights.clone().fold(GAP, u32::saturating_add),
     ];
     // Whether there is memory for it shows before anything is rendered.
     let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
@@ -236,6 +237,7 @@ fn fitting(name: &str, width: u32) -> String {
             .chars()
             .take(most.saturating_sub(2))
             .chain("..".chars())
+            .take(most)
             .collect(),
     }
 }

@@ -78,37 +78,38 @@ impl Sweep {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// All of them, for a scene in which both ends have their values.
+    /// All of them, for a scene in which both ends have their values. The language itself says what
+    /// is between: as the values of `let`s behind all others.
     ///
     /// # Errors
     ///
     /// There is nothing between the two, as between words or colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
-        (0..self.count)
-            .map(|i| self.step(i, sources).ok_or_else(|| self.nothing_between()))
-            .collect()
-    }
-
-    /// The language itself says what is between: as the value of a `let` behind all others.
-    fn step(&self, i: usize, sources: &Sources) -> Option<SweepStep> {
         let Self {
-            target,
-            from,
-            to,
-            count,
+            from, to, count, ..
         } = self;
-        let text = sources.file.text();
+        let mut text = sources.file.text().to_owned();
         let mut name = "step".to_owned();
         while text.contains(&name) {
             name += "_";
         }
-        let between = format!("({from}) + (({to}) - ({from})) * {i} / {}", count - 1);
-        let with = format!("{text}\nlet {name} = {between}\n");
+        for i in 0..*count {
+            let between = format!("({from}) + (({to}) - ({from})) * {i} / {}", count - 1);
+            text += &format!("\nlet {name}{i} = {between}");
+        }
         let mut sources = sources.clone();
-        sources.file = Source::from_text(sources.file.name(), with);
+        sources.file = Source::from_text(sources.file.name(), text);
         let model = analyze(&sources);
-        let definition = model.definitions().last()?;
-        let value = model.defined(definition)?;
+        let first = model.definitions().count().saturating_sub(*count);
+        let steps = model.definitions().skip(first);
+        let steps = steps.map(|step| self.step(model.defined(step)?));
+        let steps: Option<Vec<SweepStep>> = steps.collect();
+        steps
+            .filter(|steps| steps.len() == *count)
+            .ok_or_else(|| self.nothing_between())
+    }
+
+    fn step(&self, value: Value) -> Option<SweepStep> {
         let shown = match value {
             Value::Number(number) => short(number),
             Value::Angle(angle) => format!("{}deg", short(angle.in_degrees())),
@@ -117,6 +118,7 @@ impl Sweep {
                 return None;
             }
         };
+        let target = &self.target;
         Some(SweepStep {
             set: format!("{target}={value}"),
             label: format!("{target}={shown}"),

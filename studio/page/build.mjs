@@ -52,7 +52,8 @@ const policy = [
 const renderer = new Renderer();
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-// Its end is left out: overrides and columns are for the command line, and the layout is seen by Shift-Alt-F.
+// Its end is left out: overrides and columns are for the command line, and Shift-Alt-F shows the
+// layout.
 const [reference, ...end] = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").split("\n## Overrides\n");
 if (end.length !== 1) throw new Error("the reference has no section on overrides to end before");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));

@@ -204,9 +204,9 @@ fn what_is_seen_of_each_object_is_told() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the middle. The area of that of
-        // a sphere at the distance c and depth z is π r² √(c² − r²) / (z² − r²)^1.5 in a view plane
-        // at 1 metre, where 50 pixels are a metre.
+        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the middle. In a view plane at
+        // 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance c and depth
+        // z has the area π r² √(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {
@@ -282,6 +282,7 @@ fn of_very_many_objects_the_first_ones_are_listed() {
     let folder = Folder::with([("a.scn", scene)]);
     let said = folder.run("inspect a.scn").errors;
     assert_eq!(said.matches("line 1").count(), 100);
+    assert_eq!(said.matches("sphere       [99] ").count(), 2, "{said}");
     assert!(
         said.contains("  1_000 more, which --format json lists"),
         "{said}"

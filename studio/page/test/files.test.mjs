@@ -10,6 +10,15 @@ import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, 
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
 
+/** A page of a host without a file, in a folder of its own. */
+async function withoutFile(t) {
+  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
+  t.after(() => rmSync(folder, { recursive: true, force: true }));
+  const started = await serve(null, { folder });
+  t.after(() => started.stop());
+  return { folder, started, page: await open(await launch(t), started) };
+}
+
 test("a browser without a decoder of its own shows the same picture", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
@@ -206,11 +215,7 @@ test("New says that it has to wait as long as the scene is not there", async t =
 });
 
 test("Studio without a file and New begin with the same text, which has a picture", async t => {
-  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
-  t.after(() => rmSync(folder, { recursive: true, force: true }));
-  const started = await serve(null, { folder });
-  t.after(() => started.stop());
-  const page = await open(await launch(t), started);
+  const { page } = await withoutFile(t);
   const first = await text(page);
   assert.equal(await page.textContent("#file-state"), "");
   await andFinished(page, () => type(page, FIGURE));
@@ -230,11 +235,7 @@ test("Studio without a file and New begin with the same text, which has a pictur
 });
 
 test("a new scene gets its name by Save", async t => {
-  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
-  t.after(() => rmSync(folder, { recursive: true, force: true }));
-  const started = await serve(null, { folder });
-  t.after(() => started.stop());
-  const page = await open(await launch(t), started);
+  const { folder, page } = await withoutFile(t);
   await andFinished(page, () => type(page, FIGURE));
   await page.keyboard.press("Control+s");
   await page.fill("#name-field", "other.scn");
@@ -285,11 +286,7 @@ test("Save as makes a file beside the host's, and goes on with that", async t =>
 });
 
 test("Save as of a new scene is Save", async t => {
-  const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
-  t.after(() => rmSync(folder, { recursive: true, force: true }));
-  const started = await serve(null, { folder });
-  t.after(() => started.stop());
-  const page = await open(await launch(t), started);
+  const { folder, page } = await withoutFile(t);
   await andFinished(page, () => type(page, FIGURE));
   await menu(page, "File", "#save-as");
   await page.fill("#name-field", "first");

@@ -63,8 +63,8 @@ fn neovim_writes_a_scene() {
 /// A text, keys, and the line that they make of it.
 type Typed = [&'static str; 3];
 
-/// Asked for by `CTRL-X CTRL-O`. Neovim 0.7 puts in the whole of a completion, 0.11 its word, so that
-/// only what both begin with is compared.
+/// Asked for by `CTRL-X CTRL-O`. Neovim 0.7 puts in the whole of a completion, 0.11 its word, so
+/// that only what both begin with is compared.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],

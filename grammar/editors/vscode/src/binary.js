@@ -5,8 +5,9 @@ const os = require("node:os");
 const path = require("node:path");
 
 /**
- * The path of the program `pinhole`: the setting, if there is one, else the first on PATH, where `cargo install` puts it, or the
- * one that the extension was packaged with. Undefined if no file is there.
+ * The path of the program `pinhole`: the setting, if there is one, else the first on PATH, where
+ * `cargo install` puts it, or the one that the extension was packaged with. Undefined if no file is
+ * there.
  *
  * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at `folder`.
  * @param {string | undefined} folder The workspace's folder.

@@ -91,8 +91,8 @@ async function chooseBinary() {
 }
 
 /**
- * Makes the file that is open a scene where another extension has its ending, and offers that for every such file. The
- * server runs by then: the command activates the extension.
+ * Makes the file that is open a scene where another extension has its ending, and offers that for
+ * every such file. The server runs by then: the command activates the extension.
  */
 async function use() {
   const document = vscode.window.activeTextEditor?.document;

@@ -52,8 +52,8 @@ class TabInputText {
 const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
 /**
- * A fresh editor with these documents. `setting` is that of `pinhole.path`; `answers` are what the user chooses where a message
- * offers it, and `file` what he chooses in a dialog.
+ * A fresh editor with these documents. `setting` is that of `pinhole.path`; `answers` are what the
+ * user chooses where a message offers it, and `file` what he chooses in a dialog.
  */
 export function editor({ documents = [], setting = "", answers = [], file } = {}) {
   const seen = { messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
