@@ -81,8 +81,13 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
+    /// Values that begin within a torn word, as in `center1.6, 1, 0`, are not the author's.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.within.takes);
+        let is_torn = self
+            .line_before(span.start)
+            .ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let fix = fix.filter(|_| !is_torn);
         self.report(&say::MISSING_PARENTHESES, span, &[help], fix);
     }
 

@@ -40,9 +40,7 @@ impl Words {
         let mut rest = text.as_str();
         let mut is_number_before = false;
         while let Some(first) = rest.chars().next() {
-            let is_number = first.is_ascii_digit()
-                || (first == '.' && rest[1..].starts_with(|c: char| c.is_ascii_digit()));
-            if is_number {
+            if starts_number(rest) {
                 let length = number_length(rest);
                 let digits = rest[..length].replace('_', "");
                 words.numbers.push(digits.parse().unwrap());
@@ -59,7 +57,7 @@ impl Words {
                 };
                 // `0.5x1.5x2`
                 let is_times = rest.starts_with(['x', 'X'])
-                    && rest[1..].starts_with(|c: char| c.is_ascii_digit())
+                    && starts_number(&rest[1..])
                     && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
                 if is_times {
                     rest = &rest[1..];
@@ -108,6 +106,11 @@ fn glued(word: &str, all: &str) -> Option<usize> {
     found.map(str::len)
 }
 
+fn starts_number(text: &str) -> bool {
+    let digits = text.strip_prefix('.').unwrap_or(text);
+    digits.starts_with(|c: char| c.is_ascii_digit())
+}
+
 fn is_letter(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }
@@ -135,11 +138,11 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// The words of the language.
+/// The words of the language, its units among them.
 fn keywords() -> impl Iterator<Item = &'static str> {
     let blocks = BLOCKS.iter().map(|block| block.name);
     let fields = BLOCKS.iter().flat_map(|block| block.field_names());
-    blocks.chain(fields).chain(["let", "rgb"])
+    blocks.chain(fields).chain(["let", "rgb", "deg", "rad"])
 }
 
 /// Whether two words are all but the same.

@@ -79,6 +79,10 @@ fn texts_that_once_lost_something_keep_it() {
         // One torn word is not two values.
         "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
         "sphere { center (a.5, 2) }",
+        "let ball = { center1.6, 1, 0 }",
+        // Extents, and their unit apart from them.
+        "let a = 30 0.5x1.5x2 deg",
+        "Transform { translation -0.5x.15x21.6 1 0 }",
         "triangle { centroid (0, 1, 0)  spin 30 degrees lookat }",
         "sphere { center (0, 1, 0)  radius 30°° }",
         "checkerboard { y -1  square 1e-\u{200b}101 }",
