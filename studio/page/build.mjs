@@ -66,7 +66,9 @@ if (host === "static") {
     // A site has no port of its own choice.
     .replace('<span id="kept-served">', '<span id="kept-served" hidden>')
     // The engine in the browser writes no EXR.
-    .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>');
+    .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>')
+    // Lines that begin with a tag need no indentation. Scenes have none: their `<` is written `&lt;`.
+    .replace(/^ +</gm, "<");
 }
 writeFileSync(path.join(folder, "index.html"), page);
 
