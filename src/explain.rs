@@ -11,29 +11,41 @@ pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
 /// What others call things, with the heading of the reference or the word of the language where
-/// they are explained.
+/// they are explained; behind a colon, the item or paragraph there starts so.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
     ("array", "repetition"),
     ("index", "repetition"),
-    ("group", "limits"),
-    ("condition", "limits"),
-    ("if", "limits"),
-    ("step", "limits"),
-    ("light", "limits"),
-    ("lighting", "limits"),
-    ("shadow", "limits"),
-    ("texture", "limits"),
-    ("cylinder", "limits"),
-    ("cone", "limits"),
-    ("polygon", "limits"),
-    ("power", "limits"),
-    ("orthographic", "limits"),
-    ("animation", "limits"),
-    ("mirror", "limits"),
-    ("glass", "limits"),
-    ("fog", "limits"),
+    ("group", "limits: A group"),
+    ("condition", "limits: A condition"),
+    ("if", "limits: A condition"),
+    ("step", "limits: A start"),
+    ("light", "limits: Light"),
+    ("lighting", "limits: Light"),
+    ("shadow", "limits: A shadow"),
+    ("texture", "limits: A texture"),
+    ("cylinder", "limits: A cylinder"),
+    ("cone", "limits: A cylinder"),
+    ("polygon", "limits: A quadrilateral"),
+    ("power", "limits: A power"),
+    ("orthographic", "limits: A parallel projection"),
+    ("animation", "limits: Moving pictures"),
+    ("mirror", "limits: There is nothing"),
+    ("glass", "limits: There is nothing"),
+    ("fog", "limits: There is nothing"),
+    ("translate", "limits: A group"),
+    ("scale", "limits: A group"),
+    ("quad", "limits: A quadrilateral"),
+    ("disk", "limits: A quadrilateral"),
+    ("material", "limits: Light"),
+    ("shading", "limits: Light"),
+    ("reflection", "limits: There is nothing"),
+    ("transparency", "limits: There is nothing"),
+    ("csg", "limits: There is nothing"),
+    ("include", "limits: There is nothing"),
+    ("import", "limits: There is nothing"),
+    ("colour", "color"),
     ("angle", "values"),
     ("angles", "values"),
     ("vector", "values"),
@@ -57,9 +69,9 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("ball", "sphere"),
     ("floor", "checkerboard"),
     ("plane", "checkerboard"),
-    ("rotate", "limits"),
-    ("rotation", "limits"),
-    ("turn", "limits"),
+    ("rotate", "limits: A turned object"),
+    ("rotation", "limits: A turned object"),
+    ("turn", "limits: A turned object"),
     ("parts", "operators"),
     ("component", "operators"),
     ("lens", "numbers of other programs"),
@@ -89,6 +101,25 @@ pub fn section(heading: &str) -> Option<&'static str> {
         offset += line.len();
     }
     start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
+}
+
+/// The item or paragraph of a section that starts with some words, under the section's heading, and
+/// where the rest is.
+pub fn part(heading: &str, words: &str) -> Option<String> {
+    let section = section(heading)?;
+    let lines = section.lines();
+    let start = |line: &&str| !line.trim_start_matches("- ").starts_with(words);
+    let mut found = lines.skip_while(start).peekable();
+    let is_item = found.peek()?.starts_with("- ");
+    let first = found.next()?;
+    let goes_on = |line: &&str| !(line.is_empty() || is_item && line.starts_with("- "));
+    let rest = found.take_while(goes_on).map(|line| format!("\n{line}"));
+    let title = section.lines().next()?;
+    let where_rest = format!("`pinhole explain {heading}` has the others, and an example.");
+    Some(format!(
+        "{title}\n\n{first}{}\n\n{where_rest}\n",
+        rest.collect::<String>()
+    ))
 }
 
 /// The headings of the reference's sections.

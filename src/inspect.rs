@@ -1,19 +1,19 @@
 //! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the objects.
 
-use std::{borrow::Cow, cmp::Ordering, fmt};
+mod json;
 
-use glam::DVec3;
-use serde_json::{Value, json};
+use std::{borrow::Cow, cmp::Ordering, fmt};
 
 use crate::{
     area::Area,
     math::{Big, Real},
-    numbers::{self, grouped, short, short_vector},
+    numbers::{grouped, short, short_vector},
     scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
-    seen::{self, LEAST, LISTED, Seen},
+    seen::{self, LISTED, Seen},
     source::Source,
     tracer::{Basis, vertices},
 };
+use glam::DVec3;
 
 /// What `pinhole inspect` shows. Every number is the rounding of what real arithmetic makes of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -183,93 +183,17 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
+/// What is seen of the objects that are not listed, in sum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rest {
+    objects: u64,
+    seen: u64,
+    /// The area that shows them, in pixels.
+    pixels: f64,
+    outside: u64,
+}
+
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-impl Inspection {
-    /// The JSON object of the command line's contract.
-    pub fn to_json(&self) -> Value {
-        let camera = &self.camera;
-        let vanishing_points = AXES
-            .iter()
-            .zip(&self.vanishing_points)
-            .map(|(axis, pixel)| json!({ "axis": axis, "pixel": pixel }));
-        let objects = self.objects.iter().enumerate().map(|(index, object)| {
-            let mut facts = json!({
-                "index": index,
-                "kind": object.shape.kind(),
-                "name": object.name,
-                "line": object.line,
-            });
-            if !object.indices.is_empty() {
-                facts["indices"] = json!(object.indices);
-            }
-            for (key, value) in shape_facts(&object.shape) {
-                facts[key] = value;
-            }
-            if index < LISTED {
-                facts["seen"] = self.seen_facts(object.seen);
-            }
-            facts
-        });
-        json!({
-            "image": { "width": self.size[0], "height": self.size[1] },
-            "camera": {
-                "eye": camera.eye.to_array(),
-                "u": camera.u.to_array(),
-                "v": camera.v.to_array(),
-                "w": camera.w.to_array(),
-                "d": camera.d,
-                "view_height": camera.view_height,
-                "fov_deg": camera.fov_deg,
-                "hfov_deg": camera.hfov_deg,
-                "near": camera.near,
-                "far": camera.far,
-                "looks": camera.looks,
-            },
-            "sampler": {
-                "method": self.method.name(),
-                "per_pixel": self.per_pixel,
-                "total": self.total,
-                "seed": self.seed,
-            },
-            "vanishing_points": vanishing_points.collect::<Vec<_>>(),
-            "objects": objects.collect::<Vec<_>>(),
-            "seen_exactly": self.is_exact,
-        })
-    }
-}
-
-/// What is particular to a kind of object.
-fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
-    match shape {
-        Shape::Sphere(Sphere {
-            center,
-            radius,
-            color,
-        }) => vec![
-            ("center", json!(center.to_array())),
-            ("radius", json!(radius)),
-            ("color", json!(color.to_string())),
-        ],
-        Shape::Triangle(triangle) => vec![
-            ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
-            ("color", json!(triangle.color.to_string())),
-        ],
-        Shape::Box(cuboid) => vec![
-            ("min", json!(cuboid.min.to_array())),
-            ("max", json!(cuboid.max.to_array())),
-            match cuboid.faces {
-                None => ("color", json!(cuboid.color.to_string())),
-                Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
-            },
-        ],
-        Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
-            ("y", json!(y)),
-            ("square", json!(square)),
-            ("colors", json!(colors.map(|color| color.to_string()))),
-        ],
-    }
-}
 
 /// The same for people, who want no list of a million objects.
 impl fmt::Display for Inspection {
@@ -316,19 +240,24 @@ impl fmt::Display for Inspection {
 
 /// What is seen of the objects.
 impl Inspection {
-    fn seen_facts(&self, seen: Seen) -> Value {
-        match seen {
-            Seen::Part(around, pixels) => {
-                let corners = [around.x, around.y, around.width, around.height];
-                json!({ "box": corners, "pixels": numbers::rounded(pixels, LEAST) })
+    /// What is seen of all that are not listed: how many of them, and how many pixels.
+    fn rest(&self) -> Option<Rest> {
+        let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
+        let mut sum = Rest {
+            objects: rest.len() as u64,
+            ..Rest::default()
+        };
+        for object in rest {
+            match object.seen {
+                Seen::Part(_, pixels) => {
+                    sum.seen += 1;
+                    sum.pixels += pixels;
+                }
+                Seen::Outside(_) => sum.outside += 1,
+                Seen::HiddenBy(_) | Seen::Nothing => {}
             }
-            Seen::Outside(place) => json!({ "box": null, "pixels": 0.0, "outside": place.words() }),
-            Seen::HiddenBy(other) => {
-                let name = self.objects.get(other).and_then(|it| it.name.as_deref());
-                json!({ "box": null, "pixels": 0.0, "hidden_by": name, "hidden_by_index": other })
-            }
-            Seen::Nothing => json!({ "box": null, "pixels": 0.0 }),
         }
+        Some(sum)
     }
 
     fn write_seen(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -365,15 +294,15 @@ impl Inspection {
             let kind = object.shape.kind();
             writeln!(f, "  {index:<3} {kind:<12} {name:<10} {words}")?;
         }
-        let rest = self.objects.get(LISTED..).unwrap_or_default();
-        if !rest.is_empty() {
-            let pixels = rest.iter().filter_map(|object| match object.seen {
-                Seen::Part(_, pixels) => Some(pixels),
-                _ => None,
-            });
-            let (count, seen) = (rest.len() as u64, pixels.clone().count() as u64);
-            let (count, seen, share) = (grouped(count), grouped(seen), share(pixels.sum()));
-            writeln!(f, "  {count} more, of which {seen} are seen: {share}")?;
+        if let Some(rest) = self.rest() {
+            let others = rest.objects - rest.seen - rest.outside;
+            let [count, seen, outside, others] =
+                [rest.objects, rest.seen, rest.outside, others].map(grouped);
+            let share = share(rest.pixels);
+            writeln!(
+                f,
+                "  {count} more: {seen} seen, {share}; {outside} outside of the picture; {others} hidden or too small"
+            )?;
         }
         Ok(())
     }

@@ -70,12 +70,12 @@ pub fn seen(scene: &Scene) -> (Vec<Seen>, bool) {
     let sight = Sight::new(&scene.camera, &scene.image);
     let seen = |index: usize| match areas.get(&index) {
         Some(&(around, area)) if area >= LEAST => Seen::Part(around, area),
-        // Why an object is not seen is told of those that are listed.
-        _ if index >= LISTED => Seen::Nothing,
         _ => {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Seen::Outside(place),
+                // What hides an object is told of those that are listed.
+                None if index >= LISTED => Seen::Nothing,
                 None => hidden_by(scene, &asked, index).map_or(Seen::Nothing, Seen::HiddenBy),
             }
         }
@@ -83,7 +83,7 @@ pub fn seen(scene: &Scene) -> (Vec<Seen>, bool) {
     ((0..scene.objects.len()).map(seen).collect(), is_exact)
 }
 
-/// Number of objects that `inspect` lists for people, and of which it says why one is not seen.
+/// Number of objects that `inspect` lists for people, and of which it says what hides one.
 pub const LISTED: usize = 100;
 
 /// What is seen, by the indices of the objects.

@@ -115,22 +115,20 @@ fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
 }
 
 fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
-    let reading = match format {
+    let reading = scene::read(&input.sources);
+    match format {
         Format::Human => {
-            let reading = input.scene();
+            output::to_people(&input.report(&reading));
             if reading.diagnostics.is_empty() && output::is_watched() {
                 let name = visible_line(input.sources.file.name());
                 output::to_people(&format!("{name}: ok\n"));
             }
-            reading
         }
         Format::Json => {
-            let reading = scene::read(&input.sources);
             let lines = diagnostic::json_lines(&reading.diagnostics, &input.sources);
             output::to_programs(lines.as_bytes())?;
-            reading
         }
-    };
+    }
     Ok(match reading.scene {
         Some(_) => Status::Done,
         None => Status::SceneErrors,

@@ -11,7 +11,7 @@ use crate::{
     diagnostic::Style,
     explain::{self, GROUPS},
     scene::describe,
-    suggest,
+    schema, suggest,
 };
 
 /// Longer lines are hard to read, however wide the terminal is.
@@ -21,10 +21,13 @@ const WIDEST: usize = 90;
 pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     let style = output::page_style();
     let headings = style.map_or(Headings::Plain, Headings::of);
-    let text = match &args.word {
-        None => list(headings),
-        Some(word) => {
-            let page = page(word)?;
+    let text = match args.words.as_slice() {
+        [] => match style {
+            Some(style) => output::wrapped(&list(headings), style.width),
+            None => list(headings),
+        },
+        words => {
+            let page = page(&words.join(" "))?;
             match style {
                 Some(style) => drawn(&page, style.width.clamp(20, WIDEST), headings),
                 None => page.into_owned(),
@@ -81,6 +84,12 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let mut others = explain::OTHER_NAMES.iter();
     let other = others.find(|(name, _)| name.eq_ignore_ascii_case(trimmed));
     let meant = other.map_or(trimmed, |(_, meant)| *meant);
+    if let Some(page) = meant
+        .split_once(": ")
+        .and_then(|(heading, words)| explain::part(heading, words))
+    {
+        return Ok(page.into());
+    }
     if let Some(page) = explain::section(meant) {
         return Ok(format!("{page}\n").into());
     }
@@ -93,10 +102,24 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
     let words = words.chain(explain::headings()).chain(others);
     let near = suggest::nearest(explain::short(trimmed), words);
-    Err(Trouble(match near {
-        Some(near) => format!("there is no code `{word}`: did you mean `{near}`?"),
-        None => format!("there is no code `{word}`: `pinhole explain` lists them all"),
-    }))
+    let of_block = trimmed
+        .split_once('.')
+        .and_then(|(block, field)| Some((schema::block(block)?, field)));
+    let hint = match (near, of_block) {
+        (_, Some((row, field))) => {
+            let fields = suggest::list(row.field_names());
+            return Err(Trouble(format!(
+                "{} has no field `{field}`: it takes {fields}",
+                row.noun
+            )));
+        }
+        (Some(near), _) => format!("did you mean `{near}`?"),
+        (None, _) => {
+            "`pinhole explain` lists the codes, and `pinhole explain language` is the reference"
+                .to_owned()
+        }
+    };
+    Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
 /// All codes with their titles, by subject.
@@ -305,7 +328,36 @@ mod tests {
         }
         // A word of the language means itself, and not what others call so.
         for (name, meant) in explain::OTHER_NAMES {
-            assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}");
+            match meant.split_once(": ") {
+                None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
+                // The lines that answer, and no others.
+                Some((_, words)) => {
+                    let page = page(name).unwrap();
+                    let lines: Vec<&str> = page.lines().collect();
+                    let answer = lines[2].trim_start_matches("- ");
+                    assert!(answer.starts_with(words) && lines.len() < 9, "{page}");
+                    assert!(page.matches("\n- ").count() < 2, "{page}");
+                }
+            }
+        }
+        for (word, said) in [
+            (
+                "xyz",
+                "nothing is known about `xyz`: `pinhole explain` lists the codes",
+            ),
+            (
+                "sphre",
+                "nothing is known about `sphre`: did you mean `sphere`?",
+            ),
+            (
+                "sphere.roll",
+                "a sphere has no field `roll`: it takes center, radius and color",
+            ),
+        ] {
+            let Err(trouble) = page(word) else {
+                panic!("{word}")
+            };
+            assert!(trouble.0.starts_with(said), "{}", trouble.0);
         }
         assert!(page("box.radius").is_err());
     }

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    diagnostic::{Report, visible_line},
+    diagnostic::{Diagnostic, Report, visible_line},
     files::{self, NotWritten, Original, Purpose},
     film::{self, Recipe, SIGNATURE, read_recipe},
     scene::{self, Reading},
@@ -142,9 +142,12 @@ impl Input {
         }
     }
 
-    /// Reads the scene, and reports its problems to people.
+    /// Reads the scene, and reports its problems to people. That objects lie outside of the picture
+    /// is said by commands for the text: for others, such as each frame of a ride, it may be meant.
     pub fn scene(&self) -> Reading {
-        let reading = scene::read(&self.sources);
+        let mut reading = scene::read(&self.sources);
+        let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
+        reading.diagnostics.retain(|it| !is_of_text(it));
         output::to_people(&self.report(&reading));
         reading
     }

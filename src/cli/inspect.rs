@@ -17,7 +17,7 @@ pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
     let inspection = inspect::inspect(&scene, &input.sources.file);
     match args.format.format {
         Format::Human => output::answer(&inspection.to_string())?,
-        Format::Json => output::to_programs(format!("{}\n", inspection.to_json()).as_bytes())?,
+        Format::Json => output::stream_to_programs(|out| inspection.write_json(out))?,
     }
     Ok(Status::Done)
 }

@@ -1,8 +1,9 @@
 //! Standard output for programs, standard error for people.
 
 use std::{
+    borrow::Cow,
     env, fmt,
-    io::{self, ErrorKind, IsTerminal, StdoutLock, Write},
+    io::{self, BufWriter, ErrorKind, IsTerminal, StdoutLock, Write},
 };
 
 use terminal_size::{Width, terminal_size_of};
@@ -19,6 +20,22 @@ pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
     }
 }
 
+/// Writes what may be long as it is made, in the manner of [`to_programs`].
+pub fn stream_to_programs(
+    write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Trouble> {
+    if io::stdout().is_terminal() {
+        let mut text = Vec::new();
+        return write_to(&mut text)
+            .map_err(unwritten)
+            .and_then(|()| to_programs(&text));
+    }
+    let mut out = BufWriter::with_capacity(1 << 16, Programs::new());
+    write_to(&mut out)
+        .and_then(|()| out.flush())
+        .map_err(unwritten)
+}
+
 /// Writes a page of our own, drawn in the style of the terminal, to standard output.
 pub fn page(text: &str) -> Result<(), Trouble> {
     write(text.as_bytes())
@@ -27,7 +44,11 @@ pub fn page(text: &str) -> Result<(), Trouble> {
 fn write(bytes: &[u8]) -> Result<(), Trouble> {
     let mut out = Programs::new();
     let written = out.write_all(bytes).and_then(|()| out.flush());
-    written.map_err(|error| Trouble(format!("cannot write to standard output: {error}")))
+    written.map_err(unwritten)
+}
+
+fn unwritten(error: io::Error) -> Trouble {
+    Trouble(format!("cannot write to standard output: {error}"))
 }
 
 /// Standard output. A reader that has gone away, as `head` does, has had enough: that is no
@@ -65,12 +86,51 @@ pub fn to_people(text: &str) {
 /// Writes what a command was called for to standard error. A reader that has gone away has had
 /// enough, as one of standard output.
 pub fn answer(text: &str) -> Result<(), Trouble> {
+    let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
+    let text = match columns {
+        Some((Width(columns), _)) => wrapped(text, columns.into()).into(),
+        None => Cow::Borrowed(text),
+    };
     match io::stderr().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Trouble(format!("cannot write to standard error: {error}")))
         }
         _ => Ok(()),
     }
+}
+
+/// Breaks lines at words where they are longer than `width`, which terminals do within words. A
+/// line goes on below its last column, in the left half of the terminal.
+pub fn wrapped(text: &str, width: usize) -> String {
+    let mut broken = String::new();
+    for line in text.split_inclusive('\n') {
+        let (mut rest, mut indent) = (line, 0);
+        while rest.trim_end().chars().count() + indent > width {
+            let most = rest.char_indices().nth(width.saturating_sub(indent) + 1);
+            let most = most.map_or(rest.len(), |(at, _)| at);
+            let room = rest.get(..most).unwrap_or(rest);
+            let start = room.len() - room.trim_start().len();
+            let space = room.trim_end_matches('\n').rfind(' ');
+            let Some(at) = space.filter(|at| *at > start) else {
+                break;
+            };
+            let (first, behind) = rest.split_at(at);
+            broken += first.trim_end();
+            indent = last_column(line, width / 2);
+            broken += &format!("\n{:indent$}", "");
+            rest = behind.trim_start_matches(' ');
+        }
+        broken += rest;
+    }
+    broken
+}
+
+/// Where the last column starts that does so no farther right than `most`: behind two spaces.
+fn last_column(line: &str, most: usize) -> usize {
+    let letters: Vec<char> = line.chars().take(most + 1).collect();
+    let starts = letters.windows(3).enumerate();
+    let mut starts = starts.filter(|(_, at)| at[..2] == [' ', ' '] && at[2] != ' ');
+    starts.next_back().map_or(most.min(2), |(at, _)| at + 2)
 }
 
 /// Says what kept a command from its work.
@@ -171,4 +231,39 @@ fn is_unicode() -> bool {
             let locale = locale.to_ascii_uppercase();
             locale.contains("UTF-8") || locale.contains("UTF8")
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_at_words_and_hang() {
+        for (text, broken) in [
+            ("one two three\n", "one two three\n"),
+            (
+                "one two three four\nfive\n",
+                "one two three\n  four\nfive\n",
+            ),
+            ("a    big sphere", "a    big\n     sphere"),
+            (
+                "  0   sphere Ball behind",
+                "  0   sphere\n      Ball\n      behind",
+            ),
+            ("unbreakable_word_of_many\n", "unbreakable_word_of_many\n"),
+            (
+                "  unbreakable_word_of_many x",
+                "  unbreakable_word_of_many x",
+            ),
+            ("été été été été", "été été été\n  été"),
+            ("\n\na\n", "\n\na\n"),
+        ] {
+            assert_eq!(wrapped(text, 13), broken, "{text}");
+        }
+        for width in 1..20 {
+            let text = "  0   box  Crate   from (1, 2, 3)\n";
+            let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+            assert_eq!(words(&wrapped(text, width)), words(text), "{width}");
+        }
+    }
 }

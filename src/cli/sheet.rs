@@ -152,12 +152,12 @@ fn name(path: &Path, args: &SheetArgs) -> String {
     visible_line(&name).into_owned()
 }
 
-/// A scene whose picture is no wider than `width` and at most twice as high, with as many samples
-/// in a pixel as before.
-fn reduced(mut scene: Scene, width: u32) -> Scene {
+/// A scene whose picture is no wider and no higher than `side`, so that no picture leaves a hole
+/// beside it, with as many samples in a pixel as before.
+fn reduced(mut scene: Scene, side: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
-    let scale = f64::min(f64::from(width) / across, 2.0 * f64::from(width) / down);
+    let scale = f64::from(side) / across.max(down);
     if scale < 1.0 {
         let scaled = |length: f64| ((length * scale).round() as u32).max(1);
         scene.image.width = scaled(across);
@@ -228,17 +228,28 @@ fn sheet(
     Ok(sheet)
 }
 
-/// As much of a name as there is room for.
+/// As much of a name as there is room for. Of a step of a sweep the target goes first, which is
+/// the same for all, and then the beginning, as the end is what changes.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
-    match name.chars().count() <= most {
-        true => name.to_owned(),
-        false => name
-            .chars()
-            .take(most.saturating_sub(2))
-            .chain("..".chars())
+    if name.chars().count() <= most {
+        return name.to_owned();
+    }
+    let kept = most.saturating_sub(2);
+    let dots = "..".chars();
+    let Some((target, value)) = name.split_once('=') else {
+        return name.chars().take(kept).chain(dots).take(most).collect();
+    };
+    let short = match target.rsplit_once(' ') {
+        Some((scene, _)) => format!("{scene} {value}"),
+        None => value.to_owned(),
+    };
+    match short.chars().count() {
+        count if count > most => dots
             .take(most)
+            .chain(short.chars().skip(count - kept))
             .collect(),
+        _ => short,
     }
 }
 
@@ -258,6 +269,31 @@ fn write(sheet: &mut Film<[u8; 3]>, [x, y]: [u32; 2], text: &str) {
                 ..Area::whole(pixels.len() as u32, 1)
             };
             sheet.put(area, &pixels);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_tells_names_apart_is_not_cut() {
+        for (name, letters, cut) in [
+            ("rolled", 6, "rolled"),
+            ("three_points", 9, "three_p.."),
+            ("S.radius=1.333", 14, "S.radius=1.333"),
+            ("S.radius=1.333", 8, "1.333"),
+            ("S.radius=1.333", 4, "..33"),
+            ("rolled S.radius=2", 8, "rolled 2"),
+            ("rolled S.radius=2", 6, "..ed 2"),
+            ("S.radius=2", 1, "2"),
+            ("S.radius=22", 1, "."),
+            ("rolled", 1, "."),
+            ("rolled", 0, ""),
+        ] {
+            let width = get_raster_width(REGULAR, LETTERS) * letters;
+            assert_eq!(fitting(name, width as u32), cut, "{name}");
         }
     }
 }

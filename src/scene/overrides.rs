@@ -66,7 +66,17 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
             "" => "nothing is named before this `=`".to_owned(),
             written => format!("`{written}` cannot be set"),
         };
-        let help = "a target is `BLOCK.FIELD`, such as `camera.roll`, or the name of a `let`";
+        let help = match target.split_once('[') {
+            Some((block, rest)) => {
+                let field = rest.split_once('.').map_or("color", |(_, field)| field);
+                format!(
+                    "objects with indices are set as a whole: `{}`",
+                    shorten(&format!("{block}.{field}"))
+                )
+            }
+            None => "a target is `BLOCK.FIELD`, such as `camera.roll`, or the name of a `let`"
+                .to_owned(),
+        };
         let span = Span::new(id, 0, target.len().max(1));
         Box::new(
             error("bad_target", message)

@@ -21,10 +21,12 @@ pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name"
 pub const MISSING_EQUALS: Message = Message::new(["missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", ""]).safe();
 pub const LET_WITHOUT_VALUE: Message = Message::new(["missing_value", "`let {0}` has no value", "a value should follow", "write `let {0} = ` and a value"]);
 pub const MISSING_LET: Message = Message::new(["missing_let", "a value is given to `{0}` without `let`", "`let {0}` should stand here", "write `let {0} = {1}`"]).safe();
-pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stands within a block", "only fields stand here", "write it before the block"]);
+pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stands within a block", "only fields stand here", "{0}"]);
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
 pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "an object is repeated by `for INDEX < COUNT`", "not written so", "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first"]);
+pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
+pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);
 pub const UNOPENED_BLOCK: Message = Message::new(["unopened_block", "the block `{0}` lacks its braces", "the block's fields stand between `{` and `}`", "write its fields between braces, such as `sphere { center (0, 1, 0) }`"]).safe();
 pub const UNCLOSED_BLOCK: Message = Message::new(["unclosed_block", "the block of `{0}` is never closed", "opened here", ""]).safe();
 pub const NESTED_BRACES: Message = Message::new(["nested_braces", "{0}", "not in a block, or around one", "a block holds fields only; write each block by itself"]);

@@ -190,13 +190,12 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // `let a = 2 pi`, and `sphere {` in the next line: the kind is the rest of something
-            // else, and the name the kind.
+            // `let a = 2 pi`, and `sphere {` behind it: the kind is the rest of something else, and
+            // the name the kind.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
                 && !self.words.is_kind(kind.text)
-                && self.written(kind.span.to(name.span)).contains('\n')
             {
                 return (end, true);
             }

@@ -227,3 +227,18 @@ pub fn numeric_part(written: &str) -> &str {
     }
     written.get(..end).unwrap_or_default()
 }
+
+/// Whether a name stands in a text, outside of its comments.
+pub fn has_name(text: &str, name: &str) -> bool {
+    // Most texts do without a look at their tokens.
+    let mut lexer = Lexer::new(text, 0);
+    text.contains(name)
+        && loop {
+            let token = lexer.token();
+            match token.kind {
+                TokenKind::End => break false,
+                TokenKind::Name if text.get(token.start..token.end) == Some(name) => break true,
+                _ => {}
+            }
+        }
+}

@@ -6,13 +6,14 @@ use pinhole::{
     probe::{Probe, probe},
     report::numerics::oracle::{ALL_SIZES, Oracle, length},
     scene::{self, View},
+    seen::Seen,
     tracer::World,
 };
 
 use crate::{
     generated::{Numbers, generated},
     program::Folder,
-    scenes::{example_text as example, read, sources},
+    scenes::{example_text as example, json_of, read, sources},
     tracer::{Random, camera, cuboid, floor, sphere, triangle},
 };
 
@@ -26,7 +27,10 @@ fn probed(text: &str, x: f64, y: f64) -> Probe {
 
 #[test]
 fn the_default_triangle_has_the_sides_of_the_assignment() {
-    let json = inspected("camera { eye (0, 0, 9) lookat (0, 0, 0) } triangle { centroid (1, 2, 3) normal (0.3, -0.2, 1) }").to_json();
+    let json = inspected(
+        "camera { eye (0, 0, 9) lookat (0, 0, 0) } triangle { centroid (1, 2, 3) normal (0.3, -0.2, 1) }",
+    );
+    let json = json_of(&json);
     let vertices = json["objects"][0]["vertices"].clone();
     let vertices: [[f64; 3]; 3] = serde_json::from_value(vertices).unwrap();
     let [left, right, apex] = vertices.map(DVec3::from);
@@ -168,7 +172,7 @@ fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
         let probe = probed(&text, 0.5, 0.5);
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
-        let json = inspected(&text).to_json().to_string();
+        let json = json_of(&inspected(&text)).to_string();
         // In the widest view the box has less of the pixel than numbers can tell.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
@@ -287,7 +291,37 @@ fn of_very_many_objects_the_first_ones_are_listed() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    assert!(said.contains("  1_000 more, of which"), "{said}");
+    // All but the first eight are beside the window, which is 17.8 m wide where they are.
+    let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
+    assert!(said.contains(rest), "{said}");
     let json = folder.done("inspect a.scn --format json").json();
-    assert_eq!(json["objects"].as_array().unwrap().len(), 1100);
+    let objects = json["objects"].as_array().unwrap();
+    assert_eq!(objects.len(), 1100);
+    assert_eq!(
+        objects.iter().filter(|it| it.get("seen").is_some()).count(),
+        100
+    );
+    assert_eq!(json["rest"]["outside"], 1000);
+    // In sum it is as much as it is one by one.
+    let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
+    let ball =
+        |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");
+    for first in ["-i", "i - 30", "12 + i"] {
+        let text = format!("{picture}{}", ball(first));
+        let inspection = inspected(&text);
+        let rest = json_of(&inspection)["rest"].clone();
+        let seen = inspection.objects[100..].iter().map(|it| it.seen);
+        let count = |is_it: fn(&Seen) -> bool| seen.clone().filter(is_it).count() as u64;
+        assert_eq!(rest["objects"], 50, "{first}");
+        assert_eq!(
+            rest["seen"],
+            count(|it| matches!(it, Seen::Part(..))),
+            "{first}"
+        );
+        assert_eq!(
+            rest["outside"],
+            count(|it| matches!(it, Seen::Outside(_))),
+            "{first}"
+        );
+    }
 }

@@ -9,6 +9,7 @@ use std::{
 use pinhole::{
     area::Area,
     film::{Film, Pixel},
+    inspect::Inspection,
     render::{Control, Exact, Rendered, render_as_asked, render_exact},
     sampling::Sampling,
     scene::{self, Count, Method, Sampler, Scene},
@@ -124,4 +125,11 @@ pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     parts
         .map(|part| part.split_once("```").expect("a fence ends").0)
         .collect()
+}
+
+/// What `inspect` says, as a program reads it.
+pub fn json_of(inspection: &Inspection) -> serde_json::Value {
+    let mut text = Vec::new();
+    inspection.write_json(&mut text).unwrap();
+    serde_json::from_slice(&text).unwrap()
 }

@@ -253,7 +253,7 @@ pub struct SheetArgs {
     /// Pictures beside each other [default: about as many as there are rows]
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1000))]
     pub columns: Option<u32>,
-    /// The greatest width of a picture in pixels; it is at most twice as high
+    /// The greatest width and height of a picture in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = 320, value_parser = value_parser!(u32).range(1..=4096))]
     pub width: u32,
     #[command(flatten)]
@@ -322,9 +322,9 @@ pub struct FmtArgs {
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
     /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of the
-    /// language, or `language` [default: list all codes]
+    /// language or of the reference, or `language` [default: list all codes]
     #[arg(value_name = "WORD")]
-    pub word: Option<String>,
+    pub words: Vec<String>,
 }
 
 /// For whom the answer is.

@@ -249,6 +249,9 @@ impl<'s> Evaluator<'_, 's> {
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
                     // Farther off than by rounding.
+                    [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
+                        "no angle has that".to_owned()
+                    }
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 => {
                         format!("no angle has that; see whether `{written}` is the right way round")
                     }

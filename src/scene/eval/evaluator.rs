@@ -143,10 +143,40 @@ impl<'s> Evaluator<'_, 's> {
                 }
             }
         };
+        let help = match self.number_without_unit(tree) {
+            Some((name, number)) => format!(
+                "{help}; or write the unit where `{name}` is defined, as in `let {name} = {number}deg`"
+            ),
+            None => help,
+        };
         error("bare_angle", message)
             .at(tree.span, self.described(tree, Type::Number))
             .help(help)
             .fixes(fixes)
+    }
+
+    /// The only factor of a product that a `let` of the file defines by a plain number, and that.
+    fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
+        let ValueKind::Chain { first, rest } = &value.kind else {
+            return None;
+        };
+        let factors = [&**first]
+            .into_iter()
+            .chain(rest.iter().map(|step| &step.operand));
+        let mut numbers = factors.filter_map(|factor| {
+            let ValueKind::Name(name) = factor.kind else {
+                return None;
+            };
+            let place = self.names.definition(name)?;
+            let behind = self.sources.file.text().get(place.end..)?.lines().next()?;
+            let written = behind.trim_start().strip_prefix('=')?;
+            let written = written.split("//").next()?.trim();
+            written.parse::<f64>().is_ok().then_some((name, written))
+        });
+        let is_product = rest.iter().all(|step| step.operator.is_of_product());
+        numbers
+            .next()
+            .filter(|_| is_product && numbers.next().is_none())
     }
 
     /// Writes a number as an angle, in both units. What holds `pi` or is at most pi is more likely

@@ -120,6 +120,7 @@ impl<'s> Evaluator<'_, 's> {
                         format!("write `{}`: a decimal point is a point", shorten(meant))
                     }
                     Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
+                    None if count > 4 => format!("{}; the language has no other lists: a block stands for each value, or `for` in its head computes them", list.such_as()),
                     None => list.such_as().to_owned(),
                 })
                 .writing(span, applicability, meant),

@@ -14,6 +14,9 @@ use crate::{
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
+/// Shapes of other programs that triangles make.
+const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid polygon quad mesh prism";
+
 impl<'s> Lowering<'s> {
     /// Makes sense of the next items of the file.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
@@ -177,6 +180,9 @@ impl<'s> Lowering<'s> {
         let kinds = suggest::list(schema::block_names());
         let help = match near {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
+            None if OTHER_SHAPES.split(' ').any(|shape| shape == kind.text) => {
+                format!("the kinds are {kinds}; other shapes are made of triangles")
+            }
             None => format!("the kinds are {kinds}"),
         };
         let message = format!("there is no kind of block `{}`", kind.text);

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 use super::lowering::Lowering;
 use crate::{
-    diagnostic::{Fix, Label},
+    diagnostic::{Edit, Fix, Label},
     numbers,
     scene::error::{error, twice, warning},
     schema::{self, Type, Value, predefined},
     source::Span,
     syntax::{
         NESTING_LIMIT,
-        tokens::{Lexer, TokenKind},
+        tokens::has_name,
         tree::{Block, Index, Name, Repetition},
     },
 };
@@ -255,7 +255,25 @@ impl<'s> Lowering<'s> {
             .collect();
         // What is wrong with the first one is often wrong with all.
         let is_first = values.iter().all(|&value| value == 0);
+        // A value that was made at one combination is none for a formula that differs by index.
+        let keeps = |edit: &Edit| {
+            let mut indices = repetition.indices.iter();
+            let written = self.sources.text(edit.span);
+            indices.all(|index| {
+                let name = index.name.text;
+                !has_name(written, name) || has_name(&edit.text, name)
+            })
+        };
         for problem in self.problems.get_mut(told..).unwrap_or_default() {
+            let count = problem.fixes.len();
+            let help = problem.help.clone().unwrap_or_default();
+            let mut edits = problem.fixes.iter().flat_map(|fix| &fix.edits);
+            let is_told = edits.any(|edit| !keeps(edit) && help.contains(&*edit.text));
+            problem.fixes.retain(|fix| fix.edits.iter().all(keeps));
+            if problem.fixes.len() < count && is_told {
+                let help = "its value differs by index: write a formula that does for all of them";
+                problem.help = Some(help.to_owned());
+            }
             let place = problem.labels.first().map(|label| label.span);
             let depends =
                 |it: &Span| place.is_some_and(|at| it.source == at.source && it.to(at) == *it);
@@ -275,19 +293,4 @@ impl<'s> Lowering<'s> {
         self.problems
             .push(problem.at(span, "not here").help(help).fixes([fix]));
     }
-}
-
-/// Whether a name stands in a text, outside of its comments.
-fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do without a look at their tokens.
-    let mut lexer = Lexer::new(text, 0);
-    text.contains(name)
-        && loop {
-            let token = lexer.token();
-            match token.kind {
-                TokenKind::End => break false,
-                TokenKind::Name if text.get(token.start..token.end) == Some(name) => break true,
-                _ => {}
-            }
-        }
 }

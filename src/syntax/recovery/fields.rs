@@ -5,10 +5,10 @@ use crate::{
     diagnostic::{Edit, Fix, Label},
     source::Span,
     syntax::{
-        messages as say,
+        messages::{self as say, statement},
         problem::{replace, shorten},
-        tokens::{TokenKind, line_end, numeric_part},
-        tree::{Block, Field, Name, Value, ValueKind, bad},
+        tokens::{TokenKind, has_name, line_end, numeric_part},
+        tree::{Block, Field, Item, Name, Repetition, Value, ValueKind, bad},
     },
 };
 
@@ -46,7 +46,8 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::STRAY_CLOSING, close, &[sign], fix);
                     break Some(close);
                 }
-                "let" => self.misplaced_let(),
+                "let" => self.misplaced_let(block),
+                "for" if self.is_name(1) && self.is(2, "<") => self.misplaced_indices(block),
                 "," | ";" => self.separator(),
                 "{" => {
                     (braces, had_braces) = (braces + 1, true);
@@ -59,6 +60,12 @@ impl<'s> Recovery<'_, 's> {
                     had_braces = true;
                     self.nested_block();
                 }
+                name if self.is_statement_in_block(name) => {
+                    let (at, said) = (self.bump(), statement(name).unwrap_or_default());
+                    self.report(&say::NOT_IN_LANGUAGE, at, &said, None);
+                    self.resync();
+                    block.bad.push(at.to(self.behind()));
+                }
                 _ if self.is_name(0) => self.field(block),
                 _ => self.no_field(block),
             }
@@ -66,6 +73,12 @@ impl<'s> Recovery<'_, 's> {
         block.span = block.span.to(block.close.unwrap_or(block.span));
         self.report_slips(told);
         self.within = outside;
+    }
+
+    /// Whether a condition or a loop of another language starts here, which no field is like.
+    fn is_statement_in_block(&self, name: &str) -> bool {
+        let is_one = matches!(name, "if" | "else" | "for" | "while" | "repeat");
+        is_one && !self.is_field_name(name)
     }
 
     /// Whether something starts here that shows that the block's `}` was forgotten: an item at the
@@ -132,15 +145,40 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Definitions within a block are read as if they stood before it.
-    fn misplaced_let(&mut self) {
-        let keyword = self.here();
-        self.report(&say::MISPLACED_LET, keyword, &[], None);
+    /// Definitions within a block are read as if they stood before it, where there are no indices.
+    fn misplaced_let(&mut self, block: &Block<'s>) {
+        let (keyword, before) = (self.here(), self.items.len());
         self.within.is_block = false;
         while self.is(0, "let") {
             self.definition();
         }
         self.within.is_block = true;
+        let (text, mut help) = (self.text, "write it before the block");
+        let has_index = |value: Span| {
+            let text = text.get(value.range()).unwrap_or_default();
+            let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
+            indices.any(|index| has_name(text, index.name.text))
+        };
+        for item in self.items.get_mut(before..).unwrap_or_default() {
+            if let Item::Definition(definition) = item
+                && has_index(definition.value.span)
+            {
+                definition.value = bad(definition.value.span);
+                help = "write its value where it is used: an index is known within its block alone";
+            }
+        }
+        self.report(&say::MISPLACED_LET, keyword, &[help], None);
+    }
+
+    /// Indices within a block are read as if they stood in its head.
+    fn misplaced_indices(&mut self, block: &mut Block<'s>) {
+        let (keyword, mut indices) = (self.bump(), Vec::new());
+        while self.is_name(0) && self.is(1, "<") {
+            indices.push(self.index());
+        }
+        let repetition = Repetition { keyword, indices };
+        self.report(&say::MISPLACED_INDICES, repetition.span(), &[], None);
+        block.repetition.get_or_insert(Box::new(repetition));
     }
 
     fn field(&mut self, block: &mut Block<'s>) {

@@ -209,7 +209,8 @@ impl<'s> Recovery<'_, 's> {
     /// A line that starts with a name, as a rule: a block, whatever stands in its head, or
     /// something else.
     fn block_or_line(&mut self) {
-        if self.is_head(0) {
+        let has_other_kind = self.is_name(0) && self.is_kind(1) && !self.is_kind(0);
+        if self.is_head(0) && !has_other_kind {
             return self.block();
         }
         let count = self.find_in_line(|word| matches!(word, "{" | "}" | ";"));
@@ -228,14 +229,13 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
             return self.named_block(first.span, first);
         }
-        if self.words.is_kind(self.word(0)) && !self.words.is_kind(first.text) && count <= 3 {
-            let kind = self.name();
-            let before = Span::new(self.id, first.span.start, kind.span.start);
+        if !self.words.is_kind(first.text) && self.starts_block() {
+            let kind = self.word(0);
+            let before = Span::new(self.id, first.span.start, self.here().start);
             let title = format!("take `{}` away", shorten(first.text));
             let fix = Fix::new(title, [Edit::new(before, "")]);
-            self.report(&say::BAD_HEAD.safe_if(false), first.span, &[kind.text], fix);
-            let name = (!self.is(0, "{")).then(|| self.name());
-            return self.open_block(Block::new(kind.span, Some(kind), name));
+            self.report(&say::BAD_HEAD.safe_if(false), first.span, &[kind], fix);
+            return self.block();
         }
         let rest = self.here();
         self.skip_head();
@@ -252,22 +252,31 @@ impl<'s> Recovery<'_, 's> {
             let title = format!("write `{kind} {{`");
             matches!(written, "=" | ":").then(|| self.remove(title, rest))
         };
-        let said = say::BAD_HEAD.safe_if(words.len() == 1);
-        self.report(&said, rest, &[&kind], fix);
+        if schema::block(first.text).is_some_and(|row| row.is_object)
+            && written.contains(['[', '<'])
+        {
+            self.report(&say::BAD_REPETITION, rest, &[], None);
+        } else {
+            let said = say::BAD_HEAD.safe_if(words.len() == 1);
+            self.report(&said, rest, &[&kind], fix);
+        }
         let mut block = Block::new(first.span, Some(first), None);
         block.bad = vec![first.span.to(rest)];
         self.open_block(block);
     }
 
-    /// `let Ball = sphere {` and `Ball = sphere {`, from the kind on.
+    /// `let Ball = sphere {`, `Ball = sphere {` and `sphere = Ball {`, from behind the `=` on.
     fn named_block(&mut self, start: Span, name: Name<'s>) {
-        let kind = self.name();
+        let (mut name, mut kind) = (name, self.name());
         let whole = start.to(kind.span);
+        if self.words.is_kind(name.text) && !self.words.is_kind(kind.text) {
+            std::mem::swap(&mut name, &mut kind);
+        }
         let right = format!("{} {}", kind.text, name.text);
         let title = format!("write `{} {{`", shorten(&right));
         let fix = Fix::new(title, [Edit::new(whole, right)]);
         self.report(&say::BAD_HEAD, whole, &[kind.text], fix);
-        self.open_block(Block::new(kind.span, Some(kind), Some(name)));
+        self.open_block(Block::new(whole, Some(kind), Some(name)));
     }
 
     /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere

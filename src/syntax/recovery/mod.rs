@@ -308,7 +308,12 @@ impl<'w, 's> Recovery<'w, 's> {
 
     /// Whether a block of a known kind starts here.
     fn starts_block(&mut self) -> bool {
-        self.is_head(0) && self.words.is_kind(self.word(0))
+        self.is_head(0) && self.is_kind(0)
+    }
+
+    /// Whether a token ahead is a kind of block.
+    fn is_kind(&mut self, ahead: usize) -> bool {
+        self.words.is_kind(self.word(ahead))
     }
 
     /// Whether a name is that of a field of the block.
@@ -367,6 +372,11 @@ impl<'w, 's> Recovery<'w, 's> {
             "" => "the end of the file".to_owned(),
             written => shorten(written),
         };
+        let before = self.line_before(span.start).trim_end();
+        let is_behind_part =
+            self.lists > 0 && before.ends_with(|c: char| c.is_alphanumeric() || c == ')');
+        let of_books = values::of_books(&written, expected != "a value" || is_behind_part);
+        let help = of_books.unwrap_or(help);
         self.report(&say::UNEXPECTED, span, &[expected, &written, help], None);
     }
 

@@ -14,9 +14,37 @@ use crate::{
 };
 
 /// The operators of a product, and what people write for them.
-const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "÷", "^", "**", "%"];
+const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
 /// Those of a sum.
-const SUM: &[&str] = &["+", "-", "−", "–"];
+const SUM: &[&str] = &["+", "-", "−", "–", "—"];
+
+/// Characters of books and other languages that are no part of this one: what to write for one in the place of a
+/// value, and for one behind a value.
+const OF_BOOKS: &[(&str, [&str; 2])] = &[
+    ("π", ["write `pi`", "write `* pi`"]),
+    (
+        "√",
+        [
+            "write `sqrt(2)` for the square root of 2",
+            "write `* sqrt(2)` for times the square root of 2",
+        ],
+    ),
+    ("²³⁴ⁿ", ["write a product, such as `r * r`"; 2]),
+    ("½", ["write `0.5`", "write `+ 0.5`"]),
+    ("¼", ["write `0.25`", "write `+ 0.25`"]),
+    ("¾", ["write `0.75`", "write `+ 0.75`"]),
+    (
+        "?",
+        ["there are no conditions: `pinhole explain condition` says what to write instead"; 2],
+    ),
+];
+
+/// What to write for a word with a character of books.
+pub(super) fn of_books(word: &str, is_behind: bool) -> Option<&'static str> {
+    let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
+    let (_, [value, behind]) = OF_BOOKS.iter().find(is_in)?;
+    Some(if is_behind { behind } else { value })
+}
 
 impl<'s> Recovery<'_, 's> {
     /// The value of a field, of a definition, or of a `--set`, with whatever stands in place of it.
@@ -167,11 +195,12 @@ impl<'s> Recovery<'_, 's> {
         right: Value<'s>,
     ) -> Value<'s> {
         let Some(operator) = Operator::of(written) else {
-            let meant = ["−-", "–-", "×*", "·*", "∗*", "÷/"].into_iter();
+            let meant = ["−-", "–-", "—-", "×*", "·*", "∗*", "⋅*", "÷/", "∕/", "⁄/"].into_iter();
             let meant = meant.filter_map(|row| row.strip_prefix(written)).next();
             let fix = meant.map(|meant| replace(sign, meant));
             let fix = fix.or_else(|| self.power(written, &left, &right));
-            self.unknown_operator(written, sign, fix);
+            let is_between = right.kind != ValueKind::Bad;
+            self.unknown_operator(written, sign, is_between, fix);
             return bad(left.span.to(right.span));
         };
         chain(left, operator, sign, right)
@@ -186,8 +215,11 @@ impl<'s> Recovery<'_, 's> {
         (is_square && is_one).then(|| replace(base.span.to(exponent.span), product))
     }
 
-    fn unknown_operator(&mut self, written: &str, span: Span, fix: Option<Fix>) {
+    fn unknown_operator(&mut self, written: &str, span: Span, is_between: bool, fix: Option<Fix>) {
         let help = match written {
+            "%" if is_between => {
+                "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows"
+            }
             "%" => "write the number itself, such as `0.5`",
             _ => "write a product, such as `a * a`, or `sqrt(a)`",
         };
@@ -198,7 +230,7 @@ impl<'s> Recovery<'_, 's> {
     /// An operator behind which nothing stands.
     fn without_operand(&mut self, left: Value<'s>, written: &str, sign: Span) -> Value<'s> {
         if written == "%" {
-            self.unknown_operator(written, sign, None);
+            self.unknown_operator(written, sign, false, None);
         } else {
             // Without a factor the value would be of another type, and before another sign a value
             // may be missing.
@@ -260,7 +292,7 @@ impl<'s> Recovery<'_, 's> {
             return operand;
         }
         if written != "-" {
-            self.unknown_operator(written, sign, Some(replace(sign, "-")));
+            self.unknown_operator(written, sign, false, Some(replace(sign, "-")));
         }
         match operand.kind {
             ValueKind::Bad => bad(sign.to(operand.span)),
@@ -288,14 +320,7 @@ impl<'s> Recovery<'_, 's> {
             }
             _ => {
                 let start = self.behind();
-                let help = match word {
-                    "π" => "write `pi`",
-                    "√" => "write `sqrt(2)` for the square root of 2",
-                    "½" => "write `0.5`",
-                    "²" | "³" => "write a product, such as `r * r`",
-                    _ => example(self.within.takes),
-                };
-                self.unexpected("a value", help);
+                self.unexpected("a value", example(self.within.takes));
                 if self.lists == 0 {
                     self.resync();
                 } else if !self.ends_value() {
@@ -311,7 +336,10 @@ impl<'s> Recovery<'_, 's> {
         match self.kind(ahead) {
             TokenKind::Number | TokenKind::Color | TokenKind::Quoted | TokenKind::Word => true,
             TokenKind::Name => !self.is(ahead, "let"),
-            TokenKind::Sign => matches!(self.word(ahead), "(" | "[" | "<" | "-" | "+" | "−" | "–"),
+            TokenKind::Sign => matches!(
+                self.word(ahead),
+                "(" | "[" | "<" | "-" | "+" | "−" | "–" | "—"
+            ),
             _ => false,
         }
     }
@@ -338,6 +366,26 @@ impl<'s> Recovery<'_, 's> {
         }
         if self.is(0, "(") {
             return self.call(name);
+        }
+        // `sizes[i]` and `Ball[3]`
+        let (is_let, is_known) = (self.words.is_let(name.text), self.words.is_value(name.text));
+        if self.is(0, "[") && self.is_adjacent(0) && (is_let || !is_known) {
+            let told = self.problems.len();
+            self.group("]");
+            self.problems.truncate(told);
+            let span = name.span.to(self.behind());
+            let words = match is_let {
+                true => [
+                    "lists to take a value from",
+                    "write a block for each value, or compute the value from the index",
+                ],
+                false => [
+                    "values of objects",
+                    "define the place with `let`, or write the formula that gives it, and use that in both",
+                ],
+            };
+            self.report(&say::NOT_IN_LANGUAGE, span, &words, None);
+            return bad(span);
         }
         let number = usize::from(self.is(0, "-"));
         let is_argument = self.kind(number) == TokenKind::Number && !self.is_on_new_line(0);

@@ -43,14 +43,21 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
     // A warning is told once, however often the scene is read.
     folder.write(
         "w.scn",
-        "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere S { center (0, 0, 0) }",
+        "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere for i < 1 { center (0, 0, 0) }",
     );
     let said = folder.run("sheet w.scn --sweep camera.eye=(0,0,5)..(0,0,6)/3 -o x.png");
     let told = said
         .errors
-        .matches("warning[pinhole::outside_picture]")
+        .matches("warning[pinhole::unused_index]")
         .count();
     assert_eq!((said.status, told), (0, 1), "{}", said.errors);
+    // That is for `check` to say: of a ride past objects it would be said of every scene.
+    for (command, told) in [("check", 1), ("render", 0), ("inspect", 0), ("probe", 0)] {
+        let rest = if command == "probe" { " 1 1" } else { "" };
+        let said = folder.run(&format!("{command} w.scn{rest}"));
+        let found = said.errors.matches("pinhole::outside_picture").count();
+        assert_eq!(found.min(1), told, "{command}: {}", said.errors);
+    }
     // Rows of two scenes have their names: the pictures of equal ones are equal, and no more.
     folder.write("other.scn", folder.read("b.scn"));
     folder.done("sheet b.scn other.scn --columns 2 --sweep S.radius=1..2/2 -o rows.png");
@@ -61,7 +68,7 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
     folder.done("sheet b.scn --set image.width=1 --set image.height=1 -o dot.png");
     assert_eq!(open("dot.png").dimensions(), (25, 47));
     // Smaller ones, as a scene of that size has them; and what a sweep is made of.
-    folder.done("sheet b.scn --width 15 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
+    folder.done("sheet b.scn --width 20 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
     let swept = open("swept.png");
     for (i, x, y) in [
         ("(0,0,0)", 12, 12),

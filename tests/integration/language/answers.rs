@@ -11,7 +11,7 @@ use pinhole::{
 use super::{CAMERA, overrides};
 use crate::{
     format::{formatted, laws::the_laws_hold},
-    scenes::sources,
+    scenes::{json_of, sources},
     snapshot::assert_answers,
 };
 
@@ -86,7 +86,7 @@ fn answer(question: &str, text: &str, other: &str) -> String {
         }
         "inspected" => {
             let scene = scene::read(&sources).scene.expect(text);
-            inspect(&scene, &sources.file).to_json().to_string()
+            json_of(&inspect(&scene, &sources.file)).to_string()
         }
         "x" | "color" => match scene::read(&sources).scene.map(|s| s.objects[0].shape) {
             Some(Shape::Sphere(sphere)) if question == "x" => format!("{:?}", sphere.center.x),

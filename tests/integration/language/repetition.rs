@@ -3,7 +3,10 @@
 use pinhole::{format, inspect, scene};
 
 use super::{CAMERA, overrides::meaning};
-use crate::{scenes::sources, table::rows};
+use crate::{
+    scenes::{json_of, sources},
+    table::rows,
+};
 
 /// In the first cell a repeated object, in the second its names, in the third what it stands for.
 const REPEATED: &str = "
@@ -57,7 +60,7 @@ fn a_repeated_object_is_as_if_each_were_written() {
             })
             .collect();
         assert_eq!(own.join(" "), names, "{repeated}");
-        let json = inspect::inspect(&scene, &found.file).to_json();
+        let json = json_of(&inspect::inspect(&scene, &found.file));
         for (object, facts) in scene
             .objects
             .iter()
@@ -137,6 +140,45 @@ fn a_mistake_of_many_objects_is_reported_once() {
             .collect();
         assert_eq!(found.join("; "), expected, "{text}");
     }
+}
+
+/// A fix keeps an index that its place depends on, whatever is wrong with the value.
+#[test]
+fn no_fix_puts_the_value_at_one_index_for_all() {
+    let fields = "
+        sphere -> center | radius | color
+        triangle -> centroid | normal | sides | spin | v0 | color
+        box -> center | size | min | max | color | colors
+        checkerboard -> y | square | colors
+    ";
+    let values = "(i - 2) * 1e-6 | i - 1 | i * 100 | 30 * i | i * 30deg | (i, i) | (i, 1, i) | (i - 1, i, -i) \
+        | rgb(i * 300, 0, 0) | rgb(i / 9, 0.5, 1) | acos(i) | sqrt(i - 1) | 1 / i | normalize((0, 0, i)) | tan(i * 90deg) \
+        | sin(i) | (red, i) | (rgb(i * 300, 0, 0), red, red) | i, 2 | i 2 | max(i)";
+    let has_index = |text: &str| {
+        text.split(|c: char| !c.is_alphanumeric())
+            .any(|it| it == "i")
+    };
+    let mut fixes = 0;
+    for [kind, fields] in rows(fields) {
+        for (field, value) in fields
+            .split(" | ")
+            .flat_map(|field| values.split(" | ").map(move |it| (field, it)))
+        {
+            let text = format!("{CAMERA}{kind} for i < 5 {{ {field} {value} }}");
+            let sources = sources(&text);
+            let found = scene::read(&sources).diagnostics;
+            for edit in found
+                .iter()
+                .flat_map(|it| &it.fixes)
+                .flat_map(|fix| &fix.edits)
+            {
+                fixes += 1;
+                let keeps = !has_index(sources.text(edit.span)) || has_index(&edit.text);
+                assert!(keeps, "{text}: {}", edit.text);
+            }
+        }
+    }
+    assert!(fixes > 50, "{fixes}");
 }
 
 /// A head that is not written so leaves the next block alone; a board that is repeated is one

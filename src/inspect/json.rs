@@ -1,0 +1,148 @@
+//! What `inspect` says, as JSON: the object of the command line's contract.
+
+use std::io::{self, Write};
+
+use serde_json::{Value, json};
+
+use super::{AXES, Inspection, ObjectFacts};
+use crate::{
+    numbers,
+    scene::{Checkerboard, Shape, Sphere},
+    seen::{LEAST, LISTED, Seen},
+    tracer::vertices,
+};
+
+impl Inspection {
+    /// Writes the JSON object and a line feed, object by object: as values, a million of them would
+    /// take more than a gigabyte.
+    ///
+    /// # Errors
+    ///
+    /// `out` cannot be written to.
+    pub fn write_json(&self, mut out: &mut dyn Write) -> io::Result<()> {
+        for (key, value) in self.facts() {
+            let sign = if key == "image" { '{' } else { ',' };
+            write!(out, "{sign}\"{key}\":{value}")?;
+        }
+        write!(out, ",\"objects\":[")?;
+        for (index, object) in self.objects.iter().enumerate() {
+            if index > 0 {
+                write!(out, ",")?;
+            }
+            serde_json::to_writer(&mut out, &self.object(index, object))?;
+        }
+        write!(out, "],\"seen_exactly\":{}", self.is_exact)?;
+        if let Some(rest) = self.rest() {
+            let facts = json!({
+                "objects": rest.objects,
+                "seen": rest.seen,
+                "pixels": numbers::rounded(rest.pixels, LEAST),
+                "outside": rest.outside,
+            });
+            write!(out, ",\"rest\":{facts}")?;
+        }
+        writeln!(out, "}}")
+    }
+
+    /// All that is not of the objects.
+    fn facts(&self) -> [(&'static str, Value); 4] {
+        let camera = &self.camera;
+        let vanishing_points = AXES
+            .iter()
+            .zip(&self.vanishing_points)
+            .map(|(axis, pixel)| json!({ "axis": axis, "pixel": pixel }));
+        let image = json!({ "width": self.size[0], "height": self.size[1] });
+        let camera = json!({
+            "eye": camera.eye.to_array(),
+            "u": camera.u.to_array(),
+            "v": camera.v.to_array(),
+            "w": camera.w.to_array(),
+            "d": camera.d,
+            "view_height": camera.view_height,
+            "fov_deg": camera.fov_deg,
+            "hfov_deg": camera.hfov_deg,
+            "near": camera.near,
+            "far": camera.far,
+            "looks": camera.looks,
+        });
+        let sampler = json!({
+            "method": self.method.name(),
+            "per_pixel": self.per_pixel,
+            "total": self.total,
+            "seed": self.seed,
+        });
+        let vanishing_points = vanishing_points.collect();
+        [
+            ("image", image),
+            ("camera", camera),
+            ("sampler", sampler),
+            ("vanishing_points", vanishing_points),
+        ]
+    }
+
+    fn object(&self, index: usize, object: &ObjectFacts) -> Value {
+        let mut facts = json!({
+            "index": index,
+            "kind": object.shape.kind(),
+            "name": object.name,
+            "line": object.line,
+        });
+        if !object.indices.is_empty() {
+            facts["indices"] = json!(object.indices);
+        }
+        for (key, value) in shape_facts(&object.shape) {
+            facts[key] = value;
+        }
+        if index < LISTED {
+            facts["seen"] = self.seen_facts(object.seen);
+        }
+        facts
+    }
+
+    fn seen_facts(&self, seen: Seen) -> Value {
+        match seen {
+            Seen::Part(around, pixels) => {
+                let corners = [around.x, around.y, around.width, around.height];
+                json!({ "box": corners, "pixels": numbers::rounded(pixels, LEAST) })
+            }
+            Seen::Outside(place) => json!({ "box": null, "pixels": 0.0, "outside": place.words() }),
+            Seen::HiddenBy(other) => {
+                let name = self.objects.get(other).and_then(|it| it.name.as_deref());
+                json!({ "box": null, "pixels": 0.0, "hidden_by": name, "hidden_by_index": other })
+            }
+            Seen::Nothing => json!({ "box": null, "pixels": 0.0 }),
+        }
+    }
+}
+
+/// What is particular to a kind of object.
+fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
+    match shape {
+        Shape::Sphere(Sphere {
+            center,
+            radius,
+            color,
+        }) => vec![
+            ("center", json!(center.to_array())),
+            ("radius", json!(radius)),
+            ("color", json!(color.to_string())),
+        ],
+        Shape::Triangle(triangle) => vec![
+            ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
+            ("color", json!(triangle.color.to_string())),
+        ],
+        Shape::Box(cuboid) => vec![
+            ("min", json!(cuboid.min.to_array())),
+            ("max", json!(cuboid.max.to_array())),
+            match cuboid.faces {
+                None => ("color", json!(cuboid.color.to_string())),
+                Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
+            },
+        ],
+        Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
+            ("y", json!(y)),
+            ("square", json!(square)),
+            ("colors", json!(colors.map(|color| color.to_string()))),
+        ],
+    }
+}
