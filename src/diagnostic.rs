@@ -19,7 +19,7 @@ pub use visible::{escaped, visible, visible_line};
 
 use serde_json::{Value, json};
 
-use crate::source::{Source, SourceId, Sources, Span};
+use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
 
 /// Whether a problem keeps the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -78,12 +78,13 @@ impl Diagnostic {
 }
 
 /// Puts diagnostics in the order of the text by the place to jump to, the file's before the arguments'.
-pub fn sort(diagnostics: &mut [Diagnostic]) {
-    diagnostics.sort_by_key(|diagnostic| {
+pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
+    sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();
-        first.map_or((SourceId::File, 0), |label| {
+        let (source, start) = first.map_or((SourceId::File, 0), |label| {
             (label.span.source, label.span.start)
-        })
+        });
+        Span::new(source, start, start)
     });
 }
 

@@ -52,6 +52,23 @@ impl Span {
     }
 }
 
+/// Puts a list in the order of the text, by the spans of what is in it.
+///
+/// One sort of numbers serves lists of all types: a sort for each would be a thirtieth of the
+/// engine that a browser loads.
+pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
+    let order = order(&list.iter().map(span).collect::<Vec<_>>());
+    let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();
+    list.extend(order.into_iter().filter_map(|at| taken[at].take()));
+}
+
+/// The indices of spans, in the order of the text; of equal ones, in that of the list.
+fn order(spans: &[Span]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..spans.len()).collect();
+    order.sort_by_key(|&at| spans[at]);
+    order
+}
+
 /// The texts that a scene is made from.
 #[derive(Clone, Debug)]
 pub struct Sources {

@@ -1,6 +1,6 @@
 //! Ways out of a problem that a program can take: edits of the text.
 
-use crate::source::{SourceId, Sources, Span};
+use crate::source::{SourceId, Sources, Span, sort_by_span};
 
 /// What a fix does to what the author wrote, and so who may apply it. The later ones include what
 /// the earlier ones may do.
@@ -62,7 +62,7 @@ impl Fix {
 
     /// Apart from what is generic, so that sorting is compiled once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
-        edits.sort_by_key(|edit| edit.span);
+        sort_by_span(&mut edits, |edit| edit.span);
         // Removals take the space beside them along; two neighbours take it once.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;

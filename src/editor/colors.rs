@@ -8,7 +8,7 @@ use crate::{
     color::Color,
     numbers,
     schema::{self, Type, Value, css},
-    source::Span,
+    source::{Span, sort_by_span},
     syntax::tree::{self, Call, ValueKind},
 };
 
@@ -38,7 +38,7 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
             collect(analysis, &field.value, &mut swatches);
         }
     }
-    swatches.sort_by_key(|swatch| swatch.span.start);
+    sort_by_span(&mut swatches, |swatch| swatch.span);
     swatches
 }
 

@@ -1,7 +1,7 @@
 //! What can be folded away: blocks, and runs of comments.
 
 use super::analysis::Analysis;
-use crate::source::Span;
+use crate::source::{Span, sort_by_span};
 
 /// Lines that can be folded to the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
         kind: FoldKind::Comment,
     });
     let mut folds: Vec<Fold> = blocks.chain(comments).collect();
-    folds.sort_by_key(|fold| fold.span.start);
+    sort_by_span(&mut folds, |fold| fold.span);
     folds
 }
 

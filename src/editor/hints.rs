@@ -9,6 +9,7 @@ use crate::{
     numbers::{grouped, short},
     scene::Count,
     schema::{self, Method, Type, Value, css},
+    source::{SourceId, Span, sort_by_span},
     syntax::tree::{self, Block, Field, ValueKind},
 };
 
@@ -63,7 +64,9 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
             });
         }
     }
-    remarks.sort_by_key(|remark| remark.end);
+    sort_by_span(&mut remarks, |remark| {
+        Span::new(SourceId::File, remark.end, remark.end)
+    });
     let mut hints: Vec<Hint> = Vec::new();
     for remark in remarks {
         let rest = analysis.text().get(remark.end..).unwrap_or_default();

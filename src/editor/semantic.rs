@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     schema::{self, css},
-    source::Span,
+    source::{Span, sort_by_span},
 };
 
 /// A word, number, sign or comment, and what it is.
@@ -68,7 +68,7 @@ pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
         is_declaration: false,
     });
     let mut tokens: Vec<SemanticToken> = words.chain(comments).collect();
-    tokens.sort_by_key(|token| token.span.start);
+    sort_by_span(&mut tokens, |token| token.span);
     tokens
 }
 

@@ -3,7 +3,7 @@
 use super::analysis::Analysis;
 use crate::{
     schema,
-    source::Span,
+    source::{Span, sort_by_span},
     syntax::{
         shorten,
         tree::{Block, Definition, Item},
@@ -50,7 +50,7 @@ pub fn symbols(analysis: &Analysis<'_>) -> Vec<Symbol> {
             Item::Bad(_) => None,
         })
         .collect();
-    symbols.sort_by_key(|symbol| symbol.span.start);
+    sort_by_span(&mut symbols, |symbol| symbol.span);
     symbols
 }
 

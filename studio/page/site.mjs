@@ -33,7 +33,8 @@ rmSync(site, { recursive: true, force: true });
 run("node", "build.mjs", "static", site);
 // At this level what it makes is the smallest once it is packed; higher ones write less code that packs worse.
 const optimizer = path.join(page, "node_modules/binaryen/bin/wasm-opt");
-run("node", optimizer, "-O1", "--converge", path.join(engine, "pinhole_bg.wasm"), "-o", path.join(site, "pinhole_bg.wasm"));
+const passes = ["-O1", "--dae-optimizing", "--rse", "--precompute-propagate", "--code-folding", "--converge"];
+run("node", optimizer, ...passes, path.join(engine, "pinhole_bg.wasm"), "-o", path.join(site, "pinhole_bg.wasm"));
 
 let packed = 0;
 for (const file of readdirSync(site).sort()) {

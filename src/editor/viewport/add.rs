@@ -17,7 +17,7 @@ use crate::{
     projection::Projection,
     scene::{Part, Parts, SMALLEST, Scene, Shape},
     schema,
-    source::{Source, SourceId, Sources},
+    source::{Source, SourceId, Sources, sort_by_span},
     tracer::vertices,
 };
 
@@ -115,7 +115,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     let name = block.name.map(|_| free_name(analysis, object.shape.kind()));
     let written = block.name.zip(name.clone());
     edits.extend(written.map(|(old, new)| Edit::new(old.span, new)));
-    edits.sort_by_key(|edit| edit.span);
+    sort_by_span(&mut edits, |edit| edit.span);
     let text = analysis.text();
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
     let rest = &text[block.span.end..];

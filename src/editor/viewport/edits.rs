@@ -11,7 +11,7 @@ use crate::{
     math::Angle,
     scene::{Part, operate},
     schema::{self, Value},
-    source::{SourceId, Span},
+    source::{SourceId, Span, sort_by_span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
@@ -113,7 +113,7 @@ pub fn edits<'s>(
         let sources = analysis.model.sources();
         edits.extend(Edit::add_fields(block.span, sources, &added));
     }
-    edits.sort_by_key(|edit| edit.span);
+    sort_by_span(&mut edits, |edit| edit.span);
     edits.dedup();
     let apart = |pair: &[Edit]| {
         let [a, b] = [0, 1].map(|index| pair[index].span);

@@ -9,7 +9,7 @@ use crate::{
     diagnostic::{Applicability, Diagnostic, Edit, Fix},
     scene::error::{error, twice},
     schema::{self, predefined},
-    source::{SourceId, Span},
+    source::{SourceId, Span, sort_by_span},
     suggest,
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
@@ -234,7 +234,7 @@ impl<'s> Lowering<'s> {
             let given =
                 fields.filter_map(|name| Some((block.row.field(name)?, block.given(name)?)));
             let mut given: Vec<_> = given.collect();
-            given.sort_by_key(|(_, given)| given.name.start);
+            sort_by_span(&mut given, |(_, given)| given.name);
             let [(first, earlier), ..] = given[..] else {
                 continue;
             };

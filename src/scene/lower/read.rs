@@ -12,7 +12,7 @@ use crate::{
         overrides,
         semantic_model::{Parts, SemanticModel},
     },
-    source::{SourceId, Sources, Span},
+    source::{SourceId, Sources, Span, sort_by_span},
     syntax::{self, tree::Item},
 };
 
@@ -140,7 +140,7 @@ impl<'s> Lowering<'s> {
         let mut of_names = Vec::from(self.names.problems.take());
         // The uses of a name are not always found in the order of the text.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
-            fix.edits.sort_by_key(|edit| edit.span);
+            sort_by_span(&mut fix.edits, |edit| edit.span);
         }
         let found = Vec::from(std::mem::take(&mut self.problems)).into_iter();
         diagnostics.extend(found.chain(of_names).take_while(|_| self.is_wanted()));
