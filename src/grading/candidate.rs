@@ -19,6 +19,10 @@ pub enum Mistake {
     Numbers(Parameter, Vec<f64>),
     /// Something too many: pixels of a colour, in linear light, between the least and the greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
+    /// Two objects of one colour each have each other's.
+    ColorsExchanged(usize, usize),
+    /// Pixels are seen as through pixels so many times as wide.
+    Filter(f64),
 }
 
 /// A row of the table of mistakes (`mistakes`).
@@ -48,14 +52,30 @@ pub enum Shows {
 }
 
 impl Mistake {
+    /// Whether it is another one, but for its numbers.
+    fn is_alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Row(row, object), Self::Row(other, of)) => {
+                std::ptr::eq(*row, *other) && object == of
+            }
+            (Self::Numbers(one, _), Self::Numbers(other, _)) => one == other,
+            (Self::ColorsExchanged(one, two), Self::ColorsExchanged(first, second)) => {
+                [one, two] == [first, second]
+            }
+            (Self::Patch(..), Self::Patch(..)) | (Self::Filter(_), Self::Filter(_)) => true,
+            _ => false,
+        }
+    }
+
     /// How many numbers tell it.
     pub fn fitted(&self) -> usize {
         match self {
-            Self::Row(..) => 1,
+            Self::Row(..) | Self::ColorsExchanged(..) => 1,
             // Which numbers they are, and they themselves.
             Self::Numbers(_, numbers) => 1 + numbers.len(),
             // A row, a colour and a rectangle.
             Self::Patch(..) => 8,
+            Self::Filter(_) => 2,
         }
     }
 }
@@ -123,6 +143,20 @@ impl Candidate {
             Mistake::Numbers(parameter, numbers) => {
                 candidate.scene = parameter.put(&candidate.scene, numbers)?
             }
+            Mistake::Filter(width) => candidate.behaviour.pixel = *width,
+            Mistake::ColorsExchanged(one, other) => {
+                let shapes =
+                    [*one, *other].map(|at| Part::Shape(candidate.scene.objects[at].shape));
+                let [first, second] = shapes.map(|shape| shape.value("color"));
+                (first != second).then_some(())?;
+                let objects = Arc::make_mut(&mut candidate.scene.objects);
+                for (at, shape, color) in [(*one, shapes[0], second?), (*other, shapes[1], first?)]
+                {
+                    if let Part::Shape(shape) = shape.with("color", color)? {
+                        objects[at].shape = shape;
+                    }
+                }
+            }
             Mistake::Patch(light, area) => candidate.looks.push(Look::Patch {
                 light: *light,
                 area: *area,
@@ -179,21 +213,27 @@ impl Candidate {
         mistakes.try_fold(Self::right(scene), |candidate, one| candidate.with(one))
     }
 
+    /// Whether it does nothing to light but exchange channels.
+    pub fn keeps_light(&self) -> bool {
+        let mut looks = self.looks.iter();
+        self.curve == Curve::Right && looks.all(|look| matches!(look, Look::Channels(_)))
+    }
+
+    /// Whether it has the same mistakes as another one, but for their numbers.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let mut own = self.mistakes.iter();
+        let has = |one: &Mistake| other.mistakes.iter().any(|it| it.is_alike(one));
+        self.mistakes.len() == other.mistakes.len() && own.all(has)
+    }
+
     /// Whether it traces what another one does, but for how they behave, and for what they do then.
     pub fn traces_as(&self, other: &Self) -> bool {
         let (one, two) = (&self.scene, &other.scene);
         one.camera == two.camera
             && one.image == two.image
             && self.averaged == other.averaged
-            && self.layout.more() == other.layout.more()
             && self.is_drawn == other.is_drawn
             && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
-    }
-
-    /// How far its samples lie from where they should, to the right and down, in pixels.
-    pub fn shift(&self) -> [f64; 2] {
-        let (halves, parts) = (self.layout.half_pixels, self.behaviour.offset);
-        [0, 1].map(|i| 0.5 * f64::from(halves[i]) + parts[i])
     }
 
     /// How many numbers were fitted.

@@ -18,17 +18,45 @@ const CHANCE: f64 = 50.0;
 /// make it.
 const NONE: f64 = 0.06;
 
+/// What one sample in the middle of each pixel adds to it.
+const NONE_OF_FEW: f64 = 0.06;
+
 /// How far few samples lie off the middles of all pixels alike, for each share of a sample's
 /// variance that an error has, and at most: the mean of the n points (i/n, φ₂(i)) lies 1/(2n) off,
 /// and so many points make less noise than as many random ones.
 const OFF_MIDDLE: f64 = 0.75;
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
-/// The same of a single object, without and with one sample in a pixel: those of a regular grid
-/// move an edge that is parallel to it by up to half of their distance.
-const NONE_OF_OBJECT: [f64; 2] = [0.12, 0.5];
+/// The same of a single object, without and with one sample in a pixel, and with one in a JPEG,
+/// which has most of its noise from its coding: samples of a regular grid move an edge that is
+/// parallel to it by up to half of their distance.
+const NONE_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
+
+/// What a JPEG shows of all edges that were moved, though it hides most of it: by how many pixels,
+/// more than three samples lie off the middle, and which square.
+const MOVED: f64 = 0.2;
+const SURELY_MOVED: f64 = 150.0;
 
 const COUNT: usize = 6;
+
+/// So many standard deviations from a pixel's own width are no chance.
+const SURE: f64 = 8.0;
+
+/// Squares of widths that are taken for a pixel's own: not more than the first, and not less than 1
+/// by the third, and by so many times the share of a sample's variance that an error has, as few
+/// samples at the same places in all pixels make a picture sharper, or less sharp.
+const WIDE: f64 = 1.4;
+const WIDER: f64 = 3.0;
+const NARROW: f64 = 0.25;
+const NARROWER: f64 = 5.0;
+
+/// The same of a JPEG, whose coding makes edges less sharp: of 80 right ones of qualities from 75
+/// to 100 the greatest is 4.7, and pixels three times as wide have 7.
+const WIDE_IN_CODED: f64 = 5.5;
+
+/// Widths that are told.
+const LEAST_WIDTH: f64 = 0.1;
+const MOST_WIDTH: f64 = 6.0;
 
 /// A displacement that is no chance.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +65,8 @@ pub struct Displacement {
     pub far: f64,
     /// By how much the middle is, to the right and down.
     pub by: [f64; 2],
+    /// The square that is not chance.
+    square: f64,
 }
 
 /// The sums of a group of pixels.
@@ -68,7 +98,7 @@ impl Sums {
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Along the slope of edges.
         let far = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
-        (square > CHANCE).then_some(Displacement { far, by })
+        (square > CHANCE).then_some(Displacement { far, by, square })
     }
 }
 
@@ -98,6 +128,66 @@ impl Prediction<'_> {
             .is_some_and(|most| *most < EXACT);
         let others = shares.iter().rev().take_while(|share| **share > OTHER);
         !is_exact || others.count() < CHANCE
+    }
+
+    /// The share of a sample's variance that the squared differences are, of pixels of several
+    /// colours.
+    fn share(&self) -> f64 {
+        let (mut squares, mut variances) = (0.0, 0.0);
+        for at in (0..self.seen.len()).filter(|&at| !self.is_flat(at)) {
+            squares += self.difference(at).iter().map(|d| d * d).sum::<f64>();
+            variances += self.moments.variance[at].iter().sum::<f64>();
+        }
+        f64::min(squares / f64::max(variances, 1e-12), 1.0)
+    }
+
+    /// How many times as wide as a pixel the square seems that each is the mean of, if that is
+    /// another width than 1 where an error has this share of a sample's variance.
+    ///
+    /// To second order, a mean over a square of the width w differs from one over a pixel by
+    /// (w² − 1)/24 times the sum of the second derivatives.
+    fn pixel_width(&self, share: f64, is_coded: bool) -> Option<f64> {
+        let (width, height) = (self.width, self.seen.len() / self.width);
+        let mean = &self.moments.mean;
+        let deviations = self.deviations();
+        let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
+        for y in 1..height.max(2) - 1 {
+            for at in y * width + 1..(y + 1) * width - 1 {
+                let around = [at - 1, at + 1, at - width, at + width];
+                if around
+                    .iter()
+                    .chain([&at])
+                    .any(|&at| self.seen[at][0].is_nan())
+                {
+                    continue;
+                }
+                let bend = [0, 1, 2].map(|i| {
+                    let beside: f64 = around.iter().map(|&near| mean[near][i]).sum();
+                    beside - 4.0 * mean[at][i]
+                });
+                if bend == [0.0; 3] {
+                    continue;
+                }
+                let (difference, error) = (self.difference(at), self.error(at, share));
+                for i in 0..3 {
+                    let deviation = deviations[3 * at + i];
+                    let weighted = bend[i] / (deviation * deviation);
+                    seen += weighted * difference[i];
+                    all += weighted * bend[i];
+                    variance += weighted * weighted * error[i];
+                }
+            }
+        }
+        let square = 1.0 + 24.0 * seen / all.max(1e-300);
+        let is_sure = seen.abs() > SURE * variance.sqrt();
+        let is_other = match is_coded {
+            true => square > WIDE_IN_CODED,
+            false => {
+                let is_narrow = square < 1.0 - NARROW - NARROWER * share;
+                is_narrow || square > WIDE + WIDER * share
+            }
+        };
+        (is_sure && is_other).then(|| square.max(0.0).sqrt().clamp(LEAST_WIDTH, MOST_WIDTH))
     }
 
     /// How far each of some groups of pixels lies from where it should, if that is no chance where
@@ -162,29 +252,70 @@ impl Prediction<'_> {
 
 impl Judge<'_> {
     /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
-    /// edges show lies where it should.
+    /// edges show lies where it should, and is as sharp.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         self.explains_all(candidate)
-            && displaced(self, candidate).is_none()
+            && Edges::of(self, candidate).are_right()
             && self.is_even(candidate)
     }
 }
 
-/// How far the picture, or an object, lies from where a candidate shows it; none if that may be
-/// chance, or due to where few samples lie.
-pub fn displaced(judge: &Judge, candidate: &Candidate) -> Option<Displacement> {
+/// What is wrong with a picture's edges.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Edges {
+    /// Where they are.
+    pub off: Option<Displacement>,
+    /// How wide the pixels are that they are seen through.
+    pub width: Option<f64>,
+}
+
+impl Edges {
+    /// What a candidate leaves wrong.
+    pub fn of(judge: &Judge, candidate: &Candidate) -> Self {
+        edges(judge, candidate).unwrap_or_default()
+    }
+
+    /// Whether nothing is.
+    pub fn are_right(&self) -> bool {
+        self.off.is_none() && self.width.is_none()
+    }
+}
+
+/// How far the picture, or an object, lies from where a candidate shows it, if that is no chance
+/// and not due to where few samples lie; and how much less sharp it is.
+fn edges(judge: &Judge, candidate: &Candidate) -> Option<Edges> {
     let level = &judge.fine;
     let judged = judge.judged(candidate, level)?;
     let labels = labels(judge, candidate, candidate.layout, &level.grid);
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let prediction = level.predict(&judged.rendering);
-    let share = judged.score.samples.map_or(judged.score.share, |n| 1.0 / n);
-    let beyond = |groups: &[usize], none: f64| {
+    let share = match level.jpeg {
+        // What it does to an edge would be taken for all that few samples do.
+        Some(_) => prediction.share(),
+        None => judged.score.samples.map_or(judged.score.share, |n| 1.0 / n),
+    };
+    let beyond = |groups: &[usize], is_beyond: &dyn Fn(&Displacement) -> bool| {
         let all = prediction.displacements(share, groups).into_iter();
-        let all = all.flatten().filter(|one| one.far > none);
+        let all = all.flatten().filter(is_beyond);
         all.max_by(|one, other| one.far.total_cmp(&other.far))
     };
-    let [none, more] = NONE_OF_OBJECT;
-    beyond(&vec![0; groups.len()], NONE).or_else(|| beyond(&groups, none + more * share.sqrt()))
+    let is_moved = |one: &Displacement| {
+        let by = f64::max(one.by[0].abs(), one.by[1].abs());
+        level.jpeg.is_some() && by > MOVED && one.square > SURELY_MOVED
+    };
+    let of_all = NONE + NONE_OF_FEW * share;
+    let off = beyond(&vec![0; groups.len()], &|one| {
+        one.far > of_all || is_moved(one)
+    });
+    let [none, of_one, of_coded] = NONE_OF_OBJECT;
+    let more = level.jpeg.map_or(of_one, |_| of_coded);
+    let of_object = none + more * share.sqrt();
+    Some(Edges {
+        off: off.or_else(|| beyond(&groups, &|one| one.far > of_object)),
+        // A width is told once; and what is done to light is no mean of light.
+        width: (candidate.behaviour.pixel == 1.0 && candidate.keeps_light())
+            .then(|| prediction.pixel_width(share, level.jpeg.is_some()))
+            .flatten(),
+    })
 }

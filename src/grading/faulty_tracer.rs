@@ -11,7 +11,7 @@ use crate::{
     area::Area,
     color::Color,
     projection::Projection,
-    scene::{Checkerboard, Cuboid, Scene, Shape},
+    scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
     textbook::{by_vertices, corners, crossings, radians, vertices},
 };
 
@@ -57,6 +57,8 @@ pub enum Squares {
     StripesX,
     /// Those where floor(z) is even.
     StripesZ,
+    /// Those where floor(x) and floor(z) are both even.
+    BothEven,
     /// Those where sin(x) sin(z) is not less than 0.
     Sines,
 }
@@ -71,9 +73,13 @@ pub enum Rays {
     UpAsTop,
     /// The top of a rolled camera is made from the right that is rolled already.
     NewRight,
+    /// The right alone is rolled, the top is not.
+    RightAlone,
     /// They are parallel, and leave from a window whose pixels have the size that they have at this
     /// distance.
     Parallel(f64),
+    /// Their angle with the view direction grows as the distance from the picture's middle does.
+    Fisheye,
 }
 
 /// What is wrong with how a shape is hit.
@@ -114,10 +120,14 @@ pub struct Behaviour {
     /// How far apart samples lie, and how far from where they should, in pixels.
     pub spread: [f64; 2],
     pub offset: [f64; 2],
+    /// How many times as wide as a pixel the square is that its samples lie in.
+    pub pixel: f64,
     /// How rays are made.
     pub rays: Rays,
     /// Whether near and far are distances from the eye, not depths.
     pub clips_distances: bool,
+    /// The distance of the view plane, if spheres are hit by the formula for rays of length 1.
+    pub unit_rays: Option<f64>,
     /// An object that is hit wrongly.
     pub hit: Option<(usize, Hit)>,
 }
@@ -130,8 +140,10 @@ impl Default for Behaviour {
             aspect: 1.0,
             spread: [1.0; 2],
             offset: [0.0; 2],
+            pixel: 1.0,
             rays: Rays::default(),
             clips_distances: false,
+            unit_rays: None,
             hit: None,
         }
     }
@@ -147,6 +159,8 @@ impl Behaviour {
     pub fn is_in_place(self) -> bool {
         let is_shifted = self.offset != [0.0; 2] || self.spread != [1.0; 2];
         !is_shifted
+            && self.pixel == 1.0
+            && self.unit_rays.is_none()
             && !self.sees_behind()
             && self.aspect == 1.0
             && self.rays == Rays::Right
@@ -177,6 +191,7 @@ impl Squares {
             Self::Sum => floor(x + z) & 1 == 0,
             Self::StripesX => floor(x) & 1 == 0,
             Self::StripesZ => floor(z) & 1 == 0,
+            Self::BothEven => (floor(x) | floor(z)) & 1 == 0,
             Self::Sines => libm::sin(x) * libm::sin(z) >= 0.0,
         }
     }
@@ -210,13 +225,16 @@ impl FaultyTracer {
         let mut projection = Projection::quick(&scene.camera, &scene.image);
         let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
         let right_projection = projection;
-        let is_in_place = matches!(behaviour.rays, Rays::Right) && behaviour.aspect == 1.0;
+        let is_in_place = matches!(behaviour.rays, Rays::Right)
+            && behaviour.aspect == 1.0
+            && behaviour.unit_rays.is_none();
         let angle = radians(scene.camera.roll);
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let unrolled = cos * projection.right + sin * projection.top;
         let top = cos * projection.top - sin * projection.right;
         match behaviour.rays {
-            Rays::Right | Rays::Parallel(_) => {}
+            Rays::Right | Rays::Parallel(_) | Rays::Fisheye => {}
+            Rays::RightAlone => projection.top = top,
             Rays::UpAsTop => {
                 let up = scene.camera.up.normalize_or(top);
                 projection.right = cos * unrolled - sin * up;
@@ -257,7 +275,17 @@ impl FaultyTracer {
 
     /// What the pixels of a part of the picture show, with so many samples in each.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        let places = lattice(samples);
+        // Around the pixel's middle: in a narrow square, or spread by the logistic distribution of
+        // the variance of a wide one, which is near what filters, blurs and enlarged pictures do.
+        let width = self.behaviour.pixel;
+        let logit = |at: f64| libm::log(at / (1.0 - at));
+        let spread = |at: f64| width * logit(at) / std::f64::consts::TAU;
+        let of_pixel = |place: DVec2| match width > 1.0 {
+            true => 0.5 + DVec2::new(spread(place.x), spread(place.y)),
+            false => 0.5 + (place - 0.5) * width,
+        };
+        let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
+        let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
         // Whether the cells of the row above show one colour, and of this row those to the left.
         let mut is_flat = vec![false; part.width as usize];
@@ -270,7 +298,7 @@ impl FaultyTracer {
             // Squares of the size of half a cell may show the same in all of these places, which
             // are asked only beside a cell of one colour. To ask them first is more work than a few
             // samples are.
-            let mut probes = CORNERS.iter().chain(places.iter().step_by(EACH));
+            let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
                 is_flat[column] = true;
@@ -312,9 +340,17 @@ impl FaultyTracer {
             let ahead = self.projection.ahead;
             (eye, ray) = (eye + distance * (ray - ahead), ahead);
         }
-        let length = match self.behaviour.clips_distances {
-            true => ray.length(),
-            false => 1.0,
+        if self.behaviour.rays == Rays::Fisheye {
+            let across = ray - self.projection.ahead;
+            let angle = across.length();
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            ray = cos * self.projection.ahead + sin * across.normalize_or_zero();
+        }
+        let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
+            (true, _) => ray.length(),
+            // How far ahead such rays lead.
+            (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(self.projection.ahead),
+            (false, _) => 1.0,
         };
         let mut best: Option<(&Traced, f64, f64)> = None;
         for (at, object) in self.objects.iter().enumerate() {
@@ -323,6 +359,9 @@ impl FaultyTracer {
                 continue;
             }
             let crossings = match (object.hit, &object.shape) {
+                (_, Shape::Sphere(sphere)) if let Some(distance) = self.behaviour.unit_rays => {
+                    with_unit_rays(sphere, distance, eye, ray)
+                }
                 (Some(hit), Shape::Triangle(triangle)) => {
                     on_plane(&vertices(&triangle.outline), hit, eye, ray)
                 }
@@ -381,6 +420,17 @@ impl FaultyTracer {
             [one, other] => one.or(other),
         }
     }
+}
+
+/// Where a ray meets a sphere by −b ± √(b² − c), as if it had the length 1; it is so long that it
+/// leads to the view plane at a distance.
+fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
+    let from = eye - sphere.center;
+    let b = from.dot(distance * ray);
+    let c = from.length_squared() - sphere.radius * sphere.radius;
+    let discriminant = b * b - c;
+    (discriminant >= 0.0)
+        .then(|| [-1.0, 1.0].map(|sign| distance * (sign * discriminant.sqrt() - b)))
 }
 
 /// Where a ray meets a triangle's plane, if that lies within the edges that are asked.

@@ -1,22 +1,23 @@
-//! Forward selection: the mistake that explains most, then the table once more on what is left, at most four times.
+//! Forward selection: the mistake that explains most, then the table once more on what is left, at
+//! most four times; and where that leads nowhere, the next best in its place.
 //!
-//! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are; a middle one fits numbers and judges all of them. What shows
-//! only where colours meet is judged on the pixels.
+//! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are;
+//! a middle one fits numbers and judges all of them. What shows only where colours meet is judged
+//! on the pixels.
 
 use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
-    candidate::{Candidate, Mistake, Shows},
-    displacement::displaced,
+    candidate::{Candidate, Mistake, Row, Shows},
+    displacement::Edges,
     joint,
     judge::{CELL_STEP, Judge, Judged},
     levenberg_marquardt::absolute,
-    light::{Curve, Look},
     mistakes::{OBJECT_ROWS, ROWS},
     numeric_mistakes::numeric_mistakes,
     objects::labels,
     patch::patch,
-    plain_numbers::plain,
+    plain_numbers::{plain, shortened},
 };
 use crate::cancel::{self, Cancelled};
 
@@ -24,7 +25,7 @@ use crate::cancel::{self, Cancelled};
 const MOST_MISTAKES: usize = 4;
 
 /// So many are fitted and judged at a time, of those that leave least on the coarse grid.
-const FINALISTS: usize = 3;
+const FINALISTS: usize = 4;
 
 /// So many programs that behave otherwise are looked at on the coarse grid.
 const BEHAVING: usize = 12;
@@ -39,12 +40,32 @@ const ROUNDS: usize = 4;
 const SUSPECTS: usize = 12;
 
 /// A row about edges is told if the part that is seen of what it changes is that of one, to within
-/// this, and so many standard deviations from none.
+/// this, and so many standard deviations from none; in a JPEG, if it leaves less than such a part of
+/// the squared difference.
 const PART: f64 = 0.3;
 const SURE: f64 = 7.0;
+const LEFT_IN_CODED: f64 = 0.25;
+
+/// Rows that move what is seen by pixels or parts of them.
+const PIXELS: [&str; 2] = ["half_pixel", "window_one_less"];
+
+/// The row about edges that is seen in a JPEG, too.
+const IN_CODED: &str = "averaged_encoded";
+
+/// By how much the width of pixels is varied that is told from edges.
+const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
+/// A wider pixel is at least so wide.
+const LEAST_WIDE: f64 = 1.1;
+const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
+
+/// What is a little wrong at most: in a twentieth of all pixels.
+const LITTLE: usize = 20;
 
 /// Half a pixel is looked for where the picture lies no farther than this from it, in pixels.
-const NEAR: f64 = 0.4;
+const NEAR: f64 = 0.5;
+
+/// So many ways to move what is seen are looked at, the nearest of them.
+const SHIFTS: usize = 4;
 
 /// Of rows that show in areas, a tiny grid has to show so many standard deviations and such a part
 /// for them to be looked at where a picture is explained without.
@@ -54,45 +75,50 @@ const HINTED_PART: f64 = 0.3;
 /// The mistakes that explain a picture, from what a program without mistakes would have made.
 pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
     let right = Candidate::right(judge.scene);
-    let Some(mut best) = judge.judged(&right, &judge.middle) else {
+    let Some(best) = judge.judged(&right, &judge.middle) else {
         return Ok(None);
     };
-    let mut edges = explained_with(judge, &right);
-    while edges.is_none()
-        && best.candidate().mistakes.len() < MOST_MISTAKES
-        && judge.work.may_go_on()
-        && let Some(next) = step(judge, &best)
-    {
-        edges = explained_with(judge, next.candidate());
-        best = next;
+    // What is not looked at yet, and how many times not the best was chosen on the way to it.
+    let mut open = vec![(0, best)];
+    let mut nearest: Option<Judged> = None;
+    let mut seen: Vec<Candidate> = Vec::new();
+    let mut explained = None;
+    // Of those with the fewest such choices the last one made, which goes on from the one before.
+    while let Some(at) = (0..open.len()).min_by_key(|&at| open[at].0) {
+        let (others, mut from) = open.remove(at);
+        explained = explained_with(judge, from.candidate());
         // Numbers that are not the right ones leave a little, which others would seem to explain.
-        if edges.is_none() && !best.candidate().numbers().is_empty() {
-            let plain = plain(judge, best.candidate());
-            edges = explained_with(judge, &plain);
-            if let Some(plain) = judge.judged(&plain, &judge.middle) {
-                best = plain;
-            }
+        if explained.is_none() && !from.candidate().numbers().is_empty() {
+            let plain = plain(judge, from.candidate());
+            explained = explained_with(judge, &plain);
+            from = judge.judged(&plain, &judge.middle).unwrap_or(from);
         }
+        if explained.is_some() || !judge.work.may_go_on() {
+            nearest = nearer(nearest, from);
+            break;
+        }
+        if from.candidate().mistakes.len() < MOST_MISTAKES {
+            let next = step(judge, &from).into_iter();
+            let next = next.filter(|next| !seen.iter().any(|one| one.is_alike(next.candidate())));
+            let next: Vec<Judged> = next.collect();
+            seen.extend(next.iter().map(|next| next.candidate().clone()));
+            let next = (others..).zip(next).collect::<Vec<_>>();
+            open.splice(0..0, next);
+        }
+        nearest = nearer(nearest, from);
     }
-    let last = match edges {
+    let Some(best) = nearest else {
+        return Ok(None);
+    };
+    let last = match explained {
         None => best.candidate().clone(),
-        Some(row) => {
-            let with_row = |candidate: &Candidate| match &row {
-                Some(row) => candidate.with(row.clone()),
-                None => Some(candidate.clone()),
-            };
-            let explains = |candidate: &Candidate| {
-                with_row(candidate).is_some_and(|candidate| judge.explains(&candidate))
-            };
-            let fewest = judge
-                .work
-                .without_limit(|| fewest(judge, best.candidate(), &explains));
+        Some(explained) => {
+            let fewest = judge.work.without_limit(|| fewest(judge, &explained));
             let plainest = plain(judge, &fewest);
-            let last = match explains(&plainest) {
+            match judge.explains(&plainest) {
                 true => plainest,
                 false => fewest,
-            };
-            with_row(&last).unwrap_or(last)
+            }
         }
     };
     let found = judge
@@ -101,39 +127,54 @@ pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
     cancel::unless_set(judge.cancel, found)
 }
 
-/// What explains a picture beside a candidate: nothing, or a row that shows where colours meet;
-/// none if it is not explained so.
-fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Option<Mistake>> {
+/// The likelier of two.
+fn nearer(one: Option<Judged>, other: Judged) -> Option<Judged> {
+    match one {
+        Some(one) if one.cost <= other.cost => Some(one),
+        _ => Some(other),
+    }
+}
+
+/// The same with what explains a picture beside it: nothing, or a row that shows where colours
+/// meet; none if it is not explained so.
+fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     // What is found so far is judged, however much work that is.
-    let (are_areas_right, off, null) = judge.work.without_limit(|| {
+    let (are_areas_right, wrong, null) = judge.work.without_limit(|| {
         let are_areas_right = judge.explains_all(candidate);
-        let off = displaced(judge, candidate);
-        (are_areas_right, off, judge.judged(candidate, &judge.edges))
+        let wrong = Edges::of(judge, candidate);
+        (
+            are_areas_right,
+            wrong,
+            judge.judged(candidate, &judge.edges),
+        )
     });
     let null = null?;
     // Cut off bytes and another curve show in whole areas.
     let strays = judge.predicted(candidate, &judge.fine)?.strays();
     let is_much_wrong = strays.pixels.len() * 50 > judge.fine.grid.count();
+    let is_little_wrong = strays.pixels.len() * LITTLE <= judge.fine.grid.count();
     let predicted = judge.edges.predict(&null.rendering);
     judge.edges.compare_with(Arc::clone(&null.rendering));
-    // What is done to light, or to a JPEG, makes other noise at edges.
-    let mut looks = candidate.looks.iter();
-    let may = looks.all(|look| matches!(look, Look::Channels(_)))
-        && candidate.curve == Curve::Right
-        && judge.fine.jpeg.is_none();
+    // What is done to light, and what a JPEG does, makes other noise at edges.
+    let is_coded = judge.fine.jpeg.is_some();
+    let may = candidate.keeps_light() && !is_coded;
+    let is_shifted =
+        candidate.behaviour.offset != [0.0; 2] || candidate.behaviour.spread != [1.0; 2];
+    let may_shift = !is_shifted && is_little_wrong;
+    let by = wrong.off.filter(|_| may_shift).map(|off| off.by);
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
-        Shows::AtEdges if row.id == "half_pixel" => may && off.is_some(),
+        Shows::AtEdges if PIXELS.contains(&row.id) => false,
         // What the faulty tracer makes is not known well enough at edges.
-        Shows::AtEdges => may && are_areas_right && candidate.behaviour.is_right(),
+        Shows::AtEdges => {
+            let may = may || candidate.keeps_light() && row.id == IN_CODED;
+            may && are_areas_right && candidate.behaviour.is_right()
+        }
         Shows::Everywhere => may && is_much_wrong,
     });
     let rows = rows.map(|row| Mistake::Row(row, None));
-    let is_near = |with: &Candidate| {
-        let (shift, by) = (with.shift(), off.map_or([0.0; 2], |off| off.by));
-        shift == [0.0; 2] || (0..2).all(|i| (by[i] - shift[i]).abs() <= NEAR)
-    };
-    let is_explained = are_areas_right && off.is_none() && judge.is_even(candidate);
+    let rows = rows.chain(by.into_iter().flat_map(|by| shifts(candidate, by)));
+    let is_explained = are_areas_right && wrong.are_right() && judge.is_even(candidate);
     let hinted = match is_explained && may && candidate.mistakes.is_empty() {
         true => hinted(judge, candidate),
         false => Vec::new(),
@@ -141,22 +182,71 @@ fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Option<Mistake
     let told = |mistake: Mistake| {
         judge.work.may_go_on().then_some(())?;
         let with = candidate.with(mistake.clone())?;
-        is_near(&with).then_some(())?;
         let rendering = judge.edges.render(&with, &judge.work)?;
         let [part, deviations] = predicted.part_seen(&null.score, &judge.edges.predict(&rendering));
-        let is_told = (part - 1.0).abs() < PART && deviations > SURE;
+        let is_told = match is_coded {
+            false => (part - 1.0).abs() < PART && deviations > SURE,
+            // The coding blurs and weakens it.
+            true => {
+                let with = judge.judged(&with, &judge.edges)?;
+                with.score.squares < LEFT_IN_CODED * null.score.squares
+            }
+        };
         let is_told =
             is_told || matches!(mistake, Mistake::Row(row, _) if row.shows == Shows::Everywhere);
-        (is_told && judge.explains(&with)).then_some((deviations, mistake))
+        is_told.then_some((deviations, with))
     };
-    let best = rows
-        .chain(hinted)
-        .filter_map(told)
-        .max_by(|one, other| one.0.total_cmp(&other.0));
-    match best {
-        Some((_, row)) => Some(Some(row)),
-        None => is_explained.then_some(None),
+    let mut told: Vec<_> = rows.chain(hinted).filter_map(told).collect();
+    told.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let best = told
+        .iter()
+        .find(|(_, with)| judge.explains(with))
+        .or(told.first());
+    let best = best.and_then(|(_, with)| fitted_with(judge, with.clone()));
+    let filtered = || {
+        let width = wrong.width.filter(|_| is_little_wrong)?;
+        let widths = match width < 1.0 {
+            true => NARROW_WIDTHS.to_vec(),
+            false => WIDTHS.map(|by| (width * by).max(LEAST_WIDE)).to_vec(),
+        };
+        let widths = widths.into_iter().filter_map(|width| {
+            let with = candidate.with(Mistake::Filter(width))?;
+            Some((judge.judged(&with, &judge.edges)?.cost, with))
+        });
+        let (_, with) = widths.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        fitted_with(judge, with)
+    };
+    best.or_else(filtered)
+        .or_else(|| is_explained.then(|| candidate.clone()))
+}
+
+/// The rows that move what is seen by about so much, the nearest first.
+fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
+    let rows = ROWS.iter().filter(|row| PIXELS.contains(&row.id));
+    let by = candidate.layout.source_of_way(by);
+    let off = |row: &'static Row| {
+        let mistake = Mistake::Row(row, None);
+        let shift = candidate.with(mistake.clone())?.behaviour.offset;
+        let off = |i: usize| (by[i] - shift[i]).abs() / shift[i].abs().max(1.0);
+        Some((off(0).max(off(1)), mistake))
+    };
+    let mut near: Vec<_> = rows.filter_map(off).filter(|one| one.0 <= NEAR).collect();
+    near.sort_by(|one, other| one.0.total_cmp(&other.0));
+    near.truncate(SHIFTS);
+    near.into_iter().map(|(_, mistake)| mistake).collect()
+}
+
+/// A candidate if it explains the picture, or does with numbers that are fitted anew, as those
+/// were before its last mistake.
+fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
+    if judge.explains(&with) {
+        return Some(with);
     }
+    let free = with.numbers().len();
+    (free > 0).then_some(())?;
+    let (fitted, _) = judge.fit(&with, free, &judge.middle, CELL_STEP, [0, ROUNDS])?;
+    let short = shortened(judge, &fitted);
+    judge.explains(&short).then_some(short)
 }
 
 /// Rows that change so little that a candidate explains a picture without them, and of which a tiny
@@ -186,11 +276,18 @@ fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
         let rows = OBJECT_ROWS.iter();
         rows.map(move |row| Mistake::Row(row, Some(object)))
     });
-    rows.map(|row| Mistake::Row(row, None)).chain(of_objects)
+    let pairs = objects.iter().enumerate();
+    let pairs =
+        pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
+    let exchanged =
+        pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
+    rows.map(|row| Mistake::Row(row, None))
+        .chain(of_objects)
+        .chain(exchanged)
 }
 
 /// The same with as few mistakes as explain the picture.
-fn fewest(judge: &Judge, all: &Candidate, explains: &dyn Fn(&Candidate) -> bool) -> Candidate {
+fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
     let of = |mistakes: &[&Mistake]| {
         let mut mistakes = mistakes.iter();
         let right = Candidate::right(judge.scene);
@@ -205,39 +302,47 @@ fn fewest(judge: &Judge, all: &Candidate, explains: &dyn Fn(&Candidate) -> bool)
         let rows: Vec<_> = rows.map(|row| Mistake::Row(row, None)).collect();
         let with = |row: &Mistake| of(&[&[row], &others[..]].concat());
         let mut simpler = of(&others).into_iter().chain(rows.iter().filter_map(with));
-        fewest = simpler.find(explains).unwrap_or(fewest);
+        fewest = simpler.find(|it| judge.explains(it)).unwrap_or(fewest);
     }
     for left_out in (0..fewest.mistakes.len()).rev() {
+        // What shows at edges was not told without being sure of it, and neither was what a picture
+        // hints at that a right program would explain.
+        let is_sole = fewest.mistakes.len() == 1;
+        if is_sole || fewest.mistakes.get(left_out).is_none_or(shows_at_edges) {
+            continue;
+        }
         let mistakes = fewest.mistakes.iter().enumerate();
         let mistakes = mistakes.filter(|(at, _)| *at != left_out);
         let mistakes: Vec<_> = mistakes.map(|(_, mistake)| mistake).collect();
         let Some(fewer) = of(&mistakes) else {
             continue;
         };
-        // What is left out may have made up for what numbers are off.
+        // What is left out may have made up for what numbers are off, or for a row that shows at
+        // edges.
         let fitted = || {
-            let fitted = judge.fit(
-                &fewer,
-                fewer.numbers().len(),
-                &judge.middle,
-                CELL_STEP,
-                [0, ROUNDS],
-            );
-            fitted.map(|(candidate, _)| plain(judge, &candidate))
+            let free = fewer.numbers().len();
+            (free > 0).then_some(())?;
+            let (fitted, _) = judge.fit(&fewer, free, &judge.middle, CELL_STEP, [0, ROUNDS])?;
+            explained_with(judge, &plain(judge, &fitted))
         };
-        let fewer = match fewer.numbers().is_empty() || explains(&fewer) {
-            true => Some(fewer.clone()),
-            false => fitted(),
-        };
-        if let Some(fewer) = fewer.filter(explains) {
+        let fewer = explained_with(judge, &fewer).or_else(fitted);
+        if let Some(fewer) = fewer.filter(|fewer| fewer.fitted() < fewest.fitted()) {
             fewest = fewer;
         }
     }
     fewest
 }
 
-/// The best candidate with one more mistake, if it is better.
-fn step(judge: &Judge, from: &Judged) -> Option<Judged> {
+fn shows_at_edges(mistake: &Mistake) -> bool {
+    match mistake {
+        Mistake::Row(row, _) => row.shows != Shows::InAreas,
+        Mistake::Filter(_) => true,
+        _ => false,
+    }
+}
+
+/// Candidates with one more mistake that are better, the best first.
+fn step(judge: &Judge, from: &Judged) -> Vec<Judged> {
     judge.compare_with(from.candidate());
     let suspects = suspects(judge, from);
     let mut tried = rows(judge, from, &suspects);
@@ -248,14 +353,14 @@ fn step(judge: &Judge, from: &Judged) -> Option<Judged> {
         (found.cost < from.cost && judge.explains(found.candidate())).then_some(found)
     };
     if let Some(found) = explaining(&tried) {
-        return Some(found);
+        return vec![found];
     }
     if from.candidate().mistakes.is_empty() {
         let together = joint::rows_together(judge, from.candidate());
         if let Some(found) = explaining(&together) {
-            return Some(found);
+            return vec![found];
         }
-        tried.extend(together);
+        tried.extend(together.into_iter().take(1));
     }
     // Half of the work that is left is left for judging those that were tried.
     let are_all_numbers_tried = judge.work.within(0.5, || {
@@ -287,16 +392,18 @@ fn step(judge: &Judge, from: &Judged) -> Option<Judged> {
         best.cost < from.cost && (are_all_tried || judge.explains(best.candidate()))
     };
     // The few that were judged are looked at in all pixels, however much work that is.
-    let better = judge
-        .work
-        .without_limit(|| judged.into_iter().find(is_better));
+    judge.work.without_limit(|| judged.retain(is_better));
     // Something too many would explain anything; it is thought of where nothing else explains more than before.
-    better.or_else(|| {
+    let patched = || {
         are_all_tried.then_some(())?;
         let patched = from.candidate().with(patch(judge, from)?)?;
         let found = judge.judged(&patched, &judge.middle)?;
         (found.cost < from.cost).then_some(found)
-    })
+    };
+    if judged.is_empty() {
+        judged.extend(patched());
+    }
+    judged
 }
 
 /// A candidate judged; none if it is no likelier than what it is made from.

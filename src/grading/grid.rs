@@ -93,13 +93,12 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// The view of a scene whose pixels the cells are, with so many more columns and rows, half of
-    /// them on each side.
-    pub fn view(&self, scene: &Scene, more: [u32; 2]) -> (Camera, Image) {
+    /// The view of a scene whose pixels the cells are.
+    pub fn view(&self, scene: &Scene) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
-        if self.factor > 1 || more != [0, 0] {
+        if self.factor > 1 {
             let pitch = Projection::quick(&camera, &image).pitch;
-            [image.width, image.height] = [0, 1].map(|i| self.size[i] + more[i]);
+            [image.width, image.height] = self.size;
             camera.lens = Lens::Distance(1.0);
             // Within the range of numbers, however long or short the lens is.
             let view_height = f64::from(image.height * self.factor) * pitch;

@@ -73,7 +73,13 @@ pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> 
         return Vec::new();
     };
     let rows = ROWS.iter();
-    let rows = rows.filter(|row| row.shows != Shows::AtEdges && row.id != "cut_off");
+    // What is little is not told from what a JPEG does.
+    let is_coded = judge.fine.jpeg.is_some();
+    let rows = rows.filter(|row| match row.shows {
+        Shows::InAreas => true,
+        Shows::AtEdges => false,
+        Shows::Everywhere => !is_coded && row.id != "cut_off",
+    });
     let rows: Vec<(Changes, Mistake)> = rows
         .filter_map(|row| {
             let mistake = Mistake::Row(row, None);

@@ -13,7 +13,7 @@
 
 use super::{
     light::{Curve, STEP},
-    moments::{Moments, range},
+    moments::range,
     prediction::Prediction,
     strays::DEVIATIONS,
 };
@@ -54,9 +54,10 @@ fn light_of(curve: Curve) -> impl Fn(u8) -> f64 {
     move |byte| curve.light(srgb_to_linear(f64::from(byte) / 255.0))
 }
 
-/// The variances that a file's coding gives to the cells of so many pixels each way, in so many columns, of a picture that should show something.
-pub fn variances(jpeg: &Jpeg, moments: &Moments, width: usize, factor: usize) -> Vec<[f64; 3]> {
-    let mean = &moments.mean;
+/// The variances that a file's coding gives to the cells of so many pixels each way of a picture
+/// that should show something.
+pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f64; 3]> {
+    let (mean, width) = (&prediction.moments.mean, prediction.width);
     let height = mean.len() / width;
     // How much of blue-yellow and red-green difference is in a channel.
     const SHARES: [f64; 3] = [1.402, 0.344 + 0.714, 1.772];
@@ -77,21 +78,18 @@ pub fn variances(jpeg: &Jpeg, moments: &Moments, width: usize, factor: usize) ->
             true => table.first / 64.0,
             false => table.mean / count,
         };
-        let mixed = match is_flat {
-            true => [0.0; 3],
-            false => {
-                let [least, most] = range(mean, width, at, reach);
-                [0, 1, 2].map(|i| most[i] - least[i])
-            }
-        };
+        // Of the block beside it, too.
+        let [least, most] = range(mean, width, at, reach);
+        let mixed = [0, 1, 2].map(|i| most[i] - least[i]);
         [0, 1, 2].map(|i| {
             // Before the transform and after it numbers are rounded, or cut off, which makes four times the square.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
             // In light a step is the more, the brighter: it is told from so many deviations.
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
-            let encoded = linear_to_srgb(mean[at][i]);
-            let light = (srgb_to_linear(encoded + by) - mean[at][i]) / DEVIATIONS;
+            let encoded = linear_to_srgb(prediction.curve.seen(mean[at][i]));
+            let most = prediction.curve.light(srgb_to_linear(encoded + by));
+            let light = (most - mean[at][i]) / DEVIATIONS;
             light * light + mixed[i] * mixed[i] / (4.0 * count)
         })
     };

@@ -11,16 +11,9 @@ pub struct Layout {
     pub is_upside_down: bool,
     /// Then rows and columns are, in a square picture.
     pub is_transposed: bool,
-    /// Then so many half pixels to the right and down of each place are shown.
-    pub half_pixels: [i32; 2],
 }
 
 impl Layout {
-    /// How many more pixels the picture has that it is taken from, half of them on each side.
-    pub fn more(self) -> [u32; 2] {
-        self.half_pixels.map(i32::unsigned_abs)
-    }
-
     /// The pixel that is shown in the place of one, in a picture of a size.
     pub fn source(self, (x, y): (u32, u32), [width, height]: [u32; 2]) -> (u32, u32) {
         let (x, y) = if self.is_transposed { (y, x) } else { (x, y) };
@@ -30,25 +23,26 @@ impl Layout {
         } else {
             y
         };
-        let [right, down] = self.half_pixels.map(|half| half.max(0).unsigned_abs());
-        (x + right, y + down)
+        (x, y)
     }
 
-    /// The part of a picture of a size that is shown in the place of a part; where it is shifted, all that any shift shows.
+    /// What a way in the picture is in what is shown.
+    pub fn source_of_way(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [x, y] = if self.is_transposed { [y, x] } else { [x, y] };
+        let sign = |is_turned: bool| if is_turned { -1.0 } else { 1.0 };
+        [sign(self.is_mirrored) * x, sign(self.is_upside_down) * y]
+    }
+
+    /// The part of a picture of a size that is shown in the place of a part.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
-        let [wider, taller] = self.more();
-        let layout = Self {
-            half_pixels: [0, 0],
-            ..self
-        };
         let last = (part.x + part.width - 1, part.y + part.height - 1);
-        let (ax, ay) = layout.source((part.x, part.y), size);
-        let (bx, by) = layout.source(last, size);
+        let (ax, ay) = self.source((part.x, part.y), size);
+        let (bx, by) = self.source(last, size);
         Area {
             x: ax.min(bx),
             y: ay.min(by),
-            width: ax.abs_diff(bx) + 1 + wider,
-            height: ay.abs_diff(by) + 1 + taller,
+            width: ax.abs_diff(bx) + 1,
+            height: ay.abs_diff(by) + 1,
         }
     }
 }

@@ -148,7 +148,7 @@ impl<'a> Level<'a> {
         prediction.look(&candidate.looks, &self.grid);
         if let Some(jpeg) = self.jpeg {
             let factor = self.grid.factor as usize;
-            let variances = variances(&jpeg, &prediction.moments, prediction.width, factor);
+            let variances = variances(&jpeg, &prediction, factor);
             let coded = match factor {
                 1 => coded(&jpeg, &prediction, self.grid.cells),
                 _ => None,

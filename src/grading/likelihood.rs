@@ -149,7 +149,7 @@ impl Prediction<'_> {
         for (at, light) in self.seen.iter().enumerate() {
             let before = self.difference(at);
             let after = match other.curve {
-                Curve::Right => other.difference(at),
+                curve if is_alike || curve == Curve::Right => other.difference(at),
                 curve => [0, 1, 2].map(|i| light[i] - curve.seen(other.moments.mean[at][i])),
             };
             if before == after || light[0].is_nan() {

@@ -69,7 +69,11 @@ pub const ROWS: &[Row] = &[
         |c, _| { c.layout.is_mirrored ^= true; c.layout.is_upside_down ^= true; }),
     row("transposed", InAreas, "the picture is transposed: rows and columns are exchanged",
         "a pixel's index is row · width + column",
-        |c, _| c.layout.is_transposed ^= c.scene.image.width == c.scene.image.height),
+        |c, _| c.layout.is_transposed ^= is_square(c)),
+    row("turned_90", InAreas, "the picture is turned by a quarter, clockwise", "a pixel's index is row · width + column",
+        |c, _| if is_square(c) { c.layout.is_transposed ^= true; c.layout.is_upside_down ^= true; }),
+    row("turned_90", InAreas, "the picture is turned by a quarter, anticlockwise", "a pixel's index is row · width + column",
+        |c, _| if is_square(c) { c.layout.is_transposed ^= true; c.layout.is_mirrored ^= true; }),
     row("squeezed", InAreas, "the picture is stretched: its window is as wide as it is high, though the picture is not", WINDOW,
         |c, _| widen(c, 1.0)),
     row("aspect", InAreas, "the picture is stretched: its window is 4:3, though the picture is not", WINDOW,
@@ -89,21 +93,29 @@ pub const ROWS: &[Row] = &[
     row("aspect", InAreas, "the picture is stretched: its window is half as wide as it should be", WINDOW,
         |c, _| { let [width, height] = sides(c); widen(c, 0.5 * width / height); }),
     row("half_pixel", AtEdges, "samples lie half a pixel too far up and left: around a pixel's corner, not its middle", MIDDLE,
-        |c, _| halves(c, [-1, -1])),
+        |c, _| shift(c, [-0.5, -0.5])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and right", MIDDLE,
-        |c, _| halves(c, [1, 1])),
+        |c, _| shift(c, [0.5, 0.5])),
     row("half_pixel", AtEdges, "samples lie half a pixel too far down and left", MIDDLE,
-        |c, _| halves(c, [-1, 1])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far left", MIDDLE, |c, _| halves(c, [-1, 0])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far right", MIDDLE, |c, _| halves(c, [1, 0])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far up", MIDDLE, |c, _| halves(c, [0, -1])),
-    row("half_pixel", AtEdges, "samples lie half a pixel too far down", MIDDLE, |c, _| halves(c, [0, 1])),
-    row("half_pixel", AtEdges, "samples lie a whole pixel too far up and left", MIDDLE, |c, _| halves(c, [-2, -2])),
-    row("half_pixel", AtEdges, "samples lie a whole pixel too far down and right", MIDDLE, |c, _| halves(c, [2, 2])),
+        |c, _| shift(c, [-0.5, 0.5])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far left", MIDDLE, |c, _| shift(c, [-0.5, 0.0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far right", MIDDLE, |c, _| shift(c, [0.5, 0.0])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far up", MIDDLE, |c, _| shift(c, [0.0, -0.5])),
+    row("half_pixel", AtEdges, "samples lie half a pixel too far down", MIDDLE, |c, _| shift(c, [0.0, 0.5])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far up and left", MIDDLE, |c, _| shift(c, [-1.0, -1.0])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far down and right", MIDDLE, |c, _| shift(c, [1.0, 1.0])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far left", MIDDLE, |c, _| shift(c, [-1.0, 0.0])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far right", MIDDLE, |c, _| shift(c, [1.0, 0.0])),
+    row("half_pixel", AtEdges, "samples lie two whole pixels too far left", MIDDLE, |c, _| shift(c, [-2.0, 0.0])),
+    row("half_pixel", AtEdges, "samples lie two whole pixels too far right", MIDDLE, |c, _| shift(c, [2.0, 0.0])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far up", MIDDLE, |c, _| shift(c, [0.0, -1.0])),
+    row("half_pixel", AtEdges, "samples lie a whole pixel too far down", MIDDLE, |c, _| shift(c, [0.0, 1.0])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
     row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE,
         |c, _| c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 })),
+    row("window_one_less", AtEdges, "the window is divided by one less than it has rows, so pixels are too large: s = view_height/(height − 1)", MIDDLE,
+        |c, _| { let height = sides(c)[1]; if height > 1.0 { lengthen(c, (height - 1.0) / height) } }),
     row("channels", InAreas, "the colour channels are in the order blue, green, red", ORDER,
         |c, _| c.looks.push(Look::Channels([2, 1, 0]))),
     row("channels", InAreas, "the colour channels are in the order red, blue, green", ORDER,
@@ -135,6 +147,12 @@ pub const ROWS: &[Row] = &[
         |c, _| encode(c, Curve::Root)),
     row("not_decoded", InAreas, "a scene's sRGB numbers are taken for light, and their square root is written: the colours are too bright",
         AVERAGE, |c, _| look(c, |light| srgb_to_linear(linear_to_srgb(light).sqrt()))),
+    row("gamma_18", InAreas, "the colours were encoded with the power 1/1.8, not as sRGB", ENCODE,
+        |c, _| look(c, |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 1.8)))),
+    row("video_range", InAreas, "the colours lie between 16 and 235, as video has them, not between 0 and 255", CHANNELS,
+        |c, _| look(c, |light| srgb_to_linear((16.0 + 219.0 * linear_to_srgb(light)) / 255.0))),
+    row("bytes_wrap", InAreas, "full channels are 0: 256 c is kept in a byte, which goes up to 255", "a channel's byte is round(255 c) of its encoded colour c",
+        |c, _| look(c, |light| srgb_to_linear((256.0 * linear_to_srgb(light) + 1e-6).floor() % 256.0 / 255.0))),
     row("inverted", InAreas, "the colours are inverted: each channel is 255 less what it should be", CHANNELS,
         |c, _| look(c, |light| srgb_to_linear(1.0 - linear_to_srgb(light.min(1.0))))),
     row("not_divided", InAreas, "the light is twice what it should be: the sum of samples is divided by half their number", DIVIDE,
@@ -178,6 +196,8 @@ pub const ROWS: &[Row] = &[
         |c, _| tell_squares(c, Squares::TruncatedZ)),
     row("board_rounded", InAreas, "coordinates on the checkerboard are rounded to the nearest whole number, not down", SQUARES,
         |c, _| tell_squares(c, Squares::Rounded)),
+    row("board_both", InAreas, "a square of the checkerboard has the first colour only where its row and its column are both even", SQUARES,
+        |c, _| tell_squares(c, Squares::BothEven)),
     row("board_sum", InAreas, "the checkerboard's coordinates are added before they are rounded down: its squares are diagonal stripes", SQUARES,
         |c, _| tell_squares(c, Squares::Sum)),
     row("board_stripes", InAreas, "the checkerboard has stripes: of its coordinates x alone counts (or y in the place of z)", SQUARES,
@@ -203,20 +223,35 @@ pub const ROWS: &[Row] = &[
     row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed",
         "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one",
         |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
+    row("roll_u_alone", InAreas, "u alone is turned by the roll, v is not, so the picture is skewed",
+        "a roll turns both: u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v",
+        |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::RightAlone }),
     row("up_not_orthogonal", InAreas, "up itself is taken for v, though it is not at right angles to the view direction", "v = w × u, both of length 1",
         |c, _| c.behaviour.rays = Rays::UpAsTop),
     row("w_not_normalised", InAreas, "w is not divided by its length, so the view plane is |eye − lookat| times as far", "w = (eye − lookat)/|eye − lookat|",
-        |c, _| if let View::Lookat(point) = c.scene.camera.view { zoom(c, point.distance(c.scene.camera.eye)) }),
-    row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", "all rays leave from the eye, along x u + y v − d w",
+        |c, _| if let View::Lookat(point) = c.scene.camera.view { lengthen(c, point.distance(c.scene.camera.eye)) }),
+    row("u_not_normalised", InAreas, "u is not divided by its length, so pixels are too small: |up × w| is less than 1", UP,
         |c, _| {
-            let height = c.scene.camera.view_height;
-            let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
-            let [width, tall] = sides(c);
-            c.behaviour.rays = Rays::Parallel(match c.scene.camera.lens {
-                Lens::Distance(d) => d,
-                Lens::Fov(angle) => height / (2.0 * half(angle)),
-                Lens::HorizontalFov(angle) => height * width / tall / (2.0 * half(angle)),
-            });
+            let camera = &c.scene.camera;
+            let ahead = match camera.view { View::Lookat(point) => point - camera.eye, View::Direction(direction) => direction };
+            let length = camera.up.normalize_or_zero().cross(ahead.normalize_or_zero()).length();
+            if length > 0.0 { lengthen(c, 1.0 / length) }
+        }),
+    row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", "all rays leave from the eye, along x u + y v − d w",
+        |c, _| c.behaviour.rays = Rays::Parallel(distance(c))),
+    row("fisheye", InAreas, "the picture is that of a fish eye: the angle of a ray grows as the distance from the middle does",
+        "rays leave from the eye, along x u + y v − d w", |c, _| c.behaviour.rays = Rays::Fisheye),
+    row("sphere_unit_rays", InAreas, "spheres are hit by −b ± √(b² − c), which is for rays of length 1, and rays are not: their direction is not divided by its length",
+        "a t² + b t + c = 0 has the roots (−b ± √(b² − 4 a c))/(2 a), a being the square of the ray's length",
+        |c, _| if c.scene.objects.iter().any(|object| matches!(object.shape, Shape::Sphere(_))) { c.behaviour.unit_rays = Some(distance(c)) }),
+    row("sphere_radius_root", InAreas, "the radius of spheres is not squared: each has its square root", "c = |eye − center|² − radius²",
+        |c, _| for object in Arc::make_mut(&mut c.scene.objects) {
+            if let Shape::Sphere(sphere) = &mut object.shape { sphere.radius = sphere.radius.sqrt() }
+        }),
+    row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|",
+        |c, _| if let View::Lookat(point) = c.scene.camera.view {
+            c.scene.camera.view = View::Lookat(c.scene.camera.eye);
+            c.scene.camera.eye = point;
         }),
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|",
         |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
@@ -235,6 +270,24 @@ pub const ROWS: &[Row] = &[
         |c, _| c.scene.camera.view = match c.scene.camera.view {
             View::Lookat(point) => View::Lookat(2.0 * c.scene.camera.eye - point),
             View::Direction(direction) => View::Direction(-direction),
+        }),
+    row("looks_back", InAreas, "the camera looks the other way, mirrored: rays leave along d w", "w = −f/|f|, f being lookat − eye, and rays leave along x u + y v − d w",
+        |c, _| {
+            c.scene.camera.view = match c.scene.camera.view {
+                View::Lookat(point) => View::Lookat(2.0 * c.scene.camera.eye - point),
+                View::Direction(direction) => View::Direction(-direction),
+            };
+            c.scene.camera.roll = -c.scene.camera.roll;
+            c.layout.is_mirrored ^= true;
+        }),
+    row("fov_unit", InAreas, "the field of view's degrees are taken for radians", "tan takes radians: 180 degrees are π",
+        |c, _| if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = c.scene.camera.lens {
+            let half = libm::atan(libm::tan(angle.in_degrees() / 2.0).abs());
+            let wrong = Angle::from_degrees((2.0 * half).to_degrees());
+            c.scene.camera.lens = match c.scene.camera.lens {
+                Lens::Fov(_) => Lens::Fov(wrong),
+                _ => Lens::HorizontalFov(wrong),
+            };
         }),
     row("near_ignored", InAreas, "the near plane is ignored", CLIPPED, |c, _| c.scene.camera.near = 0.0),
     row("far_ignored", InAreas, "the far plane is ignored", CLIPPED, |c, _| c.scene.camera.far = None),
@@ -287,14 +340,25 @@ fn look(c: &mut Candidate, curve: fn(f64) -> f64) {
     }
 }
 
-/// Samples lie elsewhere, by so many half pixels to the right and down.
-fn halves(c: &mut Candidate, by: [i32; 2]) {
-    c.layout.half_pixels = by;
-}
-
-/// The same by parts of a pixel.
+/// Samples lie elsewhere, by so many pixels to the right and down.
 fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = by;
+}
+
+fn is_square(c: &Candidate) -> bool {
+    c.scene.image.width == c.scene.image.height
+}
+
+/// How far the view plane is from the eye.
+fn distance(c: &Candidate) -> f64 {
+    let height = c.scene.camera.view_height;
+    let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
+    let [width, tall] = sides(c);
+    match c.scene.camera.lens {
+        Lens::Distance(d) => d,
+        Lens::Fov(angle) => height / (2.0 * half(angle)),
+        Lens::HorizontalFov(angle) => height * width / tall / (2.0 * half(angle)),
+    }
 }
 
 fn sides(c: &Candidate) -> [f64; 2] {
@@ -371,7 +435,7 @@ fn exchange_colors(c: &mut Candidate) {
 }
 
 fn exchange_sides(c: &mut Candidate) {
-    let [width, height] = [c.scene.image.width, c.scene.image.height].map(f64::from);
+    let [width, height] = sides(c);
     if width != height {
         c.scene.camera.lens = match c.scene.camera.lens {
             Lens::Distance(d) => Lens::Distance(d * width / height),
@@ -381,13 +445,22 @@ fn exchange_sides(c: &mut Candidate) {
     }
 }
 
+/// The view plane is so many times as far; a field of view is one of an angle that makes it so.
+fn lengthen(c: &mut Candidate, by: f64) {
+    c.scene.camera.lens = match c.scene.camera.lens {
+        Lens::Distance(d) => Lens::Distance(d * by),
+        Lens::Fov(angle) => Lens::Fov(widened(angle, 1.0 / by)),
+        Lens::HorizontalFov(angle) => Lens::HorizontalFov(widened(angle, 1.0 / by)),
+    };
+}
+
 /// An angle whose half has a tangent so many times as large.
 fn widened(angle: Angle, by: f64) -> Angle {
     let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
     Angle::from_degrees((2.0 * half).to_degrees())
 }
 
-/// The view plane is so many times as far.
+/// The distance of the view plane is so many times as large, or the angle as small.
 fn zoom(c: &mut Candidate, by: f64) {
     let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
     c.scene.camera.lens = match c.scene.camera.lens {

@@ -304,7 +304,7 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
-    let is_shifted = last.layout.more() != [0, 0] || last.behaviour.offset != [0.0; 2];
+    let is_shifted = last.behaviour.offset != [0.0; 2] || last.behaviour.pixel != 1.0;
     let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
         true => &judge.edges,
         false => &judge.middle,

@@ -44,6 +44,17 @@ pub const NO_FAR: f64 = 1e9;
 pub fn fitted(scene: &Scene) -> Vec<Parameter> {
     let is_told = |parameter: &Parameter| !matches!(parameter.fields[0], "up" | "view_height");
     let mut fitted: Vec<Parameter> = all(scene).into_iter().filter(is_told).collect();
+    // Of a box one corner may be wrong.
+    let sizes = fitted
+        .iter()
+        .filter(|parameter| parameter.fields == ["size"]);
+    let owners: Vec<Owner> = sizes.map(|parameter| parameter.owner).collect();
+    fitted.extend(owners.into_iter().flat_map(|owner| {
+        ["min", "max"].map(|corner| Parameter {
+            owner,
+            fields: vec![corner],
+        })
+    }));
     if scene.camera.far.is_none() {
         fitted.push(Parameter {
             owner: Owner::Camera,

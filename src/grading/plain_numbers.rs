@@ -8,6 +8,7 @@
 use super::{
     candidate::{Candidate, Mistake},
     judge::{CELL_STEP, Judge, price},
+    levenberg_marquardt::solve,
     parameters::Parameter,
 };
 use crate::{numbers::rounded, scene::Scene};
@@ -20,8 +21,11 @@ const QUARTERS: i32 = 5;
 /// A number is not rounded further than it may be off itself: so many standard deviations.
 const DEVIATIONS: f64 = 8.0;
 
+/// So many sets of numbers of each size are tried to be the scene's own.
+const LIKELIEST: usize = 2;
+
 /// Rounds of fitting the other numbers where one is the scene's own.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 8;
 
 /// A candidate whose numbers are as plain as they can be.
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
@@ -33,10 +37,9 @@ pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
 /// The same with the scene's own numbers where it explains the picture as well with them.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (middle, scene) = (&judge.middle, judge.scene);
-    let mut best = candidate.clone();
-    let mut most = cost;
+    let is_explained = judge.explains(candidate);
     for at in 0..candidate.mistakes.len() {
-        let Mistake::Numbers(parameter, _) = &candidate.mistakes[at] else {
+        let Mistake::Numbers(parameter, numbers) = &candidate.mistakes[at] else {
             continue;
         };
         if parameter.is_color() || parameter.fields[0] == "normal" {
@@ -46,26 +49,18 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
         if own.len() < 2 {
             continue;
         }
-        // All of them but one or two; of an eye and what it looks at, one of the two points.
-        let sets: Vec<Vec<usize>> = match own.len() {
-            6 => vec![(3..6).collect(), (0..3).collect()],
-            // Those first that leave one free.
-            count => (0..count)
-                .map(|i| (0..count).filter(|j| *j != i).collect())
-                .chain((0..count).map(|i| vec![i]))
-                .collect(),
-        };
+        let sets = likeliest_sets(judge, candidate, at, &own);
         for fixed in sets {
             if !judge.work.may_go_on() {
-                return best;
+                return candidate.clone();
             }
-            let Mistake::Numbers(parameter, numbers) = &best.mistakes[at] else {
-                break;
-            };
-            if numbers.len() != own.len() || fixed.iter().all(|&i| numbers[i] == own[i]) {
+            let is_own = |i: &usize| numbers.get(*i) == own.get(*i);
+            // Each time there are more of them.
+            let are_more = fixed.len() > (0..own.len()).filter(is_own).count();
+            if numbers.len() != own.len() || !are_more {
                 continue;
             }
-            let Some(other) = refitted(judge, &best, at, parameter, &fixed) else {
+            let Some(other) = refitted(judge, candidate, at, parameter, &fixed) else {
                 continue;
             };
             let Some(judged) = judge.judged(&other, middle) else {
@@ -73,19 +68,63 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             };
             // What is not fitted does not cost.
             let free = price(middle, fixed.len());
-            if judged.cost - free <= most {
-                most = most.max(judged.cost);
-                best = narrowed(other, at, scene);
-                if own.len() == 6 {
-                    return with_own(judge, &best, most);
-                }
-                if fixed.len() + 1 == own.len() {
-                    break;
-                }
+            if judged.cost - free <= cost || is_explained && judge.explains(&other) {
+                // From better numbers those may be found that could not be before.
+                return with_own(judge, &narrowed(other, at, scene), cost.max(judged.cost));
             }
         }
     }
-    best
+    candidate.clone()
+}
+
+/// The sets of numbers of a mistake that may be the scene's own, those first that leave fewest
+/// free: all but one, all but two, and of an eye and what it looks at one of the two points. Of
+/// each size the likeliest, to second order: with the covariances of a set's numbers, C, a fit is
+/// worse by dᵀ C⁻¹ d where these change by d.
+fn likeliest_sets(judge: &Judge, candidate: &Candidate, at: usize, own: &[f64]) -> Vec<Vec<usize>> {
+    let count = own.len();
+    let sizes: Vec<Vec<Vec<usize>>> = match count {
+        6 => vec![vec![(3..6).collect(), (0..3).collect()]],
+        _ => vec![
+            (0..count)
+                .map(|i| (0..count).filter(|j| *j != i).collect())
+                .collect(),
+            (0..count).map(|i| vec![i]).collect(),
+        ],
+    };
+    let first = first_number(candidate, at);
+    let numbers = candidate.numbers();
+    let fitted = judge.fit(candidate, numbers.len(), &judge.middle, CELL_STEP, [0, 1]);
+    let Some((_, fitted)) = fitted else {
+        return Vec::new();
+    };
+    let worse = |set: &Vec<usize>| {
+        let row = |i: &usize| -> Vec<f64> {
+            let own = &fitted.covariances[first + i];
+            set.iter().map(|j| own[first + j]).collect()
+        };
+        let change: Vec<f64> = set.iter().map(|&i| own[i] - numbers[first + i]).collect();
+        let solved = solve(set.iter().map(row).collect(), change.clone());
+        solved.map_or(f64::INFINITY, |solved| {
+            change.iter().zip(solved).map(|(a, b)| a * b).sum()
+        })
+    };
+    let likeliest = |mut sets: Vec<Vec<usize>>| {
+        sets.sort_by(|one, other| worse(one).total_cmp(&worse(other)));
+        sets.truncate(LIKELIEST);
+        sets
+    };
+    sizes.into_iter().flat_map(likeliest).collect()
+}
+
+/// The place of the first number of a mistake among all of a candidate's.
+fn first_number(candidate: &Candidate, at: usize) -> usize {
+    let before = candidate.mistakes[..at].iter();
+    let counts = before.map(|mistake| match mistake {
+        Mistake::Numbers(_, numbers) => numbers.len(),
+        _ => 0,
+    });
+    counts.sum()
 }
 
 /// The same, where some numbers of a mistake are the scene's, and the others are fitted anew.
@@ -97,13 +136,7 @@ fn refitted(
     fixed: &[usize],
 ) -> Option<Candidate> {
     let own = parameter.numbers(judge.scene);
-    let before = candidate.mistakes[..at]
-        .iter()
-        .map(|mistake| match mistake {
-            Mistake::Numbers(_, numbers) => numbers.len(),
-            _ => 0,
-        });
-    let first: usize = before.sum();
+    let first = first_number(candidate, at);
     let all = candidate.numbers();
     let mut start = all.clone();
     fixed.iter().for_each(|&i| start[first + i] = own[i]);

@@ -131,7 +131,8 @@ impl Prediction<'_> {
             Curve::Right => self.difference(at),
             curve => {
                 let (difference, mean) = (self.difference(at), self.moments.mean[at]);
-                [0, 1, 2].map(|i| difference[i] * curve.stretch(mean[i]))
+                let own = |light: f64| curve.seen_quickly(light);
+                [0, 1, 2].map(|i| own(mean[i] + difference[i]) - own(mean[i]))
             }
         };
         (0..self.seen.len()).flat_map(own).collect()

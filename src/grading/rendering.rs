@@ -64,7 +64,7 @@ impl Rendering {
 impl Candidate {
     /// The scene that a grid's cells are pixels of, without what it does not draw.
     pub fn drawn(&self, grid: &Grid) -> Scene {
-        let (camera, image) = grid.view(&self.scene, self.layout.more());
+        let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
             camera,
             image,
@@ -107,6 +107,7 @@ impl Candidate {
             let behaviour = Behaviour {
                 hit: hit.map(|(at, hit)| (drawn(at), hit)),
                 offset: behaviour.offset.map(|by| by / f64::from(grid.factor)),
+                pixel: 1.0 + (behaviour.pixel - 1.0) / f64::from(grid.factor),
                 ..behaviour
             };
             let tracer = FaultyTracer::new(scene(), behaviour, self.averaged);
@@ -166,7 +167,7 @@ impl Candidate {
         if !is_in_place || !is_same_view || self.averaged != other.averaged {
             return part;
         }
-        let (camera, image) = grid.view(one, self.layout.more());
+        let (camera, image) = grid.view(one);
         let projection = Projection::quick(&camera, &image);
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for object in 0..one.objects.len() {

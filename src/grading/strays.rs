@@ -30,9 +30,14 @@ impl Strays {
         self.square + beyond.sum::<f64>().max(0.0)
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.are_empty(1, |_| Some(0)) == [true]
+    /// Whether there are none, or no more pixels of one colour than are missed.
+    pub fn are_no_more(&self, missed: usize) -> bool {
+        let are_few = self.pixels.len() <= missed;
+        let of_edges = Self {
+            edges: self.edges.clone(),
+            ..Self::default()
+        };
+        are_few && of_edges.are_empty(1, |_| Some(0)) == [true]
     }
 
     /// Whether there are none in each of some groups of pixels.

@@ -7,6 +7,8 @@ use crate::{
     scene::Scene,
 };
 
+const FILTER: &str = "a pixel is the mean of light over its own square: its samples lie evenly in it, and nowhere else";
+
 impl Mistake {
     /// A word for programs.
     pub fn id(&self) -> &'static str {
@@ -17,6 +19,9 @@ impl Mistake {
                 _ => "eye_and_lookat",
             },
             Self::Patch(..) => "object_extra",
+            Self::Filter(width) if *width < 1.0 => "samples_narrow",
+            Self::Filter(_) => "wider_pixel",
+            Self::ColorsExchanged(..) => "colors_exchanged",
         }
     }
 
@@ -32,6 +37,10 @@ impl Mistake {
                 set => format!("the scene says {set}"),
             },
             Self::Patch(..) => "the scene has nothing of the kind there".to_owned(),
+            Self::Filter(_) => FILTER.to_owned(),
+            Self::ColorsExchanged(..) => {
+                "an object keeps its own colour beside its shape".to_owned()
+            }
         }
     }
 
@@ -41,6 +50,20 @@ impl Mistake {
             Self::Row(row, None) => return row.message.to_owned(),
             Self::Row(row, Some(object)) => {
                 return format!("{} {}", Owner::Object(*object).name(scene), row.message);
+            }
+            Self::ColorsExchanged(one, other) => {
+                let [one, other] = [*one, *other].map(|at| Owner::Object(at).name(scene));
+                return format!("{one} and {other} have each other's colours");
+            }
+            Self::Filter(width) if *width < 1.0 => {
+                return format!(
+                    "samples lie in the middle of each pixel alone, in a part about {width:.1} times as wide: the filter is too narrow"
+                );
+            }
+            Self::Filter(width) => {
+                return format!(
+                    "pixels are seen as if through a pixel about {width:.1} times as wide: a wider filter, a blur, or a smaller picture that was enlarged"
+                );
             }
             Self::Patch(light, [least, most]) => {
                 let color = Color {

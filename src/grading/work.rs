@@ -13,7 +13,7 @@ use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 
 /// Units for a picture, and for each of its pixels: together a second and a quarter for one of 320
 /// × 180 pixels, so that two mistakes in four objects are found, and three for one of 1280 × 720.
-const PICTURE: f64 = 4e7;
+const PICTURE: f64 = 6e7;
 const PIXEL: f64 = 41.0;
 
 /// Units of preparing an object for an exact picture, and for a sampled one, of a ray and of asking

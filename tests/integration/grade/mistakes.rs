@@ -169,6 +169,12 @@ const OTHERS: &[Mistake] = &[
     row("transposed", |p| {
         p.afterwards = Some(|picture| imageops::flip_horizontal(&imageops::rotate90(picture)))
     }),
+    row("turned_90 quarter, clockwise", |p| {
+        p.afterwards = Some(imageops::rotate90)
+    }),
+    row("turned_90 anticlockwise", |p| {
+        p.afterwards = Some(imageops::rotate270)
+    }),
     row("squeezed", |p| p.is_squeezed = true),
     row("channels red, blue, green", |p| {
         p.change = |[r, g, b]| [r, b, g]
@@ -189,6 +195,54 @@ const OTHERS: &[Mistake] = &[
         p.change = |color| gray(color, [0.2126, 0.7152, 0.0722])
     }),
     row("half_pixel up and left", |p| p.offset = -0.5),
+    row("half_pixel a whole pixel too far down and right", |p| {
+        p.offset = 1.0
+    }),
+    row("window_one_less", |p| {
+        let height = f64::from(p.size[1]);
+        p.distance *= (height - 1.0) / height;
+    }),
+    row("wider_pixel", |p| p.pixel = 2.0),
+    row("samples_narrow", |p| p.pixel = 0.5),
+    row("gamma_18", |p| {
+        p.change = |color| color.map(|byte| power(byte, 1.8))
+    }),
+    row("video_range", |p| {
+        p.change = |color| color.map(|byte| (16.0 + f64::from(byte) * 219.0 / 255.0).round() as u8)
+    }),
+    row("bytes_wrap", |p| {
+        p.change = |color| color.map(|byte| if byte == 255 { 0 } else { byte })
+    }),
+    row("board_both", |p| p.squares = Squares::BothEven),
+    row("roll_u_alone", |p| p.axes = Axes::RolledU),
+    row("fisheye", |p| p.axes = Axes::Fisheye),
+    row("sphere_unit_rays", |p| p.axes = Axes::LongRays),
+    row("u_not_normalised|camera.d", |p| {
+        let w = (p.eye - p.lookat).normalize();
+        p.distance /= p.up.normalize().cross(w).length();
+    }),
+    row("sphere_radius_root", |p| {
+        for object in &mut p.objects {
+            if let Shape::Sphere(_, radius) = &mut object.shape {
+                *radius = radius.sqrt();
+            }
+        }
+    }),
+    row("eye_lookat_exchanged", |p| {
+        (p.eye, p.lookat) = (p.lookat, p.eye)
+    }),
+    // The scene's 40 degrees, of which half is taken for 20 radians.
+    row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
+    row("colors_exchanged", |p| {
+        let [ball, crate_] = ["Ball", "Crate"].map(|name| p.object(name).color);
+        color(p, "Ball", crate_);
+        color(p, "Crate", ball);
+    }),
+    row("Crate.max|max", |p| {
+        if let Shape::Box(_, greatest) = p.shape("Crate") {
+            greatest.x = 1.9;
+        }
+    }),
     row("up_ignored (0, 1, 0)", |p| p.up = DVec3::Y),
     row("up_negated|turned_180", |p| p.up = -p.up),
     row("fov_halved", |p| p.distance *= 2.0),
@@ -226,6 +280,10 @@ pub fn scene(name: &str) -> (Program, String) {
         "clipped" => {
             program.near = 6.5;
             text = text.replace("d 2.75", "d 2.75  near 6.5");
+        }
+        "lens" => {
+            program.distance = 1.0 / libm::tan(20_f64.to_radians());
+            text = text.replace("d 2.75", "fov 40deg");
         }
         "low" => {
             program.view_height = 1.6;
@@ -319,6 +377,7 @@ fn figure() -> Program {
         is_parallelogram: false,
         misses_axis: false,
         faces: None,
+        pixel: 1.0,
         offset: 0.0,
         behind: Behind::Unseen,
         visible: Visible::Nearest,

@@ -88,6 +88,8 @@ pub enum Squares {
     Sum,
     /// By the first one, rounded down.
     Stripes,
+    /// By whether one of two that are rounded down is odd.
+    BothEven,
     /// By the sign of the product of their sines.
     Sines,
 }
@@ -105,6 +107,12 @@ pub enum Axes {
     LongW,
     /// w is made of lookat alone.
     WithoutEye,
+    /// u alone is rolled.
+    RolledU,
+    /// The angle of a ray grows as the distance from the picture's middle does.
+    Fisheye,
+    /// Rays are not divided by their length.
+    LongRays,
     /// All rays have the direction −w.
     Parallel,
 }
@@ -169,6 +177,8 @@ pub struct Program {
     pub misses_axis: bool,
     /// The colours of a box's faces across x, y and z, in the place of its own.
     pub faces: Option<[[u8; 3]; 3]>,
+    /// The side of the square that samples lie in, in pixels.
+    pub pixel: f64,
     /// Added to each sample's place, in pixels.
     pub offset: f64,
     pub behind: Behind,
@@ -216,12 +226,15 @@ impl Program {
         let (sin, cos) = libm::sincos(self.roll);
         let new = cos * u - sin * v;
         let old = if self.axes == Axes::NewU { new } else { u };
-        let (u, v) = (new, sin * old + cos * v);
+        let (u, v) = match self.axes {
+            Axes::RolledU => (new, v),
+            _ => (new, sin * old + cos * v),
+        };
         if self.axes == Axes::LongW {
             w = backward;
         }
         let pixel = self.view_height / f64::from(if self.is_wide { width } else { height });
-        let across = match self.is_squeezed {
+        let wide = match self.is_squeezed {
             true => self.view_height / f64::from(width),
             false => self.aspect * pixel,
         };
@@ -233,12 +246,21 @@ impl Program {
         let picture = RgbImage::from_fn(width, height, |column, row| {
             let mut sum = DVec3::ZERO;
             for index in 0..self.samples {
-                let [dx, dy] = self.place(index, &mut random);
-                let x = across * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
+                let place = self.place(index, &mut random);
+                let [dx, dy] = place.map(|at| 0.5 + (at - 0.5) * self.pixel);
+                let x = wide * (f64::from(column) + dx + self.offset - f64::from(width) / 2.0);
                 let y = pixel * (f64::from(height) / 2.0 - f64::from(row) - dy - self.offset);
-                let ray = (x * u + y * v - self.distance * w).normalize();
+                let (across, ahead) = (x * u + y * v, -self.distance * w);
+                let ray = match self.axes {
+                    Axes::LongRays => across + ahead,
+                    Axes::Fisheye => {
+                        let angle = across.length() / self.distance;
+                        libm::sin(angle) * across.normalize_or_zero() - libm::cos(angle) * w
+                    }
+                    _ => (across + ahead).normalize(),
+                };
                 let (from, ray) = match self.axes {
-                    Axes::Parallel => (self.eye + x * u + y * v, -w),
+                    Axes::Parallel => (self.eye + across, -w),
                     _ => (self.eye, ray),
                 };
                 let color = self.trace(from, ray, -w.normalize());
@@ -360,6 +382,7 @@ impl Program {
         let is_second = match self.squares {
             Squares::Floored | Squares::Truncated | Squares::Rounded => (i + k) % 2 != 0,
             Squares::Sum => ((at.x + at.z) / square).floor() as i64 % 2 != 0,
+            Squares::BothEven => i % 2 != 0 || k % 2 != 0,
             Squares::Stripes => i % 2 != 0,
             Squares::Sines => libm::sin(at.x / square) * libm::sin(at.z / square) < 0.0,
             Squares::Remainder => (i + k) % 2 == 1,
