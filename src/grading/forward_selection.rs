@@ -40,8 +40,8 @@ const ROUNDS: usize = 4;
 const SUSPECTS: usize = 12;
 
 /// A row about edges is told if the part that is seen of what it changes is that of one, to within
-/// this, and so many standard deviations from none; in a JPEG, if it leaves less than such a part of
-/// the squared difference.
+/// this, and so many standard deviations from none; in a JPEG, if it leaves less than such a part
+/// of the squared difference.
 const PART: f64 = 0.3;
 const SURE: f64 = 7.0;
 const LEFT_IN_CODED: f64 = 0.25;

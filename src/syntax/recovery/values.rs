@@ -18,8 +18,8 @@ const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄
 /// Those of a sum.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
-/// Characters of books and other languages that are no part of this one: what to write for one in the place of a
-/// value, and for one behind a value.
+/// Characters of books and other languages that are no part of this one: what to write for one in
+/// the place of a value, and for one behind a value.
 const OF_BOOKS: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
     (
