@@ -102,6 +102,8 @@ def prepare(folder, program, counts):
         (folder / f"{count}.scn").write_text(spheres(count))
     (folder / "broken.scn").write_text(broken(spheres(1000)))
     (folder / "session").write_bytes(session())
+    numbers = " ".join(str(number * 7 % 256) for number in range(3 * 320)) + "\n"
+    (folder / "plain.ppm").write_text("P3\n320 180\n255\n" + 180 * numbers)
     for name, sets in [("right", ["sampler.method=regular"]), ("wrong", ["sampler.method=regular", "camera.roll=-9deg"])]:
         arguments = ["render", FIGURE, "-o", folder / f"{name}.png", *sized(*SMALL, *sets)]
         subprocess.run([program, *arguments], check=True, stdin=subprocess.DEVNULL)
@@ -139,6 +141,7 @@ def commands(folder, width, height, counts):
     yield Command("diff wrong", ["diff", folder / "wrong.png", FIGURE, *small], status=1)
     yield Command("diff JPEG", ["diff", ROOT / "benches" / "figure_9_9.jpg", FIGURE, *small])
     yield Command("diff pictures", ["diff", folder / "right.png", folder / "wrong.png"], status=1)
+    yield Command("diff plain PPM", ["diff", folder / "plain.ppm", folder / "plain.ppm"])
     yield Command("grade", ["grade", FIGURE, folder / "right.png", *small])
     yield Command("editor session", ["lsp"], stdin=folder / "session")
     yield Command("probe", ["probe", FIGURE, "640.5", "360.5"])

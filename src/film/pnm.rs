@@ -358,22 +358,24 @@ impl<'b> Reader<'b> {
         let text = str::from_utf8(word).ok();
         let number = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
         let number = number.and_then(|text| text.parse().ok());
+        if let Some(number) = number {
+            self.at += word.len();
+            return Ok(number);
+        }
+        // Lines are counted from the first on: not for each number.
         let line = self.line();
-        self.at += word.len();
-        number.ok_or_else(|| {
-            damaged(match word {
-                [] => "it ends before its size and maxval".to_owned(),
-                _ => {
-                    let word = String::from_utf8_lossy(&word[..word.len().min(20)]);
-                    let is_number = word.parse::<f64>().is_ok();
-                    let way_out = match !is_number && word.starts_with(char::is_alphabetic) {
-                        true => ": what is not the picture's goes to standard error",
-                        false => "",
-                    };
-                    format!("`{word}` in line {line} is no whole number{way_out}")
-                }
-            })
-        })
+        Err(damaged(match word {
+            [] => "it ends before its size and maxval".to_owned(),
+            _ => {
+                let word = String::from_utf8_lossy(&word[..word.len().min(20)]);
+                let is_number = word.parse::<f64>().is_ok();
+                let way_out = match !is_number && word.starts_with(char::is_alphabetic) {
+                    true => ": what is not the picture's goes to standard error",
+                    false => "",
+                };
+                format!("`{word}` in line {line} is no whole number{way_out}")
+            }
+        }))
     }
 
     /// A number of one digit.

@@ -13,9 +13,9 @@
 (defun note (what value) (push (cons what value) found))
 
 (defun wait-for (condition)
-  (let ((end (+ (float-time) 20)))
+  (let ((end (+ (float-time) 60)))
     (while (not (funcall condition))
-      (when (> (float-time) end) (error "Not within twenty seconds: %S" condition))
+      (when (> (float-time) end) (error "Not within a minute: %S" condition))
       (accept-process-output nil 0.05))))
 
 (defun messages ()
