@@ -72,8 +72,9 @@ const SHIFTS: usize = 4;
 const HINTED: f64 = 3.0;
 const HINTED_PART: f64 = 0.3;
 
-/// The mistakes that explain a picture, from what a program without mistakes would have made.
-pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
+/// The mistakes that explain a picture best, from what a program without mistakes would have made,
+/// and whether they explain it.
+pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     let right = Candidate::right(judge.scene);
     let Some(best) = judge.judged(&right, &judge.middle) else {
         return Ok(None);
@@ -110,8 +111,10 @@ pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
     let Some(best) = nearest else {
         return Ok(None);
     };
+    let is_explained = explained.is_some();
     let last = match explained {
         None => best.candidate().clone(),
+        Some(right) if right.mistakes.is_empty() => right,
         Some(explained) => {
             let fewest = judge.work.without_limit(|| fewest(judge, &explained));
             let plainest = plain(judge, &fewest);
@@ -124,6 +127,7 @@ pub fn run(judge: &Judge) -> Result<Option<Judged>, Cancelled> {
     let found = judge
         .work
         .without_limit(|| judge.judged(&last, &judge.edges));
+    let found = found.map(|found| (found, is_explained));
     cancel::unless_set(judge.cancel, found)
 }
 

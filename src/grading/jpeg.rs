@@ -72,6 +72,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f6
         let first = *blocks[block(at)].get_or_insert(mean[at]);
         are_flat[block(at)] &= first == mean[at];
     }
+    // Most pixels are as the one before, and curves take long.
+    let mut known = [([f64::NAN; 2], f64::NAN); 3];
     let pixel = |at: usize| {
         let is_flat = are_flat[block(at)];
         let square = |table: &JpegTable| match is_flat {
@@ -87,9 +89,13 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f6
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
             // In light a step is the more, the brighter: it is told from so many deviations.
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
-            let encoded = linear_to_srgb(prediction.curve.seen(mean[at][i]));
-            let most = prediction.curve.light(srgb_to_linear(encoded + by));
-            let light = (most - mean[at][i]) / DEVIATIONS;
+            let own = [mean[at][i], by];
+            if known[i].0 != own {
+                let encoded = linear_to_srgb(prediction.curve.seen(own[0]));
+                let most = prediction.curve.light(srgb_to_linear(encoded + by));
+                known[i] = (own, (most - own[0]) / DEVIATIONS);
+            }
+            let light = known[i].1;
             light * light + mixed[i] * mixed[i] / (4.0 * count)
         })
     };

@@ -253,14 +253,16 @@ impl<'a> Reference<'a> {
     }
 }
 
-fn told(judge: &Judge, film: &Film, found: Option<Judged>) -> Verdict {
+fn told(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
     // What is told takes work, too.
     let is_cut = judge.work.is_cut();
     let mut verdict = match found {
-        Some(found) if !found.candidate().mistakes.is_empty() => wrong(judge, &found, is_cut),
-        _ if judge.explains(&right) && !has_other_colors(film, scene, jpeg) => {
+        Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
+            wrong(judge, &found, is_explained, is_cut)
+        }
+        Some((_, true)) if !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
             Verdict {
                 samples: judged.and_then(|judged| judged.score.samples),
@@ -301,7 +303,7 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 
 /// The verdict on a picture with mistakes: they are named if together they explain it, and else
 /// they are guesses.
-fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
+fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
     let is_shifted = last.behaviour.offset != [0.0; 2] || last.behaviour.pixel != 1.0;
@@ -353,7 +355,6 @@ fn wrong(judge: &Judge, found: &Judged, is_cut: bool) -> Verdict {
         let shown = judge.predicted(candidate, &judge.fine);
         shown.map_or(f64::INFINITY, |shown| shown.strays().square())
     };
-    let is_explained = judge.explains(last);
     let rest = (!is_explained).then(|| square(last) / square(&Candidate::right(scene)));
     let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
     mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);

@@ -57,19 +57,27 @@ impl Prediction<'_> {
                     }
                 }
                 Look::Curve(curve) => {
+                    let changed = |mean: f64, variance: f64| {
+                        // The slope over what noise of a step, of many samples or of one may
+                        // reach, whichever is greater: light that is cut off has none beside
+                        // where it is.
+                        let slope = |part: f64| {
+                            let by = variance.sqrt().max(STEP) * part;
+                            let (low, high) = ((mean - by).max(0.0), mean + by);
+                            (curve(high) - curve(low)) / (high - low)
+                        };
+                        let slope = slope(0.25).abs().max(slope(1.0).abs());
+                        [curve(mean), variance * (slope * slope)]
+                    };
+                    // Most cells show what the one before shows, and a curve takes long.
+                    let mut known = [[[f64::NAN; 2]; 2]; 3];
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {
-                            // The slope over what noise of a step, of many samples or of one may
-                            // reach, whichever is greater: light that is cut off has none beside
-                            // where it is.
-                            let slope = |part: f64| {
-                                let by = variance[i].sqrt().max(STEP) * part;
-                                let (low, high) = ((mean[i] - by).max(0.0), mean[i] + by);
-                                (curve(high) - curve(low)) / (high - low)
-                            };
-                            let slope = slope(0.25).abs().max(slope(1.0).abs());
-                            variance[i] *= slope * slope;
-                            mean[i] = curve(mean[i]);
+                            let own = [mean[i], variance[i]];
+                            if known[i][0] != own {
+                                known[i] = [own, changed(mean[i], variance[i])];
+                            }
+                            [mean[i], variance[i]] = known[i][1];
                         }
                     }
                 }
