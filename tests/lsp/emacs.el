@@ -19,7 +19,11 @@
       (accept-process-output nil 0.05))))
 
 (defun messages ()
-  (mapcar (lambda (it) (flymake-diagnostic-text it)) (flymake-diagnostics)))
+  "What is told of the text: by flymake, or by lsp-mode itself, whose reports flymake may not show
+in batch."
+  (or (mapcar (lambda (it) (flymake-diagnostic-text it)) (flymake-diagnostics))
+      (unless (eq client 'eglot)
+        (mapcar (lambda (it) (lsp-get it :message)) (lsp--get-buffer-diagnostics)))))
 
 (defun complete-here ()
   "What the client's completion at point offers for what is typed."
