@@ -1,8 +1,8 @@
 //! What is seen of each object of a scene.
 //!
 //! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; of
-//! those that are not seen, why. Areas are those of `exact` pictures. Where they would take too much
-//! work, the middles of pixels count instead, and the answer says so.
+//! those that are not seen, why. Areas are those of `exact` pictures. Where they would take too
+//! much work, the middles of pixels count instead, and the answer says so.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 

@@ -54,8 +54,8 @@ impl Span {
 
 /// Puts a list in the order of the text, by the spans of what is in it.
 ///
-/// One sort of numbers serves lists of all types: a sort for each would be a thirtieth of the
-/// engine that a browser loads.
+/// One sort of numbers serves lists of all types: a sort for each would be a fiftieth of the
+/// engine's code that a browser loads.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
     let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();

@@ -102,27 +102,18 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
 /// Breaks lines at words where they are longer than `width`, which terminals do within words. A
 /// line goes on below its last column, in the left half of the terminal.
 pub fn wrapped(text: &str, width: usize) -> String {
-    let mut broken = String::new();
-    for line in text.split_inclusive('\n') {
-        let (mut rest, mut indent) = (line, 0);
-        while rest.trim_end().chars().count() + indent > width {
-            let most = rest.char_indices().nth(width.saturating_sub(indent) + 1);
-            let most = most.map_or(rest.len(), |(at, _)| at);
-            let room = rest.get(..most).unwrap_or(rest);
-            let start = room.len() - room.trim_start().len();
-            let space = room.trim_end_matches('\n').rfind(' ');
-            let Some(at) = space.filter(|at| *at > start) else {
-                break;
-            };
-            let (first, behind) = rest.split_at(at);
-            broken += first.trim_end();
-            indent = last_column(line, width / 2);
-            broken += &format!("\n{:indent$}", "");
-            rest = behind.trim_start_matches(' ');
+    let broken = text.split('\n').map(|line| {
+        let words = line.trim_start_matches(' ');
+        let (start, _) = line.split_at(line.len() - words.len());
+        let indent = " ".repeat(last_column(line, width / 2));
+        let options = textwrap::Options::new(width).break_words(false);
+        let options = options.initial_indent(start).subsequent_indent(&indent);
+        match line.chars().count() > width {
+            true => textwrap::fill(words, options).into(),
+            false => Cow::Borrowed(line),
         }
-        broken += rest;
-    }
-    broken
+    });
+    broken.collect::<Vec<_>>().join("\n")
 }
 
 /// Where the last column starts that does so no farther right than `most`: behind two spaces.
@@ -253,7 +244,7 @@ mod tests {
             ("unbreakable_word_of_many\n", "unbreakable_word_of_many\n"),
             (
                 "  unbreakable_word_of_many x",
-                "  unbreakable_word_of_many x",
+                "  unbreakable_word_of_many\n  x",
             ),
             ("été été été été", "été été été\n  été"),
             ("\n\na\n", "\n\na\n"),

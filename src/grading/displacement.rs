@@ -18,7 +18,8 @@ const CHANCE: f64 = 50.0;
 /// make it.
 const NONE: f64 = 0.06;
 
-/// What one sample in the middle of each pixel adds to it.
+/// Pixels added to `NONE` for one sample in the middle of each pixel, and an nth of them for n
+/// samples.
 const NONE_OF_FEW: f64 = 0.06;
 
 /// How far few samples lie off the middles of all pixels alike, for each share of a sample's
@@ -27,34 +28,38 @@ const NONE_OF_FEW: f64 = 0.06;
 const OFF_MIDDLE: f64 = 0.75;
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
-/// The same of a single object, without and with one sample in a pixel, and with one in a JPEG,
-/// which has most of its noise from its coding: samples of a regular grid move an edge that is
-/// parallel to it by up to half of their distance.
+/// Greatest displacement of a single object's edges that is taken for none, in pixels: without
+/// noise, and how much more with one sample in a pixel of a plain picture, and of a JPEG, most of
+/// whose noise is from its coding. Samples of a regular grid move an edge that is parallel to it by
+/// up to half of their distance.
 const NONE_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// What a JPEG shows of all edges that were moved, though it hides most of it: by how many pixels,
-/// more than three samples lie off the middle, and which square.
+/// Least displacement of all edges of a JPEG that is never taken for none, in pixels, and least
+/// square of its length: coding hides most of a displacement, and three samples at the same places
+/// in all pixels lie less than this off the middle.
 const MOVED: f64 = 0.2;
 const SURELY_MOVED: f64 = 150.0;
 
 const COUNT: usize = 6;
 
-/// So many standard deviations from a pixel's own width are no chance.
+/// Standard deviations beyond which another width of pixels is no chance.
 const SURE: f64 = 8.0;
 
-/// Squares of widths that are taken for a pixel's own: not more than the first, and not less than 1
-/// by the third, and by so many times the share of a sample's variance that an error has, as few
-/// samples at the same places in all pixels make a picture sharper, or less sharp.
+/// Squares of widths that are taken for a pixel's own: at most `WIDE`, and at least 1 less
+/// `NARROW`. `WIDER` and `NARROWER` times the share of a sample's variance that an error has are
+/// added to these margins, as few samples at the same places in all pixels make a picture sharper,
+/// or less sharp.
 const WIDE: f64 = 1.4;
 const WIDER: f64 = 3.0;
 const NARROW: f64 = 0.25;
 const NARROWER: f64 = 5.0;
 
-/// The same of a JPEG, whose coding makes edges less sharp: of 80 right ones of qualities from 75
-/// to 100 the greatest is 4.7, and pixels three times as wide have 7.
+/// Greatest square of a width that is taken for a pixel's own in a JPEG, whose coding makes edges
+/// less sharp: 80 right ones of qualities from 75 to 100 have 4.7 at most, and one seen through
+/// pixels three times as wide has 7.
 const WIDE_IN_CODED: f64 = 5.5;
 
-/// Widths that are told.
+/// Least and greatest width that is told, in pixels.
 const LEAST_WIDTH: f64 = 0.1;
 const MOST_WIDTH: f64 = 6.0;
 

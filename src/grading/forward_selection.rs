@@ -46,25 +46,27 @@ const PART: f64 = 0.3;
 const SURE: f64 = 7.0;
 const LEFT_IN_CODED: f64 = 0.25;
 
-/// Rows that move what is seen by pixels or parts of them.
+/// Ids of the rows that move what is seen by pixels or parts of them.
 const PIXELS: [&str; 2] = ["half_pixel", "window_one_less"];
 
-/// The row about edges that is seen in a JPEG, too.
+/// Id of the only row about edges that can be told from a JPEG.
 const IN_CODED: &str = "averaged_encoded";
 
-/// By how much the width of pixels is varied that is told from edges.
+/// Factors of the width that edges tell, of which the likeliest is taken.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
-/// A wider pixel is at least so wide.
+/// Least width of a pixel that is called wide.
 const LEAST_WIDE: f64 = 1.1;
+/// Widths of narrow pixels, of which the likeliest is taken: edges tell them less well.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// What is a little wrong at most: in a twentieth of all pixels.
+/// A picture is a little wrong if at most one of so many pixels is.
 const LITTLE: usize = 20;
 
 /// Half a pixel is looked for where the picture lies no farther than this from it, in pixels.
 const NEAR: f64 = 0.5;
 
-/// So many ways to move what is seen are looked at, the nearest of them.
+/// Maximum number of rows that move what is seen and are looked at, those nearest to what edges
+/// tell.
 const SHIFTS: usize = 4;
 
 /// Of rows that show in areas, a tiny grid has to show so many standard deviations and such a part
@@ -79,14 +81,16 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     let Some(best) = judge.judged(&right, &judge.middle) else {
         return Ok(None);
     };
-    // What is not looked at yet, and how many times not the best was chosen on the way to it.
+    // Candidates not looked at yet, each with its detours: how many places behind the best its
+    // mistakes stood when they were chosen, in sum.
     let mut open = vec![(0, best)];
     let mut nearest: Option<Judged> = None;
     let mut seen: Vec<Candidate> = Vec::new();
     let mut explained = None;
-    // Of those with the fewest such choices the last one made, which goes on from the one before.
+    // The fewest detours first, and of these the candidate that was made last, which goes on where
+    // the one before ended.
     while let Some(at) = (0..open.len()).min_by_key(|&at| open[at].0) {
-        let (others, mut from) = open.remove(at);
+        let (detours, mut from) = open.remove(at);
         explained = explained_with(judge, from.candidate());
         // Numbers that are not the right ones leave a little, which others would seem to explain.
         if explained.is_none() && !from.candidate().numbers().is_empty() {
@@ -103,7 +107,7 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
             let next = next.filter(|next| !seen.iter().any(|one| one.is_alike(next.candidate())));
             let next: Vec<Judged> = next.collect();
             seen.extend(next.iter().map(|next| next.candidate().clone()));
-            let next = (others..).zip(next).collect::<Vec<_>>();
+            let next = (detours..).zip(next).collect::<Vec<_>>();
             open.splice(0..0, next);
         }
         nearest = nearer(nearest, from);
@@ -131,7 +135,7 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     cancel::unless_set(judge.cancel, found)
 }
 
-/// The likelier of two.
+/// The candidate of less cost.
 fn nearer(one: Option<Judged>, other: Judged) -> Option<Judged> {
     match one {
         Some(one) if one.cost <= other.cost => Some(one),
@@ -227,7 +231,7 @@ fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
 /// The rows that move what is seen by about so much, the nearest first.
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| PIXELS.contains(&row.id));
-    let by = candidate.layout.source_of_way(by);
+    let by = candidate.layout.source_direction(by);
     let off = |row: &'static Row| {
         let mistake = Mistake::Row(row, None);
         let shift = candidate.with(mistake.clone())?.behaviour.offset;

@@ -26,8 +26,8 @@ impl Layout {
         (x, y)
     }
 
-    /// What a way in the picture is in what is shown.
-    pub fn source_of_way(self, [x, y]: [f64; 2]) -> [f64; 2] {
+    /// The direction in the source of a direction in the picture, to the right and down.
+    pub fn source_direction(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = if self.is_transposed { [y, x] } else { [x, y] };
         let sign = |is_turned: bool| if is_turned { -1.0 } else { 1.0 };
         [sign(self.is_mirrored) * x, sign(self.is_upside_down) * y]

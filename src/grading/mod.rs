@@ -10,8 +10,10 @@
 //!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
 //! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains
 //!    (`strays`), and whether it lies elsewhere (`displacement`).
-//! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is what it may spend. `levenberg_marquardt` fits numbers,
-//!    `numeric_mistakes` says which, and `forward_selection` takes one mistake after the other while that pays.
+//! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is
+//!    what it may spend. `levenberg_marquardt` fits numbers, `numeric_mistakes` says which, and
+//!    `forward_selection` takes one mistake after the other while that pays, and goes back where it
+//!    led nowhere.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
 
 mod candidate;

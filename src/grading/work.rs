@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{area::Area, exact::Integrator, scene::Scene, tracer::World};
 
-/// Units for a picture, and for each of its pixels: together a second and a quarter for one of 320
-/// × 180 pixels, so that two mistakes in four objects are found, and three for one of 1280 × 720.
+/// Units for a picture, and for each of its pixels: together 1.9 seconds for one of 320 × 180
+/// pixels, so that two mistakes in four objects are found, and 2.9 for one of 1280 × 720.
 const PICTURE: f64 = 6e7;
 const PIXEL: f64 = 41.0;
 

@@ -67,7 +67,8 @@ if (host === "static") {
     .replace('<span id="kept-served">', '<span id="kept-served" hidden>')
     // The engine in the browser writes no EXR.
     .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>')
-    // Lines that begin with a tag need no indentation. Scenes have none: their `<` is written `&lt;`.
+    // Lines that begin with a tag need no indentation. Scenes have none: their `<` is written
+    // `&lt;`.
     .replace(/^ +</gm, "<");
 }
 writeFileSync(path.join(folder, "index.html"), page);

@@ -20,8 +20,8 @@ const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio
 
 // Where size comes first, hardly anything is inlined; a little of it makes frames about twice as fast, and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=10"];
-// Panics name the files that they are in. Without this machine's folders these names are short, and the
-// site is as large on every machine.
+// Panics name the files that they are in. Without this machine's folders these names are short, and
+// the site is as large on every machine.
 const sources = path.join(process.env.CARGO_HOME ?? path.join(homedir(), ".cargo"), "registry/src");
 const registries = existsSync(sources) ? readdirSync(sources) : [];
 const short = registries.map(registry => `--remap-path-prefix=${path.join(sources, registry)}/=`);

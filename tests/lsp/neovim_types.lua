@@ -1,6 +1,6 @@
 -- Keys are typed into a second Neovim one after another, as a person types them, and the line that
--- comes of each row is written down. A row of `rows.json` is the text, with `$0` for the cursor, and
--- its keys; `menu` among them waits until completions are shown.
+-- comes of each row is written down. A row of `rows.json` is the text, with `$0` for the cursor,
+-- and its keys; `menu` among them waits until completions are shown.
 
 local found = { lines = {} }
 

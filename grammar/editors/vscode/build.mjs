@@ -1,6 +1,6 @@
 // Bundles the extension with what it uses, and the licences of that, into dist/; its page with the
-// pictures in it; Pinhole's own licences; and the program that the environment variable BUNDLE names,
-// if it is set.
+// pictures in it; Pinhole's own licences; and the program that the environment variable BUNDLE
+// names, if it is set.
 
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import path from "node:path";
