@@ -30,10 +30,23 @@ pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     Some(of_field(path.field_row()?, unit))
 }
 
-/// The numbers and angles that a `let` is, with its name and its place, and their bounds: those of
-/// the line comment behind it, as `// [1:5]` or `// [1:0.1:5]`, or else those of the fields that it
+/// A number or an angle that a `let` is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slider<'a> {
+    /// The definition's name.
+    pub name: &'a str,
+    /// Where the value stands.
+    pub span: Span,
+    /// Between which numbers it may be.
+    pub limits: Limits,
+    /// Why the comment behind it gives no range, where it looks as if it should.
+    pub note: Option<String>,
+}
+
+/// The numbers and angles that definitions are, with their bounds: those of the line comment behind
+/// one, as `// [1:5]`, `// [1:0.1:5]` or `// [0deg:5deg:90deg]`, or else those of the fields that it
 /// stands in.
-pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<(&'a str, Span, Limits)> {
+pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<Slider<'a>> {
     let slider = |definition: &'a Definition<'_>| {
         let (name, value) = (definition.name.as_ref()?, &definition.value);
         let is_tuple = matches!(value.kind, ValueKind::Tuple(_));
@@ -60,32 +73,89 @@ pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<(&'a str, Span, Limits)> {
                 })
         };
         let behind = analysis.text()[value.span.end..].lines().next()?;
-        let limits = commented(behind).unwrap_or_else(by_schema);
-        Some((name.text, value.span, limits))
+        let (limits, note) = match range_behind(behind).map(|range| commented(range, unit)) {
+            // A number that is whole stays so.
+            Some(Ok(limits)) => {
+                let is_whole = by_schema().is_whole;
+                (Limits { is_whole, ..limits }, None)
+            }
+            Some(Err(note)) => (by_schema(), Some(note)),
+            None => (by_schema(), None),
+        };
+        Some(Slider {
+            name: name.text,
+            span: value.span,
+            limits,
+            note,
+        })
     };
     analysis.model.definitions().filter_map(slider).collect()
 }
 
-/// The bounds, and the step between them, of a comment that is all that stands behind a value.
-fn commented(behind: &str) -> Option<Limits> {
+/// What stands in the brackets of a comment that is all that stands behind a value, if one of its
+/// parts begins as a number does: others are remarks.
+fn range_behind(behind: &str) -> Option<&str> {
     let comment = behind.trim_start().strip_prefix("//")?.trim_start();
     let (range, _) = comment.strip_prefix('[')?.split_once(']')?;
-    let numbers: Result<Vec<f64>, _> = range.split(':').map(|it| it.trim().parse()).collect();
-    let (least, step, most) = match numbers.ok()?[..] {
-        [least, most] => (least, None, most),
-        [least, step, most] if step > 0.0 => (least, Some(step), most),
-        _ => return None,
+    let is_number = |part: &str| {
+        part.trim_start()
+            .trim_start_matches(['+', '-', '.'])
+            .starts_with(|it: char| it.is_ascii_digit())
     };
-    let (least, most) = (
-        Some(least),
-        (least < most && most.is_finite()).then_some(most),
-    );
-    most.map(|_| Limits {
-        least,
-        most,
+    (range.contains(':') && range.split(':').any(is_number)).then_some(range)
+}
+
+/// Parses a range into bounds in the unit of a value; its ends may come in either order.
+///
+/// # Errors
+///
+/// Why it is no range, in a sentence.
+fn commented(range: &str, unit: Option<Unit>) -> Result<Limits, String> {
+    let numbers: Result<Vec<f64>, _> = range
+        .split(':')
+        .map(|it| in_unit(it.trim(), unit))
+        .collect();
+    let (one, step, other) = match numbers?[..] {
+        [one, other] => (one, None, other),
+        [one, step, other] => (one, Some(step.abs()), other),
+        _ => return Err("a range has two ends, and at most a step between them".to_owned()),
+    };
+    if one == other {
+        return Err("both ends of the range are the same".to_owned());
+    }
+    if step == Some(0.0) {
+        return Err("the step of the range is 0".to_owned());
+    }
+    Ok(Limits {
+        least: Some(one.min(other)),
+        most: Some(one.max(other)),
         step,
         ..Limits::default()
     })
+}
+
+/// A number of a range; one without a unit is in that of the value.
+fn in_unit(written: &str, unit: Option<Unit>) -> Result<f64, String> {
+    let units = [Unit::Degrees, Unit::Radians].into_iter();
+    let mut own = units.filter_map(|unit| Some((written.strip_suffix(unit.name())?, unit)));
+    let (number, own) = own
+        .next()
+        .map_or((written, None), |(it, unit)| (it, Some(unit)));
+    let number = number.trim_end().replace('_', "").parse().ok();
+    let number: f64 = number
+        .filter(|it: &f64| it.is_finite())
+        .ok_or_else(|| format!("`{written}` in the range is no number"))?;
+    match (own, unit) {
+        (Some(own), None) => {
+            let name = own.name();
+            Err(format!(
+                "the range is in {name}, and the number has no unit"
+            ))
+        }
+        (Some(Unit::Degrees), Some(Unit::Radians)) => Ok(Unit::Degrees.of(number).in_radians()),
+        (Some(Unit::Radians), Some(Unit::Degrees)) => Ok(Unit::Radians.of(number).in_degrees()),
+        _ => Ok(number),
+    }
 }
 
 /// The bounds by the conditions of a field, in a unit.

@@ -28,7 +28,7 @@ pub use completion::{Completion, CompletionKind, Piece, completions};
 pub use folding::{Fold, FoldKind, folds};
 pub use hints::{Hint, hints};
 pub use hover::{Hover, hover};
-pub use limits::{Limits, limits, sliders};
+pub use limits::{Limits, Slider, limits, sliders};
 pub use names::{Occurrence, definition, occurrences, renamable, rename};
 pub use semantic::{SemanticKind, SemanticToken, semantic_tokens};
 pub use signature::{Signature, signature};

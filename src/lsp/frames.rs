@@ -3,7 +3,7 @@
 //!
 //! A frame that is not wanted any more is dropped between two slices.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, mem};
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use lsp_server::RequestId;
@@ -33,6 +33,8 @@ pub struct Frames(Vec<Frame>);
 struct Frame {
     id: RequestId,
     uri: Uri,
+    /// The version of the text.
+    version: i32,
     /// What width and height are divided by.
     scale: u32,
     /// What the scene asks for if it is none.
@@ -50,8 +52,13 @@ impl Frames {
         version: &SceneVersion,
     ) -> Result<Vec<RequestId>, Refusal> {
         let new = Frame::new(id, uri, params, version)?;
-        let what = |frame: &Frame| (frame.uri.clone(), frame.scale, frame.samples);
-        let superseded = self.remove(|frame| what(frame) == what(&new));
+        let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
+        let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
+        // What is asked for again goes on.
+        if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
+            return Ok(vec![mem::replace(&mut known.id, new.id)]);
+        }
+        let superseded = self.remove(|frame| frame.uri == new.uri && frame.version != new.version);
         self.0.push(new);
         Ok(superseded)
     }
@@ -85,13 +92,16 @@ impl Frames {
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
+        last: &mut HashMap<Uri, SceneVersion>,
     ) -> Result<Option<Value>, Refusal> {
         let Some(frame) = self.0.first_mut() else {
             return Ok(None);
         };
-        match scenes.get_mut(&frame.uri) {
-            Some(Some(version)) => frame.advance(version),
-            _ => Ok(Some(Value::Null)),
+        let newest = scenes.get_mut(&frame.uri).and_then(Option::as_mut);
+        let mut versions = newest.into_iter().chain(last.get_mut(&frame.uri));
+        match versions.find(|version| version.number == frame.version) {
+            Some(version) => frame.advance(version),
+            None => Ok(Some(Value::Null)),
         }
     }
 }
@@ -105,11 +115,25 @@ impl Frame {
     ) -> Result<Self, Refusal> {
         let scale = optional(params, "scale")?.unwrap_or(1);
         let samples = optional(params, "samples")?;
-        let zero = [("scale", scale == 0), ("samples", samples == Some(0))];
+        let most: Option<u64> = optional(params, "pixels")?;
+        let longest: Option<u32> = optional(params, "side")?;
+        let zero = [
+            ("scale", scale == 0),
+            ("samples", samples == Some(0)),
+            ("pixels", most == Some(0)),
+            ("side", longest == Some(0)),
+        ];
         if let Some((name, _)) = zero.iter().find(|(_, is_zero)| *is_zero) {
             let message = format!("`{name}` is a whole number of at least 1");
             return Err(Refusal::invalid(message));
         }
+        let fits = |scale: &u32| {
+            let (width, height) = version.size(*scale);
+            most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
+                && longest.is_none_or(|longest| width.max(height) <= longest)
+        };
+        // By the largest scale there is one pixel, which fits.
+        let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);
         if whole.pixels() > MOST_PIXELS {
@@ -135,6 +159,7 @@ impl Frame {
         Ok(Self {
             id,
             uri,
+            version: version.number,
             scale,
             samples,
             slices: Slices::new(sampling, [width, height]).map_err(Refusal::failed)?,

@@ -1,6 +1,6 @@
 //! A request about a document's picture, and its answer: docs/protocol.md has the contract.
 
-use std::cell::LazyCell;
+use std::{borrow::Cow, cell::LazyCell};
 
 use glam::DVec2;
 use serde_json::{Value, json};
@@ -13,10 +13,10 @@ use super::{
 use crate::{
     editor::{
         self, Analysis,
-        viewport::{self, Along, Drag, Shown, Vanishing},
+        viewport::{self, Along, Drag, Outline, Shown, Vanishing},
     },
+    numbers::{short, short_vector, significant},
     scene::{Object, Shape},
-    source::Span,
 };
 
 /// What the names of our own requests begin with.
@@ -61,16 +61,20 @@ fn written_limits(limits: editor::Limits) -> Value {
         "least": limits.least,
         "most": limits.most,
         "open": limits.is_open,
-        "whole": limits.is_whole,
+        "step": limits.step.or(limits.is_whole.then_some(1.0)),
     })
 }
 
 /// The numbers and angles that definitions are; of texts with errors, too.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
-    let written = |(name, span, limits): (&str, Span, editor::Limits)| {
-        let (range, step) = (converter.range(span), limits.step);
-        json!({ "name": name, "range": range, "limits": written_limits(limits), "step": step })
+    let written = |slider: editor::Slider<'_>| {
+        json!({
+            "name": slider.name,
+            "range": converter.range(slider.span),
+            "limits": written_limits(slider.limits),
+            "note": slider.note,
+        })
     };
     Ok(sliders.map(written).collect())
 }
@@ -101,12 +105,29 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     let (scene, world) = version.world(1);
     let (hit, color) = viewport::pick(scene, world, at).unzip();
     let hit = hit.flatten();
+    let image = &scene.image;
+    // A point of the right or lower edge belongs to the last pixel.
+    let pixel = [(at.x, image.width), (at.y, image.height)];
+    let pixel = pixel.map(|(at, count)| (at as u32).min(count - 1));
+    let seen = color.map(|color| {
+        let on = hit.map_or("background".to_owned(), |hit| {
+            let place = short_vector(hit.point.map(|it| significant(it, 4)));
+            let away = short(significant(hit.t, 4));
+            format!(
+                "{} at {place} · {away} away ·",
+                label(&scene.objects[hit.object])
+            )
+        });
+        format!("{on} {color} · pixel {}, {}", pixel[0], pixel[1])
+    });
     Ok(json!({
         "object": hit.map(|hit| object(hit.object, converter, version)),
         "point": hit.map(|hit| hit.point.to_array()),
         "distance": hit.map(|hit| hit.t),
         "depth": hit.map(|hit| hit.depth),
         "color": color.map(|color| color.to_string()),
+        "pixel": color.map(|_| pixel),
+        "text": seen,
     }))
 }
 
@@ -117,6 +138,7 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
         "index": index,
         "kind": object.shape.kind(),
         "name": object.name,
+        "label": label(object),
         "range": converter.range(object.span),
         "selection": converter.range(version.selections[index]),
     });
@@ -126,20 +148,40 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     facts
 }
 
+/// The name, or the kind with the indices by which the members of a block are told apart.
+fn label(object: &Object) -> Cow<'_, str> {
+    let kind = object.shape.kind();
+    match (&object.name, &*object.indices) {
+        (Some(name), _) => Cow::Borrowed(name),
+        (None, []) => Cow::Borrowed(kind),
+        (None, indices) => Cow::Owned(format!("{kind} {indices:?}")),
+    }
+}
+
 /// The objects without what is drawn of them.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
     // Objects stand on the first board, wherever it stands in the text.
-    let is_board = |object: &Object| matches!(object.shape, Shape::Checkerboard(_));
     let floor = match shown {
         Shown::First(_) => objects.iter().position(is_board),
         Shown::Only(_) => None,
     };
     let listed = (0..objects.len()).filter(|index| shown.has(*index) || Some(*index) == floor);
-    Ok(listed
-        .map(|index| object(index, converter, version))
-        .collect())
+    let overlays = viewport::overlays(&version.scene, &shown);
+    let listed = listed.map(|index| {
+        let mut object = object(index, converter, version);
+        let outline = overlays.objects.iter().find(|it| it.object == index);
+        // Of a board that is not crossed by the view axis nothing is drawn, but it may be seen.
+        let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
+        object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
+        object
+    });
+    Ok(listed.collect())
+}
+
+fn is_board(object: &Object) -> bool {
+    matches!(object.shape, Shape::Checkerboard(_))
 }
 
 fn shown(params: &Value) -> Result<Shown, Refusal> {
@@ -148,8 +190,16 @@ fn shown(params: &Value) -> Result<Shown, Refusal> {
     Ok(only.map_or(Shown::First(further), Shown::Only))
 }
 
-fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
-    let overlays = viewport::overlays(&version.scene, &shown(params)?);
+fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
+    let mut overlays = viewport::overlays(&version.scene, &shown(params)?);
+    if overlays
+        .objects
+        .iter()
+        .any(|it| is_board(&version.scene.objects[it.object]))
+    {
+        let (scene, world) = version.world(1);
+        viewport::hide(&mut overlays, scene, world);
+    }
     let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
     let vanishing = vanishing.map(|(axis, Vanishing { point, lines })| {
         json!({ "axis": axis, "point": point.map(written_point), "lines": written_lines(lines) })
@@ -173,6 +223,29 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &SceneVersion) ->
         "far": written_lines(&overlays.far),
         "objects": objects.collect::<Vec<_>>(),
     }))
+}
+
+/// In which part of the picture an object's first handle is seen, in words.
+fn place(outline: &Outline, size: [u32; 2]) -> String {
+    let at = outline.handles.first().and_then(|(_, at)| *at);
+    let size = DVec2::from(size.map(f64::from));
+    let part = at.map(|at| (3.0 * at / size).floor());
+    let third = |part: f64, words: [&'static str; 3]| {
+        let found = (0..3).zip(words).find(|(at, _)| f64::from(*at) == part);
+        found.map(|(_, word)| word)
+    };
+    let down = part.and_then(|part| third(part.y, ["top", "middle", "bottom"]));
+    let across = part.and_then(|part| third(part.x, ["left", "centre", "right"]));
+    let points = outline.lines.iter().flatten();
+    let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let (low, high) = points.fold(none, |(low, high), &it| (low.min(it), high.max(it)));
+    match down.zip(across) {
+        Some((down, across)) => format!("{down} {across}"),
+        None if high.cmpge(DVec2::ZERO).all() && low.cmple(size).all() => {
+            "middle beside the picture".to_owned()
+        }
+        None => "not in the picture".to_owned(),
+    }
 }
 
 fn drag(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {

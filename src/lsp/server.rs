@@ -3,7 +3,7 @@
 //! What a client tells is taken in at once, and what it asks is put into a queue, of which [`Server::advance`] answers a slice; so a host can
 //! see what has come in the meantime, as a request's cancelling. Each answer is about the text as it was when it was asked for: before a text changes, what waits
 //! about it is answered. Diagnostics are computed for a text's last version alone. A frame, which takes longer than all else, is made in slices when nothing else is to
-//! be done, and given up where its text changes.
+//! be done, and given up where its text changes, unless it was asked for by `last`.
 
 use std::{
     cell::LazyCell,
@@ -50,6 +50,8 @@ pub struct Server {
     changed: BTreeSet<String>,
     /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
+    /// Of each text that has changed, the last version without errors before that.
+    last: HashMap<Uri, SceneVersion>,
     frames: Frames,
     log: fn(&str),
 }
@@ -63,6 +65,7 @@ impl Server {
             waiting: VecDeque::new(),
             changed: BTreeSet::new(),
             scenes: HashMap::new(),
+            last: HashMap::new(),
             frames: Frames::default(),
             log,
         }
@@ -155,8 +158,15 @@ impl Server {
             let (uri, number) = (converter.uri.clone(), converter.document.version);
             let version = self.scenes.entry(uri.clone());
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
+            if version.is_some() && about == "frame" {
+                // From now on this one is the last without errors.
+                self.last.remove(&uri);
+            }
             let params = &request.params;
-            match (version, about) {
+            let wants_last = about == "frame" && params.get("last") == Some(&Value::Bool(true));
+            let last = || self.last.get(&uri).filter(|_| wants_last);
+            let pictured = version.as_ref().or_else(last);
+            match (pictured, about) {
                 (Some(version), "frame") => {
                     let push = || self.frames.push(id.clone(), uri, params, version);
                     match unharmed(push) {
@@ -164,7 +174,7 @@ impl Server {
                         Err(refusal) => said.push(response(id, Err(refusal))),
                     }
                 }
-                (version, _) => {
+                _ => {
                     let answer =
                         || picture_requests::answer(about, params, converter, analysis, version);
                     said.push(response(id, unharmed(answer)));
@@ -186,15 +196,31 @@ impl Server {
     /// Makes a slice of a frame. Says the frame if it is done.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.oldest()?;
-        let (frames, scenes) = (&mut self.frames, &mut self.scenes);
-        let answer = unharmed(|| frames.advance(scenes)).transpose()?;
+        let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);
+        let answer = unharmed(|| frames.advance(scenes, last)).transpose()?;
         self.frames.cancel(&id);
         Some(response(id, answer))
     }
 
-    /// Forgets the scene of a text that has changed. Answers those who wait for a frame of it.
+    /// Keeps the last version without errors of a text that has changed.
+    fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
+        let Some(Some(version)) = self.scenes.remove(uri) else {
+            // Frames that are made are of an earlier version, and go on.
+            return Vec::new();
+        };
+        self.last.insert(uri.clone(), version);
+        self.drop_frames(uri)
+    }
+
+    /// Forgets a text that has come or gone.
     fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
+        self.last.remove(uri);
+        self.drop_frames(uri)
+    }
+
+    /// Answers those who wait for a frame of a text that has changed.
+    fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
             let message = "the text has changed".to_owned();
@@ -292,7 +318,7 @@ impl Server {
         if let Err(message) = document.change(version, &changes) {
             return refuse(message);
         }
-        let said = self.forget(&uri);
+        let said = self.outdate(&uri);
         self.changed.insert(uri.0);
         Ok(said)
     }

@@ -35,7 +35,7 @@ const { metafile } = await build({
   logLevel: "warning",
   outdir: folder,
 });
-await build({ entryPoints: ["src/studio.css"], minify: true, logLevel: "warning", outdir: folder });
+await build({ entryPoints: ["src/studio.css"], bundle: true, minify: true, logLevel: "warning", outdir: folder });
 
 // A site sends no headers of its own, so its policy stands in the page. The served host sends a stricter one with a nonce for the styles of the editor.
 const policy = [

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera::distance,
-    edits::{changes, edits},
+    edits::{changes, edits, together},
     handles::{Along, handles, moved},
 };
 use crate::{
@@ -101,12 +101,9 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
         let (handle, at) = *handles(&object.shape, &projection, projection.right).first()?;
         let to = projection.point(at?)? + DVec2::new(projection.size.x / 20.0, 0.0);
         let moved = moved(object.shape, handle, to, Some(Along::Floor), &projection).ok()?;
-        edits(
-            analysis,
-            block,
-            &changes(block, Part::Shape(object.shape), moved),
-            1,
-        )
+        let changes = changes(block, Part::Shape(object.shape), moved);
+        let (changes, rounding) = together(&changes, 1);
+        edits(analysis, block, &changes, &rounding)
     };
     let is_own =
         |edit: &Edit| block.span.start <= edit.span.start && edit.span.end <= block.span.end;

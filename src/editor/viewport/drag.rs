@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::{Change, changes, edits, rounded},
+    edits::{Change, changes, edits, rounded, together},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles},
 };
 use crate::{
@@ -170,9 +170,11 @@ pub fn drag(
             || fields.all(|field| is_meant(field) || found.value(field) == current.value(field))
     };
     for decimals in first..=first + DIGITS {
-        let edits = edits(analysis, block, &changes, decimals);
+        let (changes, rounding) = together(&changes, decimals);
+        let changes = &changes;
+        let edits = edits(analysis, block, changes, &rounding);
         // The place of the press is one of those that it snaps to.
-        let is_back = snapped.is_some() && rounded(current, &changes, decimals) == Some(current);
+        let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
             return Ok(Dragged::default());
         }
@@ -190,13 +192,13 @@ pub fn drag(
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
                 let also = match edits.iter().all(is_own) {
-                    true => others_changed(analysis, place, &changes, [&scene_alone, &after]),
+                    true => others_changed(analysis, place, changes, [&scene_alone, &after]),
                     false => {
                         let after = read(&sources.file, [&edits, &[]])?;
                         others_changed(
                             &Analysis::new(sources),
                             drag.object,
-                            &changes,
+                            changes,
                             [scene, &after],
                         )
                     }
@@ -207,7 +209,7 @@ pub fn drag(
                     is_new.then(|| format!("{name}.{} = {after}", change.name))
                 };
                 let values = changes.iter().filter_map(value);
-                let values = values.chain(lens(image, &changes, found)).collect();
+                let values = values.chain(lens(image, changes, found)).collect();
                 return Ok(Dragged {
                     edits,
                     values,
@@ -217,7 +219,7 @@ pub fn drag(
             Ok(_) => refusal = tied(),
             // More digits might slip by what the language forbids, and nobody would see the
             // difference.
-            Err(why) => match rounded(current, &changes, decimals) {
+            Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
             },

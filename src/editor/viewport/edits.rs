@@ -70,9 +70,83 @@ pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
         .collect()
 }
 
-/// A part whose fields have changed, with their values rounded to so many decimals.
-pub fn rounded(part: Part, changes: &[Change], decimals: i32) -> Option<Part> {
-    let number = |from: f64, by: f64| round(from + by, decimals);
+/// How far a number changes for one by which another changes that moves with it: as much, as `v0`
+/// and `v1`, or half as much, to either side, as the center of a box for its size.
+const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
+
+/// Relative deviation of two amounts that are the same but for rounding.
+const SAME: f64 = 1e-6;
+
+/// How numbers are written that have changed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rounding {
+    /// Number of decimals, which may be less than 0.
+    decimals: i32,
+    /// Amounts that are rounded already: what has changed by one has all digits of the sum.
+    exact: Vec<f64>,
+}
+
+/// Changes for a number of decimals: numbers along an axis that change together do so by the same
+/// rounded amount, so that what is not held stays where it is to the last digit.
+pub fn together(changes: &[Change], decimals: i32) -> (Vec<Change>, Rounding) {
+    let mut changes = changes.to_vec();
+    let mut exact = Vec::new();
+    for axis in 0..3 {
+        let mut amounts: Vec<&mut f64> = changes
+            .iter_mut()
+            .filter_map(|change| along(change, axis))
+            .collect();
+        let larger = |by: &f64, than: f64| by.abs() > than.abs() * (1.0 + SAME);
+        let greatest = amounts
+            .iter()
+            .fold(0.0, |than, by| if larger(by, than) { **by } else { than });
+        let is_ratio = |by: f64, ratio: f64| (by - ratio * greatest).abs() <= SAME * greatest.abs();
+        let ratio = |by: f64| RATIOS.into_iter().find(|ratio| is_ratio(by, *ratio));
+        let ratios: Option<Vec<f64>> = amounts.iter().map(|by| ratio(**by)).collect();
+        if let Some(ratios) = ratios.filter(|ratios| ratios.len() > 1) {
+            for (by, ratio) in amounts.iter_mut().zip(ratios) {
+                **by = ratio * round(greatest, decimals);
+                exact.push(by.abs());
+            }
+        }
+    }
+    (changes, Rounding { decimals, exact })
+}
+
+/// The amount by which a vector changes along an axis; none if it does not.
+fn along(change: &mut Change, axis: usize) -> Option<&mut f64> {
+    match &mut change.by {
+        Value::Vector(by) => Some(&mut by[axis]).filter(|by| **by != 0.0),
+        _ => None,
+    }
+}
+
+impl Rounding {
+    /// A number that has changed by an amount; the number itself where the amount is no decimal.
+    fn sum(&self, from: f64, by: f64) -> f64 {
+        let decimals = self.decimals;
+        if self.exact.contains(&by.abs()) {
+            // Half of a rounded amount has a digit more.
+            let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
+            return round(from + by, own.max(more));
+        }
+        match round(by, decimals) == 0.0 {
+            true => from,
+            false => round(from + by, decimals),
+        }
+    }
+}
+
+/// The number of decimals that a number is written with.
+fn decimals_of(number: f64) -> i32 {
+    let text = format!("{number}");
+    text.split_once('.')
+        .map_or(0, |(_, digits)| digits.len() as i32)
+}
+
+/// A part whose fields have changed, with their values rounded.
+pub fn rounded(part: Part, changes: &[Change], rounding: &Rounding) -> Option<Part> {
+    let number = |from: f64, by: f64| rounding.sum(from, by);
     changes.iter().try_fold(part, |part, change| {
         let value = match (change.from, change.by) {
             (Value::Vector(from), Value::Vector(by)) => {
@@ -89,16 +163,17 @@ pub fn rounded(part: Part, changes: &[Change], decimals: i32) -> Option<Part> {
     })
 }
 
-/// The edits that change fields of a block, in order, with numbers written to so many decimals. None if two of them want different things of one number.
+/// The edits that change fields of a block, in order. None if two of them want different things of
+/// one number.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
     changes: &[Change],
-    decimals: i32,
+    rounding: &Rounding,
 ) -> Option<Vec<Edit>> {
     let mut writer = Writer {
         analysis,
-        decimals,
+        rounding,
         edits: Vec::new(),
     };
     let mut added = Vec::new();
@@ -124,7 +199,7 @@ pub fn edits<'s>(
 
 struct Writer<'a, 's> {
     analysis: &'a Analysis<'s>,
-    decimals: i32,
+    rounding: &'a Rounding,
     edits: Vec<Edit>,
 }
 
@@ -208,11 +283,7 @@ impl<'s> Writer<'_, 's> {
             return format!("({x}, {y}, {z})");
         }
         let unit = unit.or(matches!(from, Value::Angle(_)).then_some(Unit::Degrees));
-        let (old, by) = (amount(from, unit), amount(by, unit));
-        let new = match round(by, self.decimals) == 0.0 {
-            true => old,
-            false => round(old + by, self.decimals),
-        };
+        let new = self.rounding.sum(amount(from, unit), amount(by, unit));
         spelled(new, unit)
     }
 }

@@ -49,7 +49,7 @@ impl Projection {
     }
 
     /// The part of a segment in the picture grown by so many of its sizes on each side (Liang and Barsky's algorithm).
-    fn clip(&self, [from, to]: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
+    pub(super) fn clip(&self, [from, to]: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         let along = to - from;
         let (mut first, mut last): (f64, f64) = (0.0, 1.0);
         for axis in 0..2 {

@@ -28,7 +28,7 @@ use crate::{
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
-pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, overlays};
+pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, hide, overlays};
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
 /// For each object the place that stands for it: its name, or the keyword of its block.

@@ -1,18 +1,31 @@
 //! What can be drawn over a picture: horizon, vanishing points with the lines that lead there, and the objects' outlines and handles.
 
+use std::{iter, mem};
+
 use glam::{DVec2, DVec3};
 
 use super::{
     handles::{Handle, handles, outline_point},
     lines::Line,
+    pick::pick,
 };
 use crate::{
     inspect,
     math::{Angle, trig},
     projection::Projection,
     scene::{Checkerboard, Cuboid, Object, Scene, Shape, Sphere},
-    tracer::vertices,
+    tracer::{World, vertices},
 };
+
+/// Distance between two points of a board's outline that are tested for what stands in front of
+/// them, in pixels.
+const LOOK: f64 = 2.0;
+
+/// Maximum number of such points per segment.
+const MOST_LOOKS: f64 = 1000.0;
+
+/// Maximum number of such points in all: the outlines of further boards are drawn whole.
+const MOST_LOOKS_IN_ALL: f64 = 8000.0;
 
 /// So many objects have outlines: nobody can tell more apart.
 pub const MOST_OBJECTS: usize = 1000;
@@ -123,6 +136,56 @@ pub fn overlays(scene: &Scene, which: &Shown) -> Overlays {
         near: cut(camera.near),
         far: camera.far.map_or_else(Vec::new, cut),
         objects: shown().map(outline).collect(),
+    }
+}
+
+/// Takes away what of the boards' outlines other objects stand in front of: a square far larger
+/// than they are would be drawn across all of them.
+pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
+    let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
+    let is_seen = |index: usize, at: DVec2| {
+        let hit = pick(scene, world, at).and_then(|(hit, _)| hit);
+        hit.is_none_or(|hit| hit.object == index)
+    };
+    let projection = Projection::new(&scene.camera, &scene.image);
+    let mut left = MOST_LOOKS_IN_ALL;
+    for outline in &mut overlays.objects {
+        let index = outline.object;
+        if !is_board(&scene.objects[index].shape) || left <= 0.0 {
+            continue;
+        }
+        let mut lines: Vec<Line> = Vec::new();
+        let segments = outline.lines.iter().flat_map(|line| line.windows(2));
+        for (from, to) in segments.map(|ends| (ends[0], ends[1])) {
+            // Outside of the picture nothing is seen, so nothing is in front.
+            let [first, last] = projection.clip([from, to], 0.0).unwrap_or([to, to]);
+            let parts = (first.distance(last) / LOOK).ceil().clamp(1.0, MOST_LOOKS);
+            left -= parts;
+            let places = (1..parts as u32).map(|part| first.lerp(last, f64::from(part) / parts));
+            let ends = iter::once(first).chain(places).chain([last, to]);
+            let mut begin = from;
+            for end in ends.filter(|end| *end != from) {
+                let is_straight = begin != from;
+                let piece = [mem::replace(&mut begin, end), end];
+                if piece[0] == end || !is_seen(index, piece[0].midpoint(end)) {
+                    continue;
+                }
+                let joined = lines
+                    .last_mut()
+                    .filter(|line| line.last() == Some(&piece[0]));
+                match joined {
+                    Some(line) => {
+                        // Of a straight line only the ends are kept.
+                        if is_straight {
+                            line.pop();
+                        }
+                        line.push(end);
+                    }
+                    None => lines.push(piece.to_vec()),
+                }
+            }
+        }
+        outline.lines = lines;
     }
 }
 

@@ -5,12 +5,10 @@ import { remember, remembered } from "./dom";
 
 /** What has the token in the address, and in what the tab remembers. */
 const TOKEN = "token";
-const parts = () => location.hash.replace(/^#/, "").split("&").filter(Boolean);
+const parts = () => new URLSearchParams(location.hash.slice(1));
 
-/** The value of a key, as it is written; null if it is not there. */
-export function inAddress(key: string): string | null {
-  return parts().find(it => it.startsWith(`${key}=`))?.slice(key.length + 1) ?? null;
-}
+/** The value of a key; null if it is not there. */
+export function inAddress(key: string): string | null { return parts().get(key); }
 
 /** The page's address with this value of a key, and nothing else behind #. */
 export function addressWith(key: string, value: string): string {
@@ -19,11 +17,12 @@ export function addressWith(key: string, value: string): string {
 
 /** Takes the token, and nothing else, out of the address; null if there is none. */
 export function takeToken(): string | null {
-  const token = inAddress(TOKEN);
+  const rest = parts();
+  const token = rest.get(TOKEN);
   if (token === null) return null;
-  const rest = parts().filter(it => !it.startsWith(`${TOKEN}=`)).join("&");
+  rest.delete(TOKEN);
   history.replaceState(history.state, "",
-    location.pathname + location.search + (rest === "" ? "" : `#${rest}`));
+    location.pathname + location.search + String(rest).replace(/^./, "#$&"));
   return token;
 }
 

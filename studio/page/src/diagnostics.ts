@@ -116,9 +116,8 @@ function item({ severity, message, actions }: Diagnostic, from: number, to: numb
     view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
     view.focus();
   }));
-  for (const { name, apply } of actions ?? []) {
-    item.append(createButton(name, "fix", () => apply(view, from, to)));
-  }
+  for (const { name, apply } of actions ?? []) item.append(
+    createButton(name, "fix", () => apply(view, from, to)));
   return item;
 }
 

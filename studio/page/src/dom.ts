@@ -110,9 +110,7 @@ export function remembered(key: string, where: Store = "localStorage"): string |
 export function remember(key: string, value: string, where: Store = "localStorage"): void {
   try {
     window[where].setItem(`pinhole-${key}`, value);
-  } catch {
-    // The page works without.
-  }
+  } catch { /* The page works without. */ }
 }
 
 type Store = "localStorage" | "sessionStorage";

@@ -1,6 +1,6 @@
 // Drafts: what is written and not saved, kept while one writes, and offered again after a reload, a
-// crash, or a host that was lost. Each page has a key of its own, under which it writes over none
-// of the others. This browser keeps them until the served host has them, or where there is none.
+// crash, or a host that was lost. Each page has a key of its own, or that of the draft that it goes
+// on with without a host. This browser keeps them until the host has them, or where there is none.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -71,11 +71,11 @@ function newDraft(): Draft {
 
 /** Offers what other pages have kept: here, which is newer, or with the host. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
-  kept.dataset["kept"] = editor.uri === "" ? "early" : "alone";
   offers = hosts;
   show();
   const here = await all().catch((): Draft[] => []);
-  offers = [...here, ...offers.filter(it => here.every(({ id }) => id !== it.id))];
+  offers = [...here, ...offers.filter(it => here.every(({ id }) => id !== it.id))]
+    .filter(it => it.id !== id);
   show();
   await keepDraft();
 }
@@ -85,7 +85,7 @@ function show(): void {
   byId("draft-choices").replaceChildren(...offers.slice(0, OFFERED).map(draft => {
     const time = new Date(draft.time * 1000)
       .toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
-    const other = isServed && editor.uri !== "" && draft.base !== files.at.seen
+    const other = isServed && files.isTold && draft.base !== files.at.seen
       ? " The file holds something else; Save will ask." : "";
     const { length } = draft.text.split("\n");
     const row = create("li", "", `${draft.name}, of ${time}, ${length} lines.${other}`);
@@ -98,9 +98,11 @@ function show(): void {
 function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     leave();
-    files.restore(draft.text, draft.base);
+    // The host may have it, too: it is told when there is a connection.
+    if (!files.isTold) id = draft.id;
+    files.restore(draft.text, draft.base, draft.name);
   }
-  if (!isRestored || editor.uri !== "") forget(draft);
+  forget(draft);
   void keepDraft();
   editor.view.focus();
 }

@@ -15,6 +15,8 @@ import { setText } from "./visible";
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
+const WAITING = "Waiting for Studio…";
+const SLOW = 400; // how long an answer may take before that is said, in milliseconds
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
 // What a drag says stands where the hand is, while it lasts.
@@ -36,6 +38,8 @@ for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
 }, { capture: true });
 
 let count = 0;
+/** Settles when the drags before have come to their ends. */
+let ended: Promise<unknown> = Promise.resolve();
 
 /** Asks for one edit at a time, always about the newest place of the hand. */
 export class Drag {
@@ -43,41 +47,45 @@ export class Drag {
   /** Where the hand is. */
   private target: Point;
   private isOpen = false;
+  private slow = 0;
   private over = false;
-  private gesture!: Gesture;
+  private gesture = new Gesture(editor.view);
   private readonly holding: Promise<Held | null>;
   /** Settles when the last place of the hand has been reached. */
   private work: Promise<unknown>;
   private settle: () => void = () => {};
+  private letGo: () => void = () => {};
+  private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
   /** What is held may be found out only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
-    const before = frames.dragging instanceof Drag ? frames.dragging : null;
     frames.dragging = this;
-    this.work = this.holding = this.begin(before, hold);
+    this.work = this.holding = this.begin(ended, hold);
+    ended = Promise.all([ended, this.done]);
   }
 
-  /** The drag before this one may not have come to its end yet. */
-  private async begin(before: Drag | null, hold: () => Promise<Held | null> | Held) {
+  private async begin(before: Promise<unknown>, hold: () => Promise<Held | null> | Held) {
+    await before;
+    if (this.over) return null;
     this.gesture = new Gesture(editor.view);
-    if (before !== null) {
-      await before.done;
-      this.gesture = new Gesture(editor.view);
-    }
     return hold();
   }
 
   to(target: Point): void {
     this.target = target;
+    this.slow ||= setTimeout(() => { if (!this.over) this.say(WAITING, "plain"); }, SLOW);
     this.work = this.go(target);
   }
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
-  /** Ends when the last place of the hand has been reached. */
-  end(): void { void this.work.then(() => this.finish()); }
+  /** Ends when the last place of the hand has been reached: no picture is waited for any more. */
+  end(): void {
+    this.letGo();
+    void this.work.then(() => this.finish());
+  }
 
   cancel(): void {
     this.gesture.cancel();
@@ -86,7 +94,8 @@ export class Drag {
 
   private readonly go = newestOf(async (place: Point) => {
     const held = await this.holding;
-    if (held !== null && !this.over && place === this.target) await this.step(held, place);
+    if (held === null) this.say("", "plain");
+    else if (!this.over && place === this.target) await this.step(held, place);
   });
 
   private async step({ object, handle, at }: Held, place: Point): Promise<void> {
@@ -108,18 +117,18 @@ export class Drag {
       gesture.write(editor.changes(answer.edits, base));
       const also = answer.also?.length ? `; also ${answer.also.join(", ")}` : "";
       this.say(answer.values.join(", ") + also, "plain");
-      await frames.coarse;
+      await Promise.race([frames.coarse, this.released]);
     } catch (error) {
       if (this.over || isSuperseded(error)) return;
       this.say((error as Error).message, "warning");
-      // Another server knows nothing of this drag's text.
-      if (!(error instanceof Refusal)) this.finish();
+      if (!(error instanceof Refusal)) this.finish(); // another server knows no text of this drag
     }
   }
 
   private finish(): void {
     if (this.over) return;
     this.over = true;
+    clearTimeout(this.slow);
     this.gesture.end();
     if (note.dataset["tone"] !== "warning") clearNote();
     if (this.isOpen) editor.closeAside(this.uri);
@@ -128,6 +137,8 @@ export class Drag {
   }
 
   private say(text: string, tone: "plain" | "warning"): void {
+    clearTimeout(this.slow);
+    this.slow = 0;
     showNote(text, tone, picture.toScreen(this.target));
   }
 }

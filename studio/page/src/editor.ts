@@ -187,11 +187,20 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Puts another text in place. No more changes than differs, so that the cursor stays. */
+  /** Puts another text in place. No more changes than differs, so that the cursor stays, and what
+   *  is put in or taken away begins with its line if it can, so that blocks stay what they are. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
-    const changes = diff(old, text, { timeout: DIFF_TIME }).map(({ fromA, toA, fromB, toB }) =>
-      ({ from: fromA, to: toA, insert: text.slice(fromB, toB) }));
+    let end = 0;
+    const changes = diff(old, text, { timeout: DIFF_TIME }).map(({ fromA, toA, fromB, toB }) => {
+      const isPure = fromA === toA || fromB === toB;
+      const last = (back: number) => fromA === toA ? text[toB - back] : old[toA - back];
+      const line = Math.max(end, old.lastIndexOf("\n", fromA - 1) + 1);
+      let back = fromA - line;
+      for (let i = 1; i <= back; i++) if (!isPure || old[fromA - i] !== last(i)) back = 0;
+      end = toA - back;
+      return { from: fromA - back, to: end, insert: text.slice(fromB - back, toB - back) };
+    });
     if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 

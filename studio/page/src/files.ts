@@ -11,16 +11,11 @@ import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say } from "./status";
 import { setText, visibleLine } from "./visible";
 
-/** What browsers that can save into files offer for it. */
-interface FilePickers {
-  showOpenFilePicker?(options: object): Promise<FileSystemFileHandle[]>;
-  showSaveFilePicker?(options: object): Promise<FileSystemFileHandle>;
-}
-
 /** The scene of a page without a file. */
 const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
-const pickers = window as unknown as FilePickers;
-const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": [".scn"] } }] };
+/** Not every browser can save into files. */
+const pickers: Partial<Pick<typeof window, `show${"Open" | "Save"}FilePicker`>> = window;
+const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn" as const } }] };
 
 /** A scene, and where it is kept. */
 class Scene {
@@ -63,8 +58,10 @@ class Files {
   onSaved: (text: string) => void = () => {};
   /** Told before another scene comes in the place of one. */
   onLeave: () => void = () => {};
-  /** What was restored before the host's scene was there, in whose place it comes. */
-  private early: [text: string, base: string | null | undefined] | null = null;
+  /** Whether the host has said what scene it has. */
+  isTold = false;
+  /** What a text was made from that was there before that. */
+  private early: { base: string | null | undefined; text: string } | null = null;
   /** The host's scene, and the one that the page shows. */
   private hosts = new Scene();
   at = this.hosts;
@@ -74,7 +71,7 @@ class Files {
     byId("save").addEventListener("click", () => void this.save());
     byId("save-as").addEventListener("click",
       () => void this.save(new Scene(this.at.name, this.at)));
-    byId("open").addEventListener("click", () => void this.open());
+    byId("open").addEventListener("click", () => void this.attempt(() => this.open()));
     byId("file").addEventListener("change", ({ target }) => {
       const [file] = (target as HTMLInputElement).files ?? [];
       if (file !== undefined) void this.take(file, null);
@@ -89,7 +86,7 @@ class Files {
 
   /** Puts another scene in place; Undo brings back the one before. */
   private begin(text: string, to = new Scene()): void {
-    if (editor.uri === "") return say("Studio is not ready yet.", "warning");
+    if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.onLeave();
     to.untouched = to.seen === null ? text : null;
     const { view } = editor;
@@ -117,11 +114,16 @@ class Files {
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from. */
-  restore(text: string, base?: string | null): void {
-    if (editor.uri === "") this.early = [text, base];
-    if (base !== undefined && this.at.seen !== null) this.at.base = base;
+  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from.
+   *  Before the host has said what it has, its scene is that. */
+  restore(text: string, base?: string | null, name = this.at.name): void {
+    if (!this.isTold) {
+      this.early = { base, text };
+      const untouched = base === undefined ? text : null;
+      Object.assign(this.at, { name, base: base ?? null, untouched });
+    } else if (base !== undefined && this.at.seen !== null) this.at.base = base;
     editor.replace(text);
+    editor.start();
     this.show();
   }
 
@@ -131,15 +133,20 @@ class Files {
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // What becomes of the host's file is told when its scene is there again, and is saved.
     if (this.at !== this.hosts) return this.show();
-    if (editor.uri === "") {
+    if (!this.isTold) {
+      const [early, { view: { state: { selection } } }] = [editor.text, editor];
+      this.isTold = true;
       this.at.seen = this.at.base = saved ? text : null;
       const start = saved ? (text ?? "") : isServed ? EMPTY : FIGURE;
       this.at.untouched = saved ? null : start;
       editor.open(start);
       this.tellLone();
-      if (this.early !== null) this.restore(...this.early);
-      // Who opens a link has the scene in it, whatever happens to the page.
-      if (!isServed && this.early?.[1] === undefined) this.at.untouched = editor.text;
+      if (this.early !== null) {
+        this.restore(early, this.early.base);
+        editor.view.dispatch({ selection });
+        // Who opens a link has the scene in it, whatever happens to the page.
+        if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
+      }
       if (saved && text === null) this.tellGone(reason);
     } else if (isServed && saved) {
       this.at.untouched = null;
@@ -189,18 +196,20 @@ class Files {
     if (document.title !== title) document.title = title;
   }
 
-  async save(scene = this.at): Promise<void> {
-    try {
+  save(scene = this.at): Promise<void> {
+    return this.attempt(async () => {
       if (!isServed) await this.saveLocal(scene);
-      else if (scene.isNew) this.askName(scene);
+      else if (scene.isNew && connection.state === "open") this.askName(scene);
       else await this.saveAs(scene, scene.name);
-    } catch (error) { this.failed(error as Error); }
-    this.show();
+    });
   }
 
   /** Says what kept a file from being saved or opened, unless that was the user. */
-  private failed({ name, message }: Error): void {
-    if (name !== "AbortError") say(message, "warning");
+  private async attempt(act: () => Promise<void>): Promise<void> {
+    await act().catch(({ name, message }: Error) => {
+      if (name !== "AbortError") say(message, "warning");
+    });
+    this.show();
   }
 
   private async saveAs(scene: Scene, name: string): Promise<void> {
@@ -249,6 +258,7 @@ class Files {
       event.preventDefault();
       const name = field.value.trim();
       try {
+        if (name === "") throw new Error("A file needs a name.");
         await this.saveAs(scene, name.endsWith(".scn") ? name : `${name}.scn`);
         dialog.close();
       } catch (error) {
@@ -277,10 +287,8 @@ class Files {
 
   private async open(): Promise<void> {
     if (isServed || pickers.showOpenFilePicker === undefined) return byId("file").click();
-    try {
-      const [handle] = await pickers.showOpenFilePicker(SCENES);
-      if (handle !== undefined) await this.take(await handle.getFile(), handle);
-    } catch (error) { this.failed(error as Error); }
+    const [handle] = await pickers.showOpenFilePicker(SCENES);
+    if (handle !== undefined) await this.take(await handle.getFile(), handle);
   }
 
   private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {

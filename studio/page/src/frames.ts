@@ -1,10 +1,11 @@
 // Pictures of the newest text: a coarse one at once, then finer ones, to what the scene asks for.
-// The newest text wins; the last good picture stays while it has errors.
+// The newest text wins. While it has errors, the server has the pictures of the last good one.
 
+import type { Text } from "@codemirror/state";
 import { connection } from "./connection";
 import { fromBase64 } from "./dom";
 import { editor } from "./editor";
-import { isSuperseded, type Frame, type Overlays } from "./protocol";
+import { isSuperseded, type Frame } from "./protocol";
 
 /** How fine a picture is. */
 export type Fineness = "coarse" | "sharp" | "final";
@@ -17,16 +18,18 @@ export interface Shown {
   version: number;
 }
 
-/** A coarse picture has about so many pixels: a sixteenth of 1280 × 720. */
+/** Maximum number of pixels of a coarse picture: a sixteenth of 1280 × 720. */
 const COARSE_PIXELS = 320 * 180;
 
 /** More than this a canvas cannot hold in every browser. */
-const MOST_PIXELS = 16_000_000;
-const LONGEST_SIDE = 8192;
+const MOST = { pixels: 16_000_000, side: 8192 };
 /** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
 const HAND_RESTS = 20;
 /** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
 const SOON = 200;
+
+/** What pictures were asked of. */
+interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
@@ -39,9 +42,12 @@ class Frames {
   /** Settles when the newest text's coarse picture has come, or will not come. */
   coarse: Promise<unknown> = Promise.resolve();
 
+  /** The newest picture: of which text, and by which question; the text may have changed since. */
+  shown: Shown & Asked | null = null;
+
   private generation = 0;
-  private shown = 0;
-  private size: [number, number] = [1280, 720];
+  /** Whether the newest text that has an answer has errors. */
+  private isBroken = false;
   private lastTook = Infinity;
 
   /** What was dragged is no more, unless something else is dragged already. */
@@ -53,67 +59,63 @@ class Frames {
   /** The text has changed, or the server: pictures are asked for. */
   changed(): void {
     if (editor.uri === "" || connection.state !== "open") return;
-    const [width, height] = this.size;
-    const least = Math.ceil(Math.max(width / LONGEST_SIDE, height / LONGEST_SIDE,
-      Math.sqrt((width * height) / MOST_PIXELS), 1));
-    const coarse = Math.max(least, Math.round(Math.sqrt((width * height) / COARSE_PIXELS)));
-    const generation = ++this.generation;
-    const answer = this.ask({ scale: coarse, samples: 1 });
+    const answer = this.ask({ pixels: COARSE_PIXELS, samples: 1 });
     this.coarse = answer.catch(() => {});
-    void this.refine(generation, answer, least, coarse > least);
+    const { doc } = editor.view.state;
+    void this.refine({ doc, generation: ++this.generation }, answer);
   }
 
-  private async refine(generation: number, coarse: Promise<Frame | null>, least: number,
-    isSharper: boolean): Promise<void> {
-    if (!(await this.present(generation, "coarse", coarse))) return;
+  private async refine(asked: Asked, coarse: Promise<Frame | null>): Promise<void> {
+    const frame = await this.present(asked, "coarse", coarse);
+    if (frame === null) return;
     if (this.dragging !== null) await new Promise(resolve => setTimeout(resolve, HAND_RESTS));
-    if (generation !== this.generation) return;
+    if (asked.generation !== this.generation) return;
+    const isSharper = frame.width < frame.size[0];
     if (isSharper && this.lastTook > SOON
-      && !(await this.present(generation, "sharp", this.ask({ scale: least, samples: 1 })))) return;
+      && !(await this.present(asked, "sharp", this.ask({ samples: 1 })))) return;
     const begin = performance.now();
-    const isNewest = await this.present(generation, "final", this.ask({ scale: least }));
+    const isNewest = await this.present(asked, "final", this.ask({}));
     if (isNewest) this.lastTook = performance.now() - begin;
   }
 
-  private ask(how: { scale: number; samples?: number }): Promise<Frame | null> {
-    return editor.request("pinhole/frame", how);
+  private ask(how: { pixels?: number; samples?: number; last?: boolean }) {
+    return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...how });
   }
 
-  /** Shows a picture that was asked for. Says whether its text is still the newest. */
-  private async present(generation: number, fineness: Fineness,
-    answer: Promise<Frame | null>): Promise<boolean> {
+  /** Shows a picture that was asked for, and returns it if its text is still the newest. */
+  private async present(asked: Asked, fineness: Fineness,
+    answer: Promise<Frame | null>): Promise<Frame | null> {
+    const isNewest = () => asked.generation === this.generation;
     try {
       const frame = await answer;
+      const isFirst = fineness === "coarse" && !this.isBroken;
+      if (fineness === "coarse") this.isBroken = frame === null;
       if (frame === null) {
-        if (generation === this.generation) this.onState("broken");
-        return false;
+        if (isNewest()) this.onState("broken");
+        const before = { doc: null, generation: asked.generation - 1 };
+        const isDone = this.shown?.fineness === "final"
+          && this.shown.generation === before.generation;
+        // What stood there before is finished all the same. More mistakes do not begin it anew.
+        if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
+        return null;
       }
       const bitmap = await decoded(fromBase64(frame.png));
-      if (generation < this.shown) {
+      if (asked.generation < (this.shown?.generation ?? 0)) {
         bitmap.close();
-        return false;
+        return null;
       }
-      this.shown = generation;
-      this.size = frame.size;
-      this.onShow({ bitmap, size: frame.size, fineness, version: frame.version });
+      const shown = { bitmap, size: frame.size, fineness, version: frame.version };
+      this.shown = { ...asked, ...shown };
+      this.onShow(shown);
+      if (!isNewest()) return null;
       this.onState("good");
-      return generation === this.generation;
+      return frame;
     } catch (error) {
-      if (isSuperseded(error) || generation !== this.generation
-        || connection.state !== "open") return false;
-      this.onState(error as Error);
-      void this.resize(generation);
-      return false;
+      if (fineness === "coarse") this.isBroken = false;
+      if (isNewest() && !isSuperseded(error) && connection.state === "open")
+        this.onState(error as Error);
+      return null;
     }
-  }
-
-  /** A picture was refused: it may have been too large, as it has another size than was thought. */
-  private async resize(generation: number): Promise<void> {
-    const seen = await editor.ask<Overlays>("pinhole/overlays", { only: [] });
-    const isOther = seen !== null && String(seen.size) !== String(this.size);
-    if (generation !== this.generation || !isOther) return;
-    this.size = seen.size;
-    this.changed();
   }
 }
 

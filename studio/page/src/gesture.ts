@@ -101,7 +101,8 @@ export class Gesture {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
     this.over = true;
-    this.view.dispatch({ annotations: isolateHistory.of("after") });
+    const isWritten = this.current !== this.base;
+    if (isWritten) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
   /** Ends as if nothing had happened: neither Undo nor Redo knows. */

@@ -25,6 +25,8 @@ class HintWidget extends WidgetType {
   constructor(private readonly text: string) { super(); }
   override eq(other: HintWidget): boolean { return other.text === this.text; }
   toDOM(): HTMLElement { return create("span", "hint", this.text); }
+  // A click at it is one at its place in the text.
+  override ignoreEvent(): boolean { return false; }
 }
 
 class SwatchWidget extends WidgetType {
@@ -82,8 +84,7 @@ export async function refreshHints(): Promise<void> {
     editor.askCurrent<InlayHint[]>("textDocument/inlayHint", { range: editor.range() }),
     editor.askCurrent<ColorInformation[]>("textDocument/documentColor", {}),
   ]);
-  // A newer text or connection brings new ones.
-  if (hints === null || colors === null) return;
+  if (hints === null || colors === null) return; // a newer text or connection brings new ones
   const decorations = [
     ...hints.map(({ position, label }) =>
       Decoration.widget({ widget: new HintWidget(String(label)), side: 1 })
@@ -106,8 +107,8 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  const way = ways?.find(({ label }) => label.startsWith("rgb") === written.startsWith("rgb"))
-    ?? ways?.[0];
+  // The first one is in the way that the colour is written.
+  const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });
 }

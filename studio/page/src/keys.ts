@@ -2,6 +2,7 @@
 
 import { byId } from "./dom";
 import { Drag } from "./drag";
+import { frames } from "./frames";
 import { picture } from "./picture";
 import type { Point } from "./protocol";
 import { selection } from "./selection";
@@ -77,8 +78,9 @@ function down(event: KeyboardEvent): void {
     drag ??= begin(on);
     drag?.by([arrow[0] * step, arrow[1] * step]);
   } else if (whole === "Escape") {
-    if (drag === null) selection.select(null);
-    drag?.cancel();
+    // Also one that has been let go, and waits for Studio.
+    if (frames.dragging instanceof Drag) frames.dragging.cancel();
+    else selection.select(null);
     drag = null;
   } else if (whole === " ") {
     space = true;

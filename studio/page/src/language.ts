@@ -17,14 +17,7 @@ const FIELDS = words(
 const FUNCTIONS = words(
   "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb",
 );
-/** Fields that take whole numbers. */
-const WHOLE_FIELDS = words("width height per_pixel total seed");
 interface State { comment: boolean; block: boolean; parentheses: number; defines: boolean }
-
-/** Whether the word that a text ends in is a field that takes whole numbers. */
-export function endsInWholeField(text: string): boolean {
-  return WHOLE_FIELDS.has(/\w+(?=\s+$)/.exec(text)?.[0] ?? "");
-}
 
 const number = new RegExp(`^${NUMBER.source}`);
 
@@ -51,8 +44,7 @@ export const sceneLanguage = StreamLanguage.define<State>({
     if (word && word !== true) {
       const { defines } = state;
       state.defines = word[0] === "let" || (!state.block && KINDS.has(word[0]));
-      if (word[0] === "let" || (!state.block && word[0] === "for")) return "keyword";
-      if (!state.block && KINDS.has(word[0])) return "keyword";
+      if (state.defines || (!state.block && word[0] === "for")) return "keyword";
       if (defines) return "typeName";
       if (FUNCTIONS.has(word[0]) && /^\s*\(/.test(stream.string.slice(stream.pos))
         && (state.parentheses > 0 || !FIELDS.has(word[0]))) return "variableName.special";
@@ -60,11 +52,11 @@ export const sceneLanguage = StreamLanguage.define<State>({
       return "variableName";
     }
     const character = stream.next();
-    if (character === "{") state.block = true;
-    if (character === "}") state.block = false;
     if (character === "(") state.parentheses++;
     if (character === ")" && state.parentheses > 0) state.parentheses--;
-    if (character === "{" || character === "}") state.parentheses = 0;
+    if (character === "{" || character === "}") {
+      Object.assign(state, { block: character === "{", parentheses: 0 });
+    }
     state.defines = false;
     return "+-*/=<".includes(character ?? "") ? "operator" : "punctuation";
   },
@@ -73,5 +65,5 @@ export const sceneLanguage = StreamLanguage.define<State>({
     closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
-/** What has which colour is in studio.css. */
+/** What has which colour is in editor.css. */
 export const sceneHighlighting = syntaxHighlighting(classHighlighter);

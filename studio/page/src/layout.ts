@@ -55,9 +55,8 @@ byId("zoom-in").addEventListener("click", () => picture.zoomBy(2));
 byId("zoom-out").addEventListener("click", () => picture.zoomBy(0.5));
 byId("zoom-fit").addEventListener("click", () => picture.fit());
 byId("zoom-actual").addEventListener("click", () => picture.actualSize());
-for (const id of ["keys", "language"]) {
-  byId(id).addEventListener("click", () => byId<HTMLDialogElement>(`${id}-dialog`).showModal());
-}
+for (const id of ["keys", "language"]) byId(id).addEventListener("click", () =>
+  byId<HTMLDialogElement>(`${id}-dialog`).showModal());
 
 // A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
 const menus = [...document.querySelectorAll<HTMLDetailsElement>("details.menu")];
@@ -76,7 +75,7 @@ for (const menu of menus) {
   });
 }
 
-// Dark or light: as the system has it, until one chooses. All colours are variables of studio.css.
+// Dark or light: as the system has it, until one chooses. All colours are variables of page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
 const colors = () => remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");

@@ -23,7 +23,7 @@ import "./pointers";
 import type { HostedFile } from "./protocol";
 import { selection } from "./selection";
 import { sceneInAddress, showProgress } from "./share";
-import { mapSliders, refreshSliders } from "./sliders";
+import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
@@ -61,11 +61,14 @@ frames.onRest = () => {
 };
 
 function changed(): void {
-  if (editor.uri === "") {
-    const isAlone = connection.state !== "open" && editor.text !== "";
-    status.connection(connection.state, isAlone);
-    return status.stale(isAlone ? "Without a connection there is no picture." : null);
+  if (connection.state !== "open") {
+    const hasText = editor.text !== "";
+    status.connection(connection.state, hasText);
+    status.stale(!hasText || frames.shown?.doc?.eq(editor.view.state.doc) ? null : picture.isEmpty
+      ? "Without a connection there is no picture."
+      : "Without a connection this is the picture of an older text.");
   }
+  if (editor.uri === "") return;
   frames.changed();
   void refreshOutlines();
   files.show();
@@ -96,10 +99,10 @@ picture.onView = () => {
 
 connection.onHang = isHanging => status.connection(isHanging ? "hanging" : "open", true);
 connection.onState = state => {
-  status.connection(state, editor.text !== "");
+  status.connection(state, false);
   if (state === "open") editor.connected();
   else editor.client.disconnect();
-  if (state !== "open" && editor.uri === "") void offerDrafts();
+  if (state !== "open" && !files.isTold) void offerDrafts();
   changed();
 };
 
@@ -120,7 +123,9 @@ let waiting: HostedFile | null = null;
 
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
-  const first = editor.uri === "";
+  const first = !files.isTold;
+  // A number that is played would have it wait for ever.
+  stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;
   files.hosted(file);

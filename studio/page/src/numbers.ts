@@ -7,11 +7,11 @@ import { create, createButton, followPointer } from "./dom";
 import { editor } from "./editor";
 import { frames } from "./frames";
 import { Gesture } from "./gesture";
-import { endsInWholeField, NUMBER } from "./language";
+import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
 /** A number literal, with the sign that belongs to it, and where its unit ends. */
-export interface Literal { from: number; to: number; end: number; value: number; step: number }
+interface Literal { from: number; to: number; end: number; value: number; written: string }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
@@ -33,13 +33,13 @@ export function literalAt(at: number): Literal | null {
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
   return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length,
-    end: node.to, value, step: stepOf(value, written, endsInWholeField(before)) };
+    end: node.to, value, written };
 }
 
 /** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
  *  ends; and no coarser than how it is written. */
-function stepOf(value: number, written: string, isWhole: boolean): number {
-  if (isWhole) return 1;
+function stepOf({ value, written }: Literal, limits: Limits | null): number {
+  if (limits?.step) return limits.step;
   const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];
   const lastDigit = Number(power) - fraction.replaceAll("_", "").length;
   const exponent = Math.max(Math.floor(Math.log10(Math.abs(value) || 1)) - 1, -2);
@@ -60,36 +60,36 @@ function limitsOf(at: number): Promise<Limits | null> {
 }
 
 /** The least and the greatest value that a number can be turned to. */
-function bounds({ step }: Literal, limits: Limits | null): [number, number] {
+function bounds(step: number, limits: Limits | null): [number, number] {
   const margin = limits?.open ? step : 0;
   return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
 }
 
 /** The same for a slider: about the value that is there, unless both bounds are known and near. */
-function offered(literal: Literal, limits: Limits | null): [number, number] {
-  const span = Math.max(Math.abs(literal.value), 50 * literal.step);
-  const [least, most] = bounds(literal, limits);
+function offered(value: number, step: number, limits: Limits | null): [number, number] {
+  const span = Math.max(Math.abs(value), 50 * step);
+  const [least, most] = bounds(step, limits);
   if (limits?.open === false && most - least < FAR) return [least, most];
-  return [Math.max(least, literal.value - span), Math.min(most, literal.value + span)];
+  return [Math.max(least, value - span), Math.min(most, value + span)];
 }
 
 /** Turns one number through a gesture, as far as its limits allow, which the server knows. */
 export class Turn {
   readonly gesture = new Gesture(editor.view);
-  private readonly bounds: Promise<[number, number]>;
 
-  constructor(private readonly literal: Literal) {
-    this.bounds = limitsOf(literal.to).then(limits => bounds(literal, limits));
-  }
+  constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  async set(value: number): Promise<void> {
-    const { from, to, step } = this.literal;
-    const [least, most] = await this.bounds;
-    const insert = format(Math.min(most, Math.max(least, value)), step);
+  /** The value may depend on the step. */
+  async set(value: (step: number) => number): Promise<void> {
+    const { literal, literal: { from, to } } = this;
+    const limits = await this.limits;
+    const step = stepOf(literal, limits);
+    const [least, most] = bounds(step, limits);
+    const insert = format(Math.min(most, Math.max(least, value(step))), step);
     this.gesture.write({ from, to, insert });
   }
 
-  end(): void { void this.bounds.then(() => this.gesture.end()); }
+  end(): void { void this.limits.then(() => this.gesture.end()); }
 }
 
 /** A slider of a number, which may be gone. What it does until it is let go is one turn. */
@@ -116,9 +116,10 @@ export class Dial {
 
   async set(value: number): Promise<void> {
     const found = this.literal();
-    if (found !== null) this.turn ??= new Turn(found);
+    const limits = this.limits === null ? undefined : Promise.resolve(this.limits);
+    if (found !== null) this.turn ??= new Turn(found, limits);
     frames.dragging ??= this;
-    await this.turn?.set(value);
+    await this.turn?.set(() => value);
   }
 
   end(): void {
@@ -131,8 +132,10 @@ export class Dial {
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null) return found;
-    const [min, max] = offered(found, this.limits);
-    Object.assign(this.range, { min, max, step: found.step, value: found.value });
+    const { value } = found;
+    const step = stepOf(found, this.limits);
+    const [min, max] = offered(value, step, this.limits);
+    Object.assign(this.range, { min, max, step, value });
     return found;
   }
 }
@@ -186,8 +189,8 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
   event.preventDefault();
   const turn = new Turn(literal);
   document.body.classList.add("scrubbing");
-  const move = (next: PointerEvent) => void turn.set(
-    literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * literal.step);
+  const move = (next: PointerEvent) => void turn.set(step =>
+    literal.value + Math.round((next.clientX - event.clientX) / DRAG_PIXELS) * step);
   const over = (act: () => void) => () => {
     document.body.classList.remove("scrubbing");
     act();
@@ -200,7 +203,7 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
 function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(literal);
-  void turn.set(literal.value + direction * literal.step);
+  void turn.set(step => literal.value + direction * step);
   turn.end();
   return true;
 }

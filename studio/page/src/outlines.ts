@@ -6,8 +6,8 @@ import { editor } from "./editor";
 import { frames } from "./frames";
 import { overlays } from "./overlays";
 import { picture } from "./picture";
-import type { Overlays, SceneObject } from "./protocol";
-import { nameOf, selection } from "./selection";
+import type { ListedObject, Overlays } from "./protocol";
+import { selection } from "./selection";
 import { setText } from "./visible";
 
 /** So many objects are described to those who do not see the picture. */
@@ -16,17 +16,18 @@ const DESCRIBED = 6;
 let described = "";
 
 /** Says what is seen, and where; changes of it are announced. */
-function describe({ size, objects }: Overlays, count: number): void {
-  const third = (part: number, words: string[]) => words[Math.floor(3 * part)];
-  const places = objects.map(object => {
-    const [x, y] = object.handles[0]?.at ?? [NaN, NaN];
-    const down = third(y / size[1], ["top", "middle", "bottom"]);
-    const across = third(x / size[0], ["left", "centre", "right"]);
-    const beside = object.outline.length > 0 ? "middle beside the picture" : "not in the picture";
-    return `${nameOf(object)}: ${down && across ? `${down} ${across}` : beside}`;
-  });
-  if (count > objects.length) places.push(`${count - objects.length} more`);
-  const text = places.length === 0 ? "A scene without objects" : places.join("; ");
+function describe(objects: readonly ListedObject[]): void {
+  // What is in the same place is named together.
+  const there: Record<string, string[]> = {};
+  for (const { label, place } of objects.slice(0, DESCRIBED)) {
+    (there[place ?? ""] ??= []).push(label);
+  }
+  const places = Object.entries(there)
+    .map(([place, names]) => names.join(", ") + (place && `: ${place}`));
+  // A list ends after the first thousand.
+  const more = objects.length < 1000 ? objects.length - DESCRIBED : "many";
+  if (objects.length > DESCRIBED) places.push(`${more} more`);
+  const text = places.join("; ") || "A scene without objects";
   // At first nothing has changed.
   if (described !== "" && described !== text) setText(byId("seen"), text);
   described = text;
@@ -37,12 +38,10 @@ function describe({ size, objects }: Overlays, count: number): void {
 export async function listObjects(): Promise<void> {
   if (frames.dragging !== null || connection.state !== "open") return;
   const about = { object: selection.index };
-  const objects = await editor.askCurrent<SceneObject[]>("pinhole/objects", about);
+  const objects = await editor.askCurrent<ListedObject[]>("pinhole/objects", about);
   if (objects === null) return;
   selection.list(objects);
-  const only = objects.slice(0, DESCRIBED).map(it => it.index);
-  const seen = await editor.askCurrent<Overlays>("pinhole/overlays", { only });
-  if (seen !== null) describe(seen, objects.length);
+  describe(objects);
 }
 
 /** Asks for what is shown, one question after the other: the coarse picture comes first. */

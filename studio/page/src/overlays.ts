@@ -24,7 +24,7 @@ class OverlayLayer {
   hovered: number | null = null;
   /** Called when something is to be drawn that may not be known yet. */
   onNeed: () => void = () => {};
-  private selected: number | null = null;
+  selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
 
   constructor(private readonly svg: SVGElement) {
@@ -46,11 +46,6 @@ class OverlayLayer {
 
   /** Whether something is switched on that all objects have. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
-
-  select(selected: number | null): void {
-    this.selected = selected;
-    this.draw();
-  }
 
   hover(hovered: number | null): void {
     if (hovered === this.hovered) return;
@@ -74,14 +69,10 @@ class OverlayLayer {
     svg.append(group);
     const path = (name: string, lines: readonly Polyline[]) => {
       const d = lines.map(line => `M${line.join("L")}`).join("");
-      if (d === "") return;
-      group.append(...twice({ d }, name));
+      if (d !== "") group.append(...twice({ d }, name));
     };
     if (this.isOn("grid") && picture.zoom >= GRID_ZOOM) path("grid", grid());
-    if (this.isOn("near")) {
-      path("near", data.near);
-      path("far", data.far);
-    }
+    if (this.isOn("near")) for (const it of ["near", "far"] as const) path(it, data[it]);
     if (this.isOn("horizon") && data.horizon !== null) path("horizon", [data.horizon]);
     const vanishing = this.isOn("vanishing") ? data.vanishing : [];
     for (const { axis, lines } of vanishing) path(`axis-${axis}`, lines);
@@ -89,9 +80,7 @@ class OverlayLayer {
     for (const name of this.isTrue ? ["hovered", "selected"] as const : []) {
       path(`outline ${name}`, data.objects.find(it => it.index === this[name])?.outline ?? []);
     }
-    for (const { axis, point } of vanishing) {
-      if (point !== null) this.mark(point, `axis-${axis}`, axis);
-    }
+    for (const { axis, point } of vanishing) if (point) this.mark(point, `axis-${axis}`, axis);
     if (this.isOn("axis")) this.mark(data.axis, "view-axis", "view axis");
     if (this.isOn("samples")) this.drawSamples();
   }

@@ -72,38 +72,27 @@ class Picture {
     return [event.clientX - left, event.clientY - top];
   }
 
-  isInside([x, y]: Point): boolean {
-    return x >= 0 && y >= 0 && x < this.size[0] && y < this.size[1];
-  }
-
   /** The matrix that takes points of the picture to the stage, for SVG. */
   get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
   /** Shows the whole picture, as large as the stage allows. */
   fit(): void {
-    this.fitted = true;
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
-    this.zoom = Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width,
-      (clientHeight - 2 * MARGIN) / height));
-    this.center();
+    this.center(Math.max(0.01, Math.min((clientWidth - 2 * MARGIN) / width,
+      (clientHeight - 2 * MARGIN) / height)));
+    this.fitted = true;
   }
 
   /** Shows a pixel of the picture on each of the screen. */
-  actualSize(): void {
-    this.fitted = false;
-    this.zoom = 1 / devicePixelRatio;
-    this.center();
-  }
+  actualSize(): void { this.center(1 / devicePixelRatio); }
 
   zoomBy(factor: number, about?: Point): void {
     about ??= [this.stage.clientWidth / 2, this.stage.clientHeight / 2];
-    const [x, y] = this.toPicture(about);
-    this.fitted = false;
+    const held = this.toPicture(about);
     this.zoom = Math.min(MOST_ZOOM, Math.max(0.02, this.zoom * factor));
-    this.left = about[0] - x * this.zoom;
-    this.top = about[1] - y * this.zoom;
-    this.place();
+    const [x, y] = this.toScreen(held);
+    this.panBy(about[0] - x, about[1] - y);
   }
 
   panBy(dx: number, dy: number): void {
@@ -113,10 +102,12 @@ class Picture {
     this.place();
   }
 
-  private center(): void {
-    this.left = (this.stage.clientWidth - this.size[0] * this.zoom) / 2;
-    this.top = (this.stage.clientHeight - this.size[1] * this.zoom) / 2;
-    this.place();
+  /** Shows the picture's middle in the middle of the stage. */
+  private center(zoom: number): void {
+    const [width, height] = this.size;
+    this.zoom = zoom;
+    const [x, y] = this.toScreen([width / 2, height / 2]);
+    this.panBy(this.stage.clientWidth / 2 - x, this.stage.clientHeight / 2 - y);
   }
 
   private place(): void {

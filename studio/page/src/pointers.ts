@@ -24,9 +24,8 @@ const { stage } = picture;
 
 stage.addEventListener("pointerdown", press);
 stage.addEventListener("pointermove", shift);
-for (const end of ["pointerup", "pointercancel"] as const) {
-  stage.addEventListener(end, event => places.delete(event.pointerId));
-}
+for (const end of ["pointerup", "pointercancel"] as const) stage.addEventListener(end, event =>
+  places.delete(event.pointerId));
 stage.addEventListener("contextmenu", event => event.preventDefault());
 
 function press(event: PointerEvent): void {

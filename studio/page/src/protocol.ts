@@ -8,17 +8,20 @@ export type Point = readonly [number, number];
 /** A line through points. */
 export type Polyline = readonly Point[];
 
-export interface Frame { version: number; size: [number, number]; png: string }
+export interface Frame { version: number; width: number; size: [number, number]; png: string }
 
 export interface SceneObject {
   index: number; kind: string; name: string | null; range: Range; selection: Range;
+  label: string; // the name, or what tells it from others without one
+  indices?: number[]; // which one of its block it is, where that stands for many
 }
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
+/** An object and where in the picture it is seen, in words. */
+export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {
-  size: [number, number];
   axis: Point;
   horizon: Polyline | null;
   vanishing: { axis: "x" | "y" | "z"; point: Point | null; lines: Polyline[] }[];
@@ -28,10 +31,8 @@ export interface Overlays {
 
 export interface Pick {
   object: SceneObject | null;
-  point: [number, number, number] | null;
-  distance: number | null;
-  /** Null outside of the picture. */
-  color: string | null;
+  /** In which pixel it is, and what is seen, in words; null outside of the picture. */
+  pixel: Point | null; text: string | null;
 }
 
 /** What a drag may be held to: an axis of the world, or the plane of equal y. */
@@ -45,9 +46,12 @@ export interface Dragged {
 }
 
 /** Between which numbers a number may be; `open` excludes the bounds themselves. */
-export interface Limits { least: number | null; most: number | null; open: boolean; whole: boolean }
-/** A number or angle that a `let` is, and what a slider of it may be turned to. */
-export interface Slider { name: string; range: Range; limits: Limits; step: number | null }
+export interface Limits {
+  least: number | null; most: number | null; open: boolean; step: number | null;
+}
+/** A number or angle that a `let` is, and what a slider of it may be turned to; `note` says why the
+ *  comment behind it is no range. */
+export interface Slider { name: string; range: Range; limits: Limits; note: string | null }
 
 /** A block that is new: what writes it, and the offset at which it begins. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }

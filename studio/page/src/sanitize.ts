@@ -16,16 +16,12 @@ export function sanitized(html: string): string {
   return clean.innerHTML;
 }
 
-function copy(from: Node, to: Node): void {
+function copy(from: Element, to: Element): void {
   for (const node of from.childNodes) {
-    if (node instanceof Text) {
-      to.appendChild(document.createTextNode(visible(node.data)));
-    } else if (node.nodeType === Node.ELEMENT_NODE && ALLOWED.has(node.nodeName)) {
-      copy(node, to.appendChild(document.createElement(node.nodeName)));
-    } else if (node.nodeName === "A") {
-      copy(node, to);
-    } else if (node.nodeType === Node.ELEMENT_NODE) {
-      to.appendChild(document.createTextNode(visible((node as Element).outerHTML)));
-    }
+    if (node instanceof Text) to.append(visible(node.data));
+    else if (!(node instanceof Element)) continue; // a comment
+    else if (node.nodeName === "A") copy(node, to);
+    else if (!ALLOWED.has(node.nodeName)) to.append(visible(node.outerHTML));
+    else copy(node, to.appendChild(document.createElement(node.nodeName)));
   }
 }

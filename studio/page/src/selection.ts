@@ -23,8 +23,6 @@ ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 /** An object, and its block's place in the text, which follows changes. */
 interface Placed { object: SceneObject; from: number; to: number }
 
-export function nameOf(object: SceneObject): string { return object.name ?? object.kind; }
-
 class Selection {
   /** The object that is selected. */
   selected: Placed | undefined;
@@ -46,14 +44,17 @@ class Selection {
 
   list(objects: readonly SceneObject[]): void {
     this.placed = objects.map(object => this.place(object));
-    const names = objects.map(it =>
-      it.name === null ? `${it.kind} (${it.range.start.line + 1})` : `${it.name} (${it.kind})`);
-    const shown = [...this.menu.options].slice(1);
-    if (names.length !== shown.length || names.some((name, i) => name !== shown[i]?.text)) {
-      const options = objects.map((object, i) => new Option(names[i], String(object.index)));
-      this.menu.replaceChildren(new Option("Nothing selected", ""), ...options);
-    }
+    this.name();
     this.follow();
+  }
+
+  private name(): void {
+    const options = this.placed.map(({ object: { index, label, name, kind, range } }) =>
+      new Option(`${label} (${name === null ? range.start.line + 1 : kind})`, String(index)));
+    const shown = [...this.menu.options].slice(1);
+    const isShown = (it: HTMLOptionElement, i: number) => it.isEqualNode(shown[i] ?? null);
+    if (options.length === shown.length && options.every(isShown)) return;
+    this.menu.replaceChildren(new Option("Nothing selected", ""), ...options);
   }
 
   /** The text has changed: blocks are elsewhere, until the objects of the new text are known. */
@@ -69,7 +70,7 @@ class Selection {
   cursorMoved(): void {
     this.choices++;
     if (this.chosen === null) this.chosen = undefined;
-    this.follow();
+    this.follow(true);
   }
 
   /** Selects an object and shows its line; nothing for null. */
@@ -80,6 +81,7 @@ class Selection {
     // The list has the first objects alone.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
+    this.name();
     const anchor = editor.offset(object.selection.start);
     editor.view.dispatch({ selection: { anchor }, scrollIntoView: true });
     this.cursorMoved();
@@ -90,13 +92,18 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  private follow(): void {
+  /** The block that was selected stays so wherever a change of the text has brought it, also away
+   *  from the cursor, until that is moved. */
+  private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
-    const touching = this.placed.filter(it => it.from < it.to && it.from <= head && head <= it.to);
+    const there = this.placed.filter(it => it.from < it.to);
+    const { from = 0, to = 0 } = this.selected ?? {};
+    const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
+    const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
     // At the border of two it is the second one; of a repeated block it is the one that was chosen.
     const first = touching.find(it => head < it.to) ?? touching[0];
-    const isChosen = ({ from, object: { index, name } }: Placed) => from === first?.from
-      && (name === null ? index === this.chosen?.index : name === this.chosen?.name);
+    const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
+      && String(indices) === String(this.chosen?.indices);
     const found = this.chosen === null ? undefined : touching.find(isChosen) ?? first;
     if (this.chosen !== null) this.chosen = found?.object;
     const before = this.index;
@@ -104,7 +111,8 @@ class Selection {
     this.menu.value = String(this.index ?? "");
     this.offer();
     if (this.index === before) return;
-    overlays.select(this.index);
+    overlays.selected = this.index;
+    overlays.draw();
     this.draw();
     this.onChange();
   }
@@ -112,9 +120,8 @@ class Selection {
   get index(): number | null { return this.selected?.object.index ?? null; }
 
   private offer(): void {
-    for (const id of ["duplicate", "delete"]) {
-      byId<HTMLButtonElement>(id).disabled = this.index === null;
-    }
+    const none = this.index === null;
+    for (const id of ["duplicate", "delete"]) byId<HTMLButtonElement>(id).disabled = none;
     const hasFloor = this.placed.some(it => it.object.kind === "checkerboard");
     tools.offer(this.index !== null, hasFloor);
   }
@@ -122,31 +129,32 @@ class Selection {
   /** The selected object as it is drawn; none while that is not known of this text. */
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
-    return isTrue ? data?.objects.find(it => it.index === this.index) : undefined;
+    const { line } = editor.position(this.selected?.from ?? 0);
+    // Until the objects of a new text are listed, another one may have this index.
+    return isTrue ? data?.objects.find(it => it.index === this.index
+      && it.range.start.line === line) : undefined;
   }
 
   /** Puts the handles of the selected object where they are seen. */
   draw(): void {
     const object = this.drawn;
-    const shown = (object?.handles ?? []).filter(it => it.at !== null);
-    const old = [...this.handles.children] as HTMLButtonElement[];
-    const same = old.length === shown.length && old.every((button, i) =>
-      button.dataset["handle"] === shown[i]?.handle
-      && button.dataset["object"] === String(object?.index));
-    const buttons = same ? old
-      : shown.map(handle => this.createHandle(object as DrawnObject, handle));
-    if (!same) this.handles.replaceChildren(...buttons);
+    const shown = object?.handles.filter(it => it.at !== null) ?? [];
+    const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
+    // What is held stays the same element.
+    if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
+      ...shown.map(it => this.createHandle(object as DrawnObject, it)));
+    this.handles.dataset["names"] = names;
     const taken: Point[] = [];
     shown.forEach(({ at }, i) => {
       const [x, y] = apart(picture.toScreen(at as Point), taken);
       taken.push([x, y]);
-      const button = buttons[i] as HTMLButtonElement;
+      const button = this.handles.children[i] as HTMLElement;
       button.style.transform = `translate(${x}px, ${y}px) translate(-50%, -50%)`;
     });
   }
 
   private createHandle(object: DrawnObject, { handle, label }: Handle): HTMLButtonElement {
-    const button = createButton("", "handle", () => {}, `${nameOf(object)}: ${label}`);
+    const button = createButton("", "handle", () => {}, `${object.label}: ${label}`);
     button.dataset["handle"] = handle;
     button.dataset["object"] = String(object.index);
     button.append(create("span", "handle-label", label));
@@ -173,9 +181,8 @@ function apart([x, y]: Point, taken: readonly Point[]): Point {
 
 export const selection = new Selection();
 
-for (const button of document.querySelectorAll<HTMLElement>("[data-kind]")) {
+for (const button of document.querySelectorAll<HTMLElement>("[data-kind]"))
   button.addEventListener("click", () => void add({ kind: button.dataset["kind"] }));
-}
 byId("duplicate").addEventListener("click", () => void add({ object: selection.index }));
 byId("delete").addEventListener("click", remove);
 

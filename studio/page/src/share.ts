@@ -78,10 +78,8 @@ const render = async (kind: "png" | "exr", type: string) => {
 };
 byId("download-png").addEventListener("click", () => void render("png", "image/png"));
 byId("download-exr").addEventListener("click", () => void render("exr", "image/x-exr"));
-for (const id of ["download-scene", "connection-download"]) {
-  byId(id).addEventListener("click", () =>
-    download(`${stem()}.scn`, files.textToSave, "text/plain"));
-}
+for (const id of ["download-scene", "connection-download"]) byId(id).addEventListener("click", () =>
+  download(`${stem()}.scn`, files.textToSave, "text/plain"));
 
 const dialog = byId<HTMLDialogElement>("share-dialog");
 const field = byId<HTMLInputElement>("share-link");

@@ -38,30 +38,29 @@ export async function refreshSliders(): Promise<void> {
     byId("sliders").replaceChildren(...rows.map(row => row.element));
   }
   byId("sliders").hidden = sliders.length === 0;
-  sliders.forEach(({ range, limits, step }, i) => {
+  sliders.forEach(({ range, limits, note }, i) => {
     const row = rows[i] as Row;
-    Object.assign(row, { at: editor.offset(range.start), step });
+    setText(row.note, note ?? "");
+    row.at = editor.offset(range.start);
     row.dial.limits = limits;
     show(row);
   });
 }
 
-/** A definition's row, where its number begins in the text, and the step that is chosen for it. */
+/** A definition's row, and where its number begins in the text. */
 function createRow(name: string) {
-  const dial: Dial = new Dial(() => {
-    const found = literalAt(row.at + 1);
-    return found && { ...found, step: row.step ?? found.step };
-  });
+  const dial: Dial = new Dial(() => literalAt(row.at + 1));
   dial.range.setAttribute("aria-label", name);
   dial.range.addEventListener("input", () => { if (playing === row) stop(); });
-  const [element, value] = [create("div", "slider-row"), create("output")];
+  const [element, value, note] = [create("div", "slider-row"), create("output"), create("p")];
   const button: HTMLElement = createButton("", "play", () => play(row), `Play ${name}`);
-  element.append(create("span", "", name), dial.range, value, button);
-  const row = { name, at: 0, step: null as number | null, dial, element, value, button };
+  element.append(create("span", "", name), dial.range, value, button, note);
+  const row = { name, at: 0, dial, element, value, button, note };
   return row;
 }
 
-function stop(): void {
+/** Has the number that is played rest. */
+export function stop(): void {
   const row = playing;
   playing = null;
   if (row === null) return;

@@ -28,9 +28,8 @@ class Tools {
       picture.stage.dataset["tool"] = this.tool;
       if (this.tool !== "move") setText(summary, `Camera: ${this.tool.replace("_", " ")}`);
     });
-    for (const input of radios("along")) {
-      input.addEventListener("change", () => (this.chosen = input.value as Along | ""));
-    }
+    for (const input of radios("along")) input.addEventListener("change", () =>
+      (this.chosen = input.value as Along | ""));
   }
 
   /** Offers what is of use: there is an object to drag, and there may be a floor under it. */

@@ -76,7 +76,7 @@ test("from the text the picture is three stops of the Tab key away, and a colour
 test("who does not see the picture hears what is in it, and what has changed", async t => {
   const page = await open(await launch(t), await host(t));
   const seen = pattern => page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("canvas").ariaLabel), pattern);
-  await seen("^Ball: middle centre; Sail: .*; Crate: middle .*; checkerboard: ");
+  await seen("^Ball, Sail, Crate, checkerboard: middle centre$");
   assert.equal(await page.textContent("#seen"), "");
   await andFinished(page, () => type(page, FIGURE.replace("(-1.6, 1, 0)", "(-3.6, 1, 0)")));
   await seen("^Ball: middle left");

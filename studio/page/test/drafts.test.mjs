@@ -102,7 +102,7 @@ test("what is written while an offer stands unanswered is kept beside it, and so
 
 for (const way of ["a reload of its tab, and its address there", "its address in another tab"]) {
   test(`what is typed while the host is dead is there again, at the same port: ${way}`, async t => {
-    const started = await host(t);
+    const started = await host(t, FIGURE, "own.scn");
     const browser = await launch(t);
     const page = await open(browser, started);
     page.on("dialog", dialog => dialog.accept());
@@ -113,7 +113,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
     await page.waitForSelector("#connection-bar:not([hidden])");
     await page.locator(".cm-line").last().click();
     await page.keyboard.type("// typed", { delay: 20 });
-    const typed = await text(page);
+    let typed = await text(page);
     assert.match(typed, /radius 1\.5[^]*\/\/ typed$/);
     await kept(page);
     const { port } = new URL(started.address);
@@ -126,13 +126,17 @@ for (const way of ["a reload of its tab, and its address there", "its address in
       await offered(page);
       assert.match(await page.textContent("#connection"), /Studio was started anew/);
       assert.equal(await page.locator("#draft-choices li").count(), 1);
-      // It can be read and taken away at once, and goes on when there is a connection.
+      // It goes on at once.
       await choose(page, "Restore");
       assert.equal(await text(page), typed);
-      assert.match(await page.innerText("#connection-kept"), /^The text can be changed when there is a connection/);
-      await page.click(".cm-content");
-      await page.keyboard.type("lost");
-      assert.equal(await text(page), typed, "what would be lost is not taken");
+      assert.ok(await page.isHidden("#draft-bar"));
+      assert.equal(await page.textContent("#file-name"), path.basename(started.file));
+      await page.locator(".cm-line").last().click();
+      await page.keyboard.type(" on", { delay: 20 });
+      typed += " on";
+      assert.equal(await text(page), typed);
+      await kept(page);
+      assert.match(await page.innerText("#connection-kept"), /^What is written now is kept in this browser/);
       const [download] = await Promise.all([page.waitForEvent("download"), page.click("#connection-download")]);
       assert.equal(readFileSync(await download.path(), "utf8"), typed);
       await page.reload();

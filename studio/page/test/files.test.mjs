@@ -451,3 +451,28 @@ test("a picture that takes long tells how far it is, and Cancel ends it at once"
   await choose();
   assert.equal((await download).suggestedFilename(), "scene.png");
 });
+
+test("what another program saves while a number is played comes at once, and the number rests", async t => {
+  const started = await host(t, `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`);
+  const page = await open(await launch(t), started);
+  await page.click('[aria-label="Play r"]');
+  await page.waitForFunction(() => !document.querySelector(".cm-content").textContent.includes("let r = 1 "));
+  started.write(started.text().replace("8)", "6)"));
+  await page.waitForSelector("#conflict-dialog[open]", { timeout: 3000 });
+  await page.getByRole("button", { name: "Take the file's text" }).click();
+  await rested(page);
+  assert.equal(await text(page), started.text());
+  assert.equal(await page.locator(".play[aria-pressed=true]").count(), 0);
+});
+
+test("Save as says what is wrong with this name, not with the one before", async t => {
+  const page = await open(await launch(t), await host(t));
+  await menu(page, "File", "#save-as");
+  const problem = pattern => page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("#name-problem").textContent), pattern, { timeout: 3000 });
+  for (const [name, said] of [["a/b", "no path"], ["", "needs a name"], ["a/b", "no path"], ["  ", "needs a name"]]) {
+    await page.fill("#name-field", name);
+    await page.keyboard.press("Enter");
+    await problem(said);
+    assert.ok(await page.isVisible("#name-dialog"));
+  }
+});

@@ -308,3 +308,70 @@ test("a phone has tabs for picture and text, and targets of 44 pixels", async t 
   await page.tap("#problems");
   assert.ok(await page.isVisible("#editor"));
 });
+
+test("members of a repetition without a name are told apart by their indices", async t => {
+  const scene = `${FIGURE}\nsphere for i < 2, j < 2 { center (i - 3, 3 + j, 0)  radius 0.3 }\nsphere { center (2, 3, 0)  radius 0.3 }\n`;
+  const page = await open(await launch(t), await host(t, scene));
+  const names = () => page.locator("#objects option").allTextContents();
+  await page.waitForFunction(() => document.querySelector("#objects").options.length === 10);
+  const line = scene.split("\n").findIndex(it => it.startsWith("sphere for")) + 1;
+  assert.deepEqual((await names()).slice(-5), ["[0, 0]", "[0, 1]", "[1, 0]", "[1, 1]"].map(it => `sphere ${it} (${line})`).concat(`sphere (${line + 1})`));
+  await page.selectOption("#objects", { index: 7 });
+  await page.waitForSelector('.handle[aria-label^="sphere [1, 0]: "]');
+});
+
+test("a selected board is outlined where it is seen, and not across what stands before it", async t => {
+  const scene = "camera { eye (0, 1, 5)  lookat (0, 0, 0) }\ncheckerboard Floor { square 2 }\nsphere Ball { center (0.5, 0.5, 3)  radius 1 }\n";
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForFunction(() => document.querySelector("#objects").options.length === 3);
+  await page.selectOption("#objects", { label: "Floor (checkerboard)" });
+  await rested(page);
+  await page.mouse.move(...(await onPage(page, [100, -30])));
+  await page.waitForTimeout(300);
+  assert.equal(await page.locator(".line.selected").count(), 0);
+  // Beside it all of the cell is seen.
+  await page.locator(".cm-line").last().click();
+  await page.keyboard.type("// ", { delay: 30 });
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Home");
+  await page.keyboard.type("// ", { delay: 30 });
+  await page.click(".cm-line:nth-child(2)");
+  await page.waitForSelector(".line.selected", { state: "attached", timeout: 5000 });
+});
+
+test("what is selected stays so when another program puts something before it", async t => {
+  // Another program's change comes as the least that differs, which may begin anywhere in a block.
+  const blocks = ["sphere for i < 3 { center (2*i - 2, 1, 0)  radius 0.6 }", "box { min (-3, 0, -1)  max (-2.4, 2, 0) }"];
+  const board = "checkerboard { y 0 }";
+  const camera = "camera { eye (0, 3, 9)  lookat (0, 1, 0) }";
+  for (const [selected, added] of [["sphere [2] (3)", "sphere { center (0, 3, 0)  radius 0.3 }"], ["box (4)", "box { min (3, 0, 0)  max (4, 1, 1) }"]]) {
+    const started = await host(t, [camera, board, ...blocks, ""].join("\n"));
+    const page = await open(await launch(t), started);
+    await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
+    await page.selectOption("#objects", { label: selected });
+    await page.waitForSelector(".handle");
+    const shown = () => page.evaluate(() => [document.querySelector("#objects").selectedOptions[0]?.text, document.querySelector(".handle")?.ariaLabel]);
+    const [, label] = await shown();
+    const at = selected.startsWith("box") ? 3 : 2;
+    const lines = [camera, board, ...blocks, ""];
+    started.write([...lines.slice(0, at), added, added.replace("3", "2.5"), ...lines.slice(at)].join("\n"));
+    await page.waitForFunction(() => document.querySelector("#objects").options.length === 8);
+    await rested(page);
+    const line = Number(/\d+(?=\)$)/.exec(selected)[0]) + 2;
+    assert.deepEqual(await shown(), [selected.replace(/\d+\)$/, `${line})`), label]);
+    // And when it is taken away again.
+    started.write(lines.join("\n"));
+    await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
+    await rested(page);
+    assert.deepEqual(await shown(), [selected, label]);
+    started.write([...lines.slice(0, at), added, added.replace("3", "2.5"), ...lines.slice(at)].join("\n"));
+    await page.waitForFunction(() => document.querySelector("#objects").options.length === 8);
+    await rested(page);
+    // The handle is its own.
+    await hand(page, await handle(page, label), [40, 0]);
+    await rested(page);
+    const now = (await text(page)).split("\n");
+    assert.deepEqual(now.filter((_, i) => i !== line - 1), started.text().split("\n").filter((_, i) => i !== line - 1));
+    assert.notEqual(now[line - 1], lines[at]);
+  }
+});

@@ -41,9 +41,9 @@ export async function launch(context) {
 }
 
 /** A host of a file with this text, in a folder of its own. Both go when the test ends. */
-export async function host(context, text = FIGURE) {
+export async function host(context, text = FIGURE, name = "scene.scn") {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
-  const file = path.join(folder, "scene.scn");
+  const file = path.join(folder, name);
   writeFileSync(file, text);
   const started = { file, folder, text: () => readFileSync(file, "utf8"), write: text => writeFileSync(file, text), ...(await serve(file)) };
   context.after(() => {
@@ -93,15 +93,34 @@ export async function site(context, folder) {
 }
 
 /** The page of a host, as soon as its picture is finished. What the browser complains of is collected in `page.complaints`. */
-export async function open(browser, { address }, options = {}) {
+export async function open(browser, { address }, { late, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
+  if (late !== undefined) await delayed(page, late);
   page.complaints = [];
   page.on("console", message => message.type() === "error" && page.complaints.push(message.text()));
   page.on("pageerror", error => page.complaints.push(error.message));
   await page.goto(address);
   await finished(page);
   return page;
+}
+
+/** Has answers come late: by so many milliseconds for each method that `late` has. */
+async function delayed(page, late) {
+  await page.routeWebSocket("**/socket", socket => {
+    const server = socket.connectToServer();
+    const asked = new Map();
+    socket.onMessage(message => {
+      const { id, method } = message[0] === "{" ? JSON.parse(message) : {};
+      if (id !== undefined) asked.set(id, method);
+      server.send(message);
+    });
+    server.onMessage(message => {
+      const after = late[asked.get(JSON.parse(message).id)] ?? 0;
+      if (after === 0) socket.send(message);
+      else setTimeout(() => socket.send(message), after);
+    });
+  });
 }
 
 /** Waits for the finished picture of the newest text. */

@@ -372,3 +372,42 @@ test("on a phone the header and the tools have two rows each, on its side the to
     await page.context().close();
   }
 });
+
+test("a range has units, its ends may be exchanged, and one that is not understood is said to be none", async t => {
+  const lines = ["let a = 30deg // [0deg:5deg:90deg]", "let b = 2 // [5:1:0]", "let c = 1 // [1:x]", "let d = 3 // see below"];
+  const page = await open(await launch(t), await host(t, `${lines.join("\n")}\n${FIGURE}`));
+  await page.waitForSelector(".slider-row");
+  const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => {
+    const { min, max, step } = row.querySelector("input");
+    return [min, max, step, row.querySelector("p").textContent];
+  }));
+  assert.deepEqual(rows.slice(0, 2), [["0", "90", "5", ""], ["0", "5", "1", ""]]);
+  assert.match(rows[2][3], /`x` in the range is no number/);
+  assert.equal(rows[3][3], "");
+  for (const [at, written] of [[0, "let a = 90deg"], [1, "let b = 5"]]) {
+    const { x, y, width, height } = await page.locator(".slider-row input").nth(at).boundingBox();
+    const part = at === 0 ? 1 / 3 : 2 / 5;
+    await hand(page, [x + 8 + (width - 16) * part, y + height / 2], [width, 0]);
+    await rested(page);
+    assert.ok((await text(page)).includes(written), await text(page));
+  }
+});
+
+test("at each width what is selected, or that nothing is, can be read", async t => {
+  const [browser, started] = [await launch(t), await host(t)];
+  for (const hasTouch of [false, true]) for (const width of [350, 390, 560, 761, 1280]) {
+    const page = await open(browser, started, { viewport: { width, height: 844 }, hasTouch, isMobile: hasTouch });
+    await page.waitForTimeout(100);
+    const [has, needs] = await page.evaluate(() => {
+      const menu = document.querySelector("#objects");
+      const copy = menu.cloneNode();
+      copy.append(new Option("Nothing selected"));
+      Object.assign(copy.style, { position: "absolute", flex: "none", width: "max-content", maxWidth: "none", minWidth: "0" });
+      menu.after(copy);
+      const widths = [menu, copy].map(it => it.getBoundingClientRect().width);
+      copy.remove();
+      return widths;
+    });
+    assert.ok(has >= needs - 0.5, `${width}: ${has} of ${needs}`);
+  }
+});

@@ -219,3 +219,26 @@ test("a page of another server on this machine gets nothing", async t => {
   assert.ok(heads.length >= 2);
   for (const head of heads) assert.ok(!head.includes(token) && !head.includes(name) && !/"cookie"/.test(head), head);
 });
+
+test("without a connection nothing is said of a text's errors, but whose picture it is", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  page.on("dialog", dialog => dialog.accept());
+  const said = async pattern => {
+    await page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("#stale").textContent), pattern, { timeout: 3000 });
+    assert.ok(await page.isVisible("#stale"));
+  };
+  await page.locator(".cm-line").last().click();
+  await page.keyboard.type("x");
+  await said("has errors");
+  await started.stop("SIGKILL");
+  await said("^Without a connection this is the picture of an older text");
+  await page.keyboard.press("Backspace");
+  await page.waitForFunction(() => document.querySelector("#stale").hidden, null, { timeout: 3000 });
+  await page.keyboard.type("// a");
+  await said("^Without a connection");
+  const again = await serve(started.file, { port: new URL(started.address).port });
+  t.after(() => again.stop());
+  await page.goto(again.address);
+  await page.waitForFunction(() => document.querySelector("#stale").hidden && document.querySelector("#connection-bar").hidden);
+});

@@ -248,3 +248,13 @@ test("a hint on a word that is gone when it comes is none", async t => {
   }
   assert.deepEqual(page.complaints, []);
 });
+
+test("a click at a hint moves the cursor to its place", async t => {
+  const page = await open(await launch(t), await host(t));
+  await page.waitForSelector(".hint");
+  await page.click(".cm-content", { position: { x: 2, y: 5 } });
+  const hint = page.locator(".hint", { hasText: "fov" });
+  await hint.click();
+  await page.keyboard.type("1");
+  assert.match(await text(page), /d +2\.751/);
+});

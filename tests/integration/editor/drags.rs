@@ -230,3 +230,107 @@ proptest! {
         }
     }
 }
+
+/// Drags a handle again and again, and returns the object after each time.
+fn drags(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
+    let view = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }";
+    let mut text = format!("{block} {view}");
+    let mut shapes = vec![read(&text).objects[0].shape];
+    for by in [
+        [0.0, -19.0],
+        [13.0, 7.0],
+        [-8.5, 17.0],
+        [23.0, -31.0],
+        [5.0, 3.0],
+    ] {
+        let scene = read(&text);
+        let all = overlays(&scene, &Shown::First(None)).objects;
+        let (_, at) = all[0]
+            .handles
+            .iter()
+            .find(|(name, _)| *name == handle)
+            .expect("a handle");
+        let to = at.expect("it is seen") + DVec2::from(by);
+        let moved = Drag {
+            object: Some(0),
+            handle,
+            from: to,
+            to,
+            along: None,
+            step,
+        };
+        // A face stops before the one that is opposite.
+        text = dragged(&text, &moved).unwrap_or(text);
+        shapes.push(read(&text).objects[0].shape);
+    }
+    shapes
+}
+
+/// What is not held stays where it is, to the last digit.
+#[test]
+fn what_is_not_held_stays() {
+    let steps = [None, Some(8.0), Some(3.0), Some(1.0)];
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+    let boxes = [
+        "box { center (2.1, 0.7, -1.2) size (0.8, 1.4, 1.6) }",
+        "box { center (0.123, 0.7, 0) size (1, 1.4567, 1) }",
+        "box { min (0.1, 0.25, -1) max (1, 1.5, 0.125) }",
+        "let s = 0.7 box { center (0.35, s, 0) size (1, 2 * s, 1) + (0, 0, 1) }",
+    ];
+    let faces = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
+    for (text, handle, step) in boxes.iter().flat_map(|text| {
+        faces
+            .iter()
+            .flat_map(move |face| steps.map(|step| (text, face, step)))
+    }) {
+        // A name that the center and the size share has both of them change.
+        if text.starts_with("let") && handle.ends_with('y') {
+            continue;
+        }
+        let shapes = drags(text, handle, step);
+        assert!(
+            shapes.windows(2).any(|pair| pair[0] != pair[1]),
+            "{text} {handle}"
+        );
+        let sides = shapes.iter().map(|shape| match shape {
+            Shape::Box(Cuboid { min, max, .. }) => [min.to_array(), max.to_array()].concat(),
+            _ => panic!("a box"),
+        });
+        let sides: Vec<Vec<f64>> = sides.collect();
+        let held =
+            "xyz".find(&handle[4..]).expect("an axis") + 3 * usize::from(handle.starts_with("max"));
+        for (side, (first, last)) in sides[0]
+            .iter()
+            .zip(&sides[5])
+            .enumerate()
+            .filter(|(side, _)| *side != held)
+        {
+            assert!(
+                near(*first, *last),
+                "{text} {handle} {step:?}: side {side} goes from {first} to {last}"
+            );
+        }
+    }
+    for step in steps {
+        let shapes = drags(
+            "triangle { v0 (0, 0.25, 0) v1 (1.125, 0, 0.5) v2 (0, 1, 0.333) }",
+            "center",
+            step,
+        );
+        let edges = shapes.iter().map(|shape| match shape {
+            Shape::Triangle(triangle) => match triangle.outline {
+                Outline::Vertices([a, b, c]) => [b - a, c - a],
+                Outline::Centered(_) => panic!("it has vertices"),
+            },
+            _ => panic!("a triangle"),
+        });
+        let edges: Vec<_> = edges.collect();
+        for (a, b) in edges[0].into_iter().zip(edges[5]) {
+            assert!(
+                a.distance(b) < 1e-12,
+                "{step:?}: an edge goes from {a} to {b}"
+            );
+        }
+        assert!(shapes[0] != shapes[5]);
+    }
+}

@@ -5,6 +5,7 @@ pub mod client;
 mod emacs;
 mod frames;
 mod neovim;
+mod ranges;
 mod session;
 pub mod talk;
 mod transcripts;

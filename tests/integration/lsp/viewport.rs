@@ -48,63 +48,34 @@ fn overlays_are_not_more_than_a_page_can_show() {
     }
 }
 
-/// A slider need not offer what the language forbids.
+/// A board's square is drawn where it is seen, and not across what stands in front of it.
 #[test]
-fn a_number_has_the_limits_of_its_field() {
-    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox { center (0, 0, 0) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }";
-    let mut talk = Talk::with(text);
-    let limits = |least: Value, most: Value, open: bool, whole: bool| json!({ "least": least, "most": most, "open": open, "whole": whole });
-    let pi = std::f64::consts::PI;
-    for (before, expected) in [
-        ("radius 1", limits(json!(0.0), Value::Null, true, false)),
-        ("per_pixel 16", limits(json!(1.0), Value::Null, false, true)),
-        ("fov 1", limits(json!(0.0), json!(pi), true, false)),
-        ("size (1, 2", limits(json!(0.0), Value::Null, true, false)),
-        ("eye (0", limits(Value::Null, Value::Null, false, false)),
-        ("let a = 3", Value::Null),
-        ("radius a + 1", Value::Null),
+fn outlines_of_boards_are_not_drawn_over_other_objects() {
+    let view = "camera { eye (0, 1, 5) lookat (0, 0, 0) } checkerboard { square 2 }";
+    // What stands there; how many lines are left of the square.
+    for (before, count) in [
+        ("", 1),
+        ("sphere { center (0, -5, 0) radius 1 }", 1),
+        ("sphere { center (1, 0.3, 0) radius 0.6 }", 2),
+        ("sphere { center (0.5, 0.5, 3) radius 1 }", 0),
     ] {
-        let at = text.find(before).expect("it is there") + before.len();
-        let lines: Vec<&str> = text[..at].split('\n').collect();
-        let character = lines[lines.len() - 1].len();
-        let position = json!({ "line": lines.len() - 1, "character": character });
-        let found = talk.ask("pinhole/limits", json!({ "position": position }));
-        assert_eq!(found, expected, "{before}");
+        let mut talk = Talk::with(&format!("{view} {before}"));
+        let overlays = talk.ask("pinhole/overlays", json!({ "only": [0] }));
+        let lines: Vec<Vec<[f64; 2]>> =
+            serde_json::from_value(overlays["objects"][0]["outline"].clone()).expect("lines");
+        assert_eq!(lines.len(), count, "{before}: {lines:?}");
+        for ends in lines.iter().flat_map(|line| line.windows(2)) {
+            for part in [0.1, 0.5, 0.9] {
+                let at = [0, 1].map(|axis| ends[0][axis] + part * (ends[1][axis] - ends[0][axis]));
+                let pick = talk.ask("pinhole/pick", json!({ "point": at }));
+                let object = &pick["object"];
+                assert!(
+                    object.is_null() || object["index"] == 0,
+                    "{before}: {at:?} {pick}"
+                );
+            }
+        }
     }
-}
-
-/// Definitions have sliders: by the comment behind them, or by the fields that they stand in.
-#[test]
-fn definitions_have_ranges() {
-    let text = "let a = 1 // [0.5:0.1:2] how large\nlet b = -2 //[-3:3]\nlet c = 3 // [3:1]\nlet n = 4\nlet t = 0.5rad // turn\n\
-        let v = (1, 2, 3) // [1:2]\nlet e = a + 1 // [1:2]\ncamera { eye (0, 0, 5) lookat (0, 0, 0) fov t }\n\
-        sampler { per_pixel n }\nsphere { radius c }\nsphere { radius a + b }";
-    let mut talk = Talk::with(text);
-    let found = talk.ask("pinhole/sliders", json!({}));
-    let found: Vec<Value> = found
-        .as_array()
-        .expect("a list")
-        .iter()
-        .map(|it| {
-            let limits = &it["limits"];
-            json!([
-                it["name"],
-                limits["least"],
-                limits["most"],
-                limits["whole"],
-                it["step"]
-            ])
-        })
-        .collect();
-    let pi = std::f64::consts::PI;
-    let expected = [
-        json!(["a", 0.5, 2.0, false, 0.1]),
-        json!(["b", -3.0, 3.0, false, null]),
-        json!(["c", 0.0, null, false, null]),
-        json!(["n", 1.0, null, true, null]),
-        json!(["t", 0.0, pi, false, null]),
-    ];
-    assert_eq!(found, expected);
 }
 
 /// What is added is right, has a name that is free, and is seen.

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeSet, fs, path::Path};
 
-use pinhole::schema::{BLOCKS, Condition, FUNCTIONS};
+use pinhole::schema::{BLOCKS, FUNCTIONS};
 
 /// The words in quotation marks that a constant of a file of the page is made of.
 fn words(file: &str, constant: &str) -> BTreeSet<String> {
@@ -29,6 +29,4 @@ fn the_page_knows_the_words_of_the_language() {
         words(file, "FUNCTIONS"),
         set(FUNCTIONS.iter().map(|it| it.name))
     );
-    let whole = fields().filter(|field| field.must.contains(&Condition::Whole));
-    assert_eq!(words(file, "WHOLE_FIELDS"), set(whole.map(|it| it.name)));
 }

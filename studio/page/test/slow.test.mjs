@@ -1,0 +1,109 @@
+// A host that takes its time: what a hand does is done all the same, a sign says that it is waited
+// for, and every picture is finished in the end.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { comparing, decoded, FIGURE, hand, handle, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
+
+const LATE = 1500;
+/** How many drags a slow one is behind the hand at most: the one that is asked, and the last one. */
+const BEHIND = 2 * LATE + 1200;
+const BALL = [455, 320];
+
+/** What is dragged, from where, and how far. */
+const DRAGS = {
+  object: { from: page => onPage(page, BALL), way: [90, -40] },
+  handle: { from: page => handle(page, "Ball: center"), way: [70, 30] },
+  camera: { from: page => onPage(page, [640, 100]), way: [80, 30], tool: "orbit" },
+};
+
+async function dragged(page, { from, way, tool }) {
+  await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool ?? "move");
+  await hand(page, await from(page), way);
+}
+
+test("where the hand lets go is where the handle comes, however late the host answers", async t => {
+  const browser = await launch(t);
+  const started = await host(t);
+  const late = {};
+  const page = await open(browser, started, { late });
+  await page.selectOption("#objects", { label: "Ball (sphere)" });
+  await rested(page);
+  const expected = {};
+  for (const [name, drag] of Object.entries(DRAGS)) {
+    await dragged(page, drag);
+    await rested(page);
+    expected[name] = await text(page);
+    assert.notEqual(expected[name], FIGURE);
+    await page.click("#undo");
+    await rested(page);
+  }
+  for (const [name, drag] of Object.entries(DRAGS)) for (const slow of ["pinhole/drag", "pinhole/frame", "pinhole/pick"]) {
+    // What is taken by its body is not selected before.
+    await page.selectOption("#objects", { label: name === "object" ? "Crate (box)" : "Ball (sphere)" });
+    await rested(page);
+    // A picture may take as long as it wants.
+    late[slow] = slow === "pinhole/frame" ? 4 * BEHIND : LATE;
+    await dragged(page, drag);
+    const begin = Date.now();
+    const isWaited = slow === "pinhole/drag" || (slow === "pinhole/pick" && name === "object");
+    if (isWaited) await page.waitForFunction(() => document.querySelector("#drag-note").textContent === "Waiting for Studio…", null, { timeout: LATE });
+    const limit = isWaited ? BEHIND : 1000;
+    while ((await text(page)) !== expected[name] && Date.now() - begin < limit) await page.waitForTimeout(20);
+    assert.equal(await text(page), expected[name], `${name}, late ${slow}`);
+    delete late[slow];
+    await page.waitForFunction(() => document.querySelector("#drag-note").hidden);
+    await page.click("#undo");
+    await rested(page);
+    assert.equal(await text(page), FIGURE);
+  }
+});
+
+test("the last good picture of a text with errors is finished, too", async t => {
+  const scene = FIGURE.replace(/per_pixel\s+\d+/, "per_pixel 800");
+  assert.notEqual(scene, FIGURE);
+  const started = await host(t, FIGURE);
+  const page = await open(await launch(t), started);
+  await comparing(page);
+  const expected = await decoded(page, rendered(started.folder, scene));
+  // From the coarse picture on it is wrong.
+  await page.evaluate(() => addEventListener("pinhole-frame", () => (window.isBegun = true), { once: true }));
+  await page.click(".cm-content", { position: { x: 2, y: 5 } });
+  await page.keyboard.press("Control+a");
+  await page.keyboard.insertText(scene);
+  await page.waitForFunction(() => window.isBegun);
+  await page.keyboard.type("x");
+  await page.waitForFunction(() => /errors/.test(document.querySelector("#stale").textContent));
+  assert.notEqual(await page.evaluate(() => document.querySelector("canvas").dataset.fineness), "final");
+  // More mistakes do not begin it anew, nor keep it.
+  await page.keyboard.type("y z", { delay: 100 });
+  await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 60_000 });
+  assert.equal(await pixels(page), expected);
+  assert.match(await page.textContent("#stale"), /last good picture/);
+  await page.keyboard.press("Control+z");
+  await rested(page);
+  assert.ok(await page.isHidden("#stale"));
+});
+
+test("of very many objects the menu names what is selected at once, and places are said once", async t => {
+  const scene = "camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0) }\nsphere Ball for j < 40, i < 40 { center (40 - i, 0.2*j - 8.8, j - 34)  radius 0.4 }\n";
+  const page = await open(await launch(t), await host(t, scene), { late: { "pinhole/objects": LATE } });
+  await page.waitForFunction(() => document.querySelector("#objects").options.length === 1001);
+  await page.waitForTimeout(300);
+  const said = await page.evaluate(() => document.querySelector("canvas").ariaLabel);
+  assert.equal(said.split("in the picture").length, 2, said);
+  assert.match(said, /^Ball\[0, 0\], Ball\[0, 1\].*: not in the picture; many more$/);
+  await page.evaluate(() => {
+    window.named = [];
+    new MutationObserver(() => window.named.push(document.querySelector("#objects").selectedOptions[0]?.text)).observe(document.querySelector("#objects"), { childList: true });
+  });
+  await page.mouse.click(...(await onPage(page, [640, 364])));
+  await page.waitForSelector(".handle");
+  const name = await page.evaluate(() => document.querySelector("#objects").selectedOptions[0]?.text);
+  assert.match(name ?? "", /^Ball\[\d+, \d+\] \(sphere\)$/);
+  assert.ok(Number(/\d+/.exec(name)[0]) >= 25, `${name} is none of the first thousand`);
+  await hand(page, await onPage(page, [640, 364]), [60, 0]);
+  await rested(page);
+  await page.waitForTimeout(LATE + 500);
+  assert.deepEqual((await page.evaluate(() => window.named)).filter(it => it === undefined), []);
+});
