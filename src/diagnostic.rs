@@ -21,6 +21,10 @@ use serde_json::{Value, json};
 
 use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
 
+/// Whether all is told of rarer mistakes: the page's engine, which has to be small, tells the least
+/// of them.
+pub const TELLS_ALL: bool = cfg!(not(target_family = "wasm"));
+
 /// Whether a problem keeps the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Severity {
@@ -152,10 +156,12 @@ fn clamp(span: Span, source: &Source) -> Span {
 
 /// How many errors and warnings there are, such as `2 errors, 1 warning`.
 pub fn summary(diagnostics: &[Diagnostic]) -> String {
-    let errors = diagnostics.iter().filter(|d| d.is_error()).count();
-    let warnings = diagnostics.len() - errors;
+    let cut = usize::from(diagnostics.iter().any(|d| d.message == problems::LEFT_OUT));
+    let errors = diagnostics.iter().filter(|d| d.is_error()).count() - cut;
+    let warnings = diagnostics.len() - cut - errors;
     let count = |number: usize, word: &str| match number {
         1 => format!("1 {word}"),
+        _ if cut > 0 && word == "error" => format!("more than {number} errors"),
         _ => format!("{number} {word}s"),
     };
     match (errors, warnings) {

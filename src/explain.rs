@@ -80,6 +80,23 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("set", "overrides"),
     ("zoom", "fov"),
     ("position", "eye"),
+    ("mod", "unknown_operator"),
+    ("modulo", "unknown_operator"),
+    ("remainder", "unknown_operator"),
+    ("%", "unknown_operator"),
+    ("^", "limits: A power"),
+    ("degrees", "values"),
+    ("radians", "values"),
+    ("metres", "bad_number"),
+    ("meters", "bad_number"),
+    ("focal", "numbers of other programs"),
+    ("focal length", "numbers of other programs"),
+    ("horizon", "objects"),
+    ("gradient", "limits: A texture"),
+    ("antialiasing", "samples"),
+    ("handedness", "left_handed"),
+    ("for loop", "repetition"),
+    ("ball.x", "limits: A part of a vector"),
 ];
 
 /// A section of the reference by its heading, whatever its case, with all that is below it.

@@ -18,6 +18,8 @@ use crate::{
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
     pub pixel: DVec2,
+    /// Columns and rows of the picture.
+    pub picture: [u32; 2],
     /// The eye.
     pub origin: DVec3,
     /// The ray's direction, of length 1.
@@ -38,6 +40,7 @@ pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let of_object = |hit: Hit| (hit, scene.objects[hit.object].clone());
     Probe {
         pixel,
+        picture: [scene.image.width, scene.image.height],
         origin: scene.camera.eye,
         direction,
         color,
@@ -80,7 +83,14 @@ impl Probe {
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (short(self.pixel.x), short(self.pixel.y));
-        writeln!(f, "pixel     ({x}, {y})")?;
+        let [width, height] = self.picture;
+        let size = DVec2::new(f64::from(width), f64::from(height));
+        let is_outside = self.pixel.cmplt(DVec2::ZERO).any() || self.pixel.cmpgt(size).any();
+        let outside = match is_outside {
+            true => format!(", outside of the picture of {width} by {height} pixels"),
+            false => String::new(),
+        };
+        writeln!(f, "pixel     ({x}, {y}){outside}")?;
         writeln!(
             f,
             "ray       from {} along {}",

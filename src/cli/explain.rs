@@ -72,18 +72,25 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     if trimmed == "language" {
         return Ok(explain::LANGUAGE.into());
     }
-    if trimmed == "left_handed" {
-        return Ok(explain::LEFT_HANDED.into());
-    }
-    if let Some(page) = explain::page(trimmed) {
-        return Ok(page.text.into());
-    }
-    if let Some(page) = describe::word(trimmed).or_else(|| describe::field_of(trimmed)) {
+    let field = || describe::field_of(&trimmed.replacen(' ', ".", 1));
+    if explain::page(trimmed).is_none()
+        && let Some(page) = describe::word(trimmed).or_else(field)
+    {
         return Ok(page.into());
     }
+    let of_vector = trimmed
+        .rsplit_once('.')
+        .filter(|(block, axis)| schema::block(block).is_none() && matches!(*axis, "x" | "y" | "z"));
+    let asked = of_vector.map_or(trimmed, |_| "ball.x");
     let mut others = explain::OTHER_NAMES.iter();
-    let other = others.find(|(name, _)| name.eq_ignore_ascii_case(trimmed));
+    let other = others.find(|(name, _)| name.eq_ignore_ascii_case(asked));
     let meant = other.map_or(trimmed, |(_, meant)| *meant);
+    if meant == "left_handed" {
+        return Ok(explain::LEFT_HANDED.into());
+    }
+    if let Some(page) = explain::page(meant) {
+        return Ok(page.text.into());
+    }
     if let Some(page) = meant
         .split_once(": ")
         .and_then(|(heading, words)| explain::part(heading, words))
@@ -318,7 +325,11 @@ mod tests {
     fn what_others_call_things_is_explained() {
         let headings = explain::headings();
         let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
-        for word in headings.chain(others).chain(["camera.up", "box.colors"]) {
+        for word in
+            headings
+                .chain(others)
+                .chain(["camera.up", "box.colors", "camera eye", "ball.x"])
+        {
             let found = page(word).map(|page| page.starts_with('#'));
             assert!(found.is_ok_and(|is_page| is_page), "{word}");
         }

@@ -11,6 +11,9 @@ use crate::source::Span;
 /// Maximum number of problems that a stage reports, and of places that one fix changes.
 pub const MOST_PROBLEMS: usize = 10_000;
 
+/// What is said in place of the others; it is none of the mistakes itself.
+pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
+
 /// The problems that a stage has found, as far as there is room.
 #[derive(Debug, Default)]
 pub struct Problems {
@@ -69,7 +72,7 @@ impl From<Problems> for Vec<Diagnostic> {
         kept.extend(left_out.map(|span| Diagnostic {
             severity: Severity::Error,
             code: "pinhole::unexpected".to_owned(),
-            message: "there are too many mistakes, and the others are left out".to_owned(),
+            message: LEFT_OUT.to_owned(),
             help: Some(
                 "mend those before it first; perhaps this is no scene of Pinhole".to_owned(),
             ),

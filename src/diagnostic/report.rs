@@ -11,7 +11,7 @@ use miette::{
 };
 
 use super::{
-    Diagnostic, Label, Severity, clamp, summary,
+    Diagnostic, Label, Severity, clamp, problems, summary,
     visible::{push_visible, visible_line},
 };
 use crate::{
@@ -65,7 +65,10 @@ pub struct Report<'s> {
 /// How many diagnostics there are of each kind, the most frequent kind first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
-    for diagnostic in diagnostics {
+    for diagnostic in diagnostics
+        .iter()
+        .filter(|it| it.message != problems::LEFT_OUT)
+    {
         *kinds.entry(short(&diagnostic.code)).or_default() += 1;
     }
     let mut kinds: Vec<_> = kinds.into_iter().collect();

@@ -179,7 +179,7 @@ impl Homography {
                 line += 1.0;
             }
         }
-        cuts.sort_by(f64::total_cmp);
+        cuts.sort_unstable_by(f64::total_cmp);
         let mut before = 0.0;
         for cut in cuts {
             if cut > before {

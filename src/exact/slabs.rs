@@ -67,7 +67,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
         }
     }
     cuts.retain(|x| x.abs() <= 0.5);
-    cuts.sort_by(f64::total_cmp);
+    cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
     // As many slabs as may be added leave no more in doubt together than what is asked for, if each leaves one pair.
     let crumb = regions.tolerance() / MANY as f64;

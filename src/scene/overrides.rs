@@ -199,8 +199,8 @@ impl<'s> Override<'s> {
         });
         let own = place.err();
         for (name, value) in definitions.take_while(|(name, _)| own != Some(name.text)) {
-            let value = value_of(value, sources, &names);
-            names.define(name, value, SourceId::File);
+            let known = value_of(value, sources, &names);
+            names.define(name, known, value);
         }
         match place {
             Ok(field) => suits(field, &self.value, sources, &names),

@@ -211,11 +211,17 @@ pub const BLOCKS: &[Block] = &[
             },
         ],
         together: &["min < max on every axis"],
-        also_tried: "cube cuboid block crate brick",
-        elsewhere: &[(
-            "turn rotate rotation rotated roll spin angle tilt yaw pitch",
-            "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2",
-        )],
+        also_tried: "cube cuboid block crate brick wall slab",
+        elsewhere: &[
+            (
+                "width height depth x y z",
+                "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z",
+            ),
+            (
+                "turn rotate rotation rotated roll spin angle tilt yaw pitch",
+                "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2",
+            ),
+        ],
         ..BLOCK
     },
     Block {

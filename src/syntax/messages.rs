@@ -7,6 +7,7 @@ use super::problem::Message;
 pub const INVALID_UTF8: Message = Message::new(["invalid_utf8", "this file is not valid UTF-8{0}", "this byte is part of no character", "save the file as UTF-8"]);
 /// A file that was saved as UTF-16.
 pub const UTF16: Message = Message::new(["invalid_utf8", "this file is UTF-16, not UTF-8", "each character takes two bytes", "save the file as UTF-8"]);
+/// A file of another program, or one that is no text.
 pub const FOREIGN_FILE: Message = Message::new(["foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`{1}"]);
 pub const NOT_IN_LANGUAGE: Message = Message::new(["not_in_language", "the language has no {0}", "not a part of the language", "{1}"]);
 // Text.
@@ -17,14 +18,17 @@ pub const NESTED_COMMENT: Message = Message::new(["nested_comment", "comments do
 pub const COMMENT_SIGN: Message = Message::new(["comment_sign", "a comment begins with `//`, not with `{0}`{1}", "`//` should stand here", "write `//`; the comment takes the rest of the line"]).safe();
 // Items.
 pub const MISSING_NAME: Message = Message::new(["missing_name", "a `let` lacks its name", "a name should stand here", "write a name of letters, digits and `_`, such as `let height = 2`"]);
-pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit"]);
+pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit{1}"]);
 pub const MISSING_EQUALS: Message = Message::new(["missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", ""]).safe();
 pub const LET_WITHOUT_VALUE: Message = Message::new(["missing_value", "`let {0}` has no value", "a value should follow", "write `let {0} = ` and a value"]);
 pub const MISSING_LET: Message = Message::new(["missing_let", "a value is given to `{0}` without `let`", "`let {0}` should stand here", "write `let {0} = {1}`"]).safe();
 pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stands within a block", "only fields stand here", "{0}"]);
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
-pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "an object is repeated by `for INDEX < COUNT`", "not written so", "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first"]);
+pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not written so", "{1}"]);
+/// What is said where nothing more is known, and what to do.
+pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
+pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
 pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);
 pub const UNOPENED_BLOCK: Message = Message::new(["unopened_block", "the block `{0}` lacks its braces", "the block's fields stand between `{` and `}`", "write its fields between braces, such as `sphere { center (0, 1, 0) }`"]).safe();
@@ -48,7 +52,9 @@ pub const UNKNOWN_OPERATOR: Message = Message::new(["unknown_operator", "there i
 pub const PLUS_SIGN: Message = Message::new(["plus_sign", "no `+` stands before a value", "not needed", ""]).safe();
 pub const QUOTED: Message = Message::new(["quoted", "a value is written without quotation marks", "without the quotation marks", "write `{0}`"]).safe();
 pub const FOREIGN_FUNCTION: Message = Message::new(["foreign_function", "`{0}` is a function of another language", "not a function of this language", "{1}"]);
+pub const FOREIGN_NAME: Message = Message::new(["foreign_function", "`{0}` is called `{1}` here", "a name of another language", ""]);
 pub const MISSING_PARENTHESES: Message = Message::new(["missing_parentheses", "values that belong together stand in parentheses", "these belong together", "{0}"]).safe();
+pub const MISSING_OPEN: Message = Message::new(["missing_parentheses", "a `(` is missing between `{0}` and `{1}`", "the `)` that follows closes nothing", ""]);
 pub const UNCLOSED_PARENTHESIS: Message = Message::new(["unclosed_parenthesis", "a parenthesis is never closed", "opened here", "write `)` where it ends"]).safe();
 pub const BRACKETS: Message = Message::new(["brackets", "{0} stands in round parentheses", "not in these", "{1}"]).safe();
 pub const MISSING_COMMA: Message = Message::new(["missing_comma", "a comma is missing between `{0}` and `{1}`", "a comma should stand before this", "write a comma or an operator between them, or take one away"]).safe();

@@ -27,7 +27,7 @@ pub mod tokens;
 pub mod tree;
 mod vocabulary;
 
-pub use messages::{INVALID_UTF8, UTF16};
+pub use messages::{FOREIGN_FILE, INVALID_UTF8, UTF16};
 pub use parser::{parse, parse_unless, parse_value};
 pub use parts::parse_in_parts;
 pub use problem::{shorten, times};

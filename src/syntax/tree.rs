@@ -123,7 +123,7 @@ impl<'s> Block<'s> {
 pub struct Repetition<'s> {
     /// `for`
     pub keyword: Span,
-    /// The indices in their order, at least one.
+    /// The indices in their order; none if they were not understood.
     pub indices: Vec<Index<'s>>,
 }
 

@@ -49,6 +49,12 @@ impl<'s> Vocabulary<'s> {
         row.is_some_and(|row| row.must.contains(&Condition::Whole))
     }
 
+    /// Whether all parts of what a field takes are more than 0.
+    pub fn is_positive(&self, kind: &str, field: &str) -> bool {
+        let row = schema::block(kind).and_then(|row| row.field(field));
+        row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))
+    }
+
     /// The names of a block's fields; of the nearest block, if it is mistyped.
     pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
         let row = schema::block_or_nearest(kind);

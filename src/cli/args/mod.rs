@@ -212,7 +212,8 @@ pub struct StudioArgs {
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct InspectArgs {
-    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input; what is seen is
+    /// told of its first 100 objects
     pub scene: PathBuf,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -348,6 +349,9 @@ fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err("not a finite number".to_owned()),
+        Err(_) if text.contains(',') => {
+            Err("not a number: X and Y are two arguments, as in `200 150`".to_owned())
+        }
         Err(_) => Err("not a number".to_owned()),
     }
 }

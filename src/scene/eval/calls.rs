@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::Applicability,
+    diagnostic::{Applicability, TELLS_ALL},
     numbers,
     scene::{
         error::{error, warning},
@@ -103,10 +103,25 @@ impl<'s> Evaluator<'_, 's> {
             });
         }
         let (label, help) = match near {
-            _ if is_value => (
-                "a value, not a function",
-                format!("write an operator between, such as `{name} * (…)`"),
-            ),
+            _ if is_value => {
+                let left = self.meaning(name).filter(|_| TELLS_ALL);
+                let left = left.map(|value| value.kind());
+                let right = match arguments {
+                    [only] => *only,
+                    [_, _, _] => Some(Type::Vector),
+                    _ => None,
+                };
+                let help = match left.zip(right).and_then(operator_between) {
+                    Some(sign) => {
+                        format!("write an operator between, such as `{name} {sign} (…)`")
+                    }
+                    None if TELLS_ALL => {
+                        format!("take `{name}` away, or what stands behind it")
+                    }
+                    None => "write an operator between".to_owned(),
+                };
+                ("a value, not a function", help)
+            }
             Some(near) => ("not a function", format!("did you mean `{near}`?")),
             None => ("not a function", all),
         };
@@ -143,7 +158,14 @@ impl<'s> Evaluator<'_, 's> {
         self.problems.push(
             error("argument_count", message)
                 .at(span, format!("{found} given"))
-                .help(format!("write `{}`", shorten(&shown)))
+                .help(match arguments {
+                    [only] if TELLS_ALL && row.more => format!(
+                        "write `{}` alone, or give `{}` another number",
+                        shorten(&text(only)),
+                        row.name
+                    ),
+                    _ => format!("write `{}`", shorten(&shown)),
+                })
                 .writing(span, Applicability::Safe, meant),
         );
     }
@@ -273,6 +295,16 @@ impl<'s> Evaluator<'_, 's> {
         };
         self.problems
             .push(error("not_finite", message).at(span, label).help(help));
+    }
+}
+
+/// What may stand between two values.
+fn operator_between(kinds: (Type, Type)) -> Option<char> {
+    match kinds {
+        (Type::Vector, Type::Vector) | (Type::Angle, Type::Angle) => Some('+'),
+        (Type::Number, Type::Number | Type::Vector | Type::Angle)
+        | (Type::Vector | Type::Angle, Type::Number) => Some('*'),
+        _ => None,
     }
 }
 

@@ -1,9 +1,9 @@
 //! Evaluates literals, and says what messages call a value.
 
-use super::names::Names;
+use super::{names::Names, origin::Origin};
 use crate::{
     color::Color,
-    diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems, TELLS_ALL},
     scene::error::{error, warning},
     schema::{self, Type, Value},
     source::{Source, SourceId, Sources, Span},
@@ -118,10 +118,23 @@ impl<'s> Evaluator<'_, 's> {
         number: f64,
         fits: impl Fn(Unit) -> bool,
     ) -> Diagnostic {
-        let message = format!(
-            "{what} is an angle, and {} has no unit",
-            self.quoted(tree.span)
-        );
+        let message = |span| format!("{what} is an angle, and {} has no unit", self.quoted(span));
+        if let Some((name, set)) = self.set_in(tree) {
+            let text = self.sources.text(set);
+            let fixes = [Unit::Degrees, Unit::Radians].map(|unit| {
+                let angle = match text.trim().parse::<f64>() {
+                    Ok(_) => format!("{text}{}", unit.name()),
+                    Err(_) => format!("({text}) * 1{}", unit.name()),
+                };
+                Fix::new(format!("write `{name}={angle}`"), [Edit::new(set, angle)])
+            });
+            return error("bare_angle", message(set))
+                .at(set, Type::Number.noun())
+                .at(tree.span, "used here")
+                .help(fixes[0].title.clone())
+                .fixes(fixes);
+        }
+        let message = message(tree.span);
         let units = self.units(tree, number);
         let shown = units.each_ref().map(|(_, fix)| fix.title.clone());
         let mut fixes: Vec<Fix> = Vec::from(units)
@@ -155,6 +168,20 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
+    /// The first name in a value that an argument gives another value, and that: what is wrong with
+    /// it is not the file's.
+    pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
+        if !TELLS_ALL {
+            return None;
+        }
+        let ValueKind::Name(name) = value.kind else {
+            return value.parts().into_iter().find_map(|part| self.set_in(part));
+        };
+        let from = self.names.defined.get(name)?.from;
+        let is_set = from.source != SourceId::File && value.span.source == SourceId::File;
+        is_set.then_some((name, from))
+    }
+
     /// The only factor of a product that a `let` of the file defines by a plain number, and that.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
@@ -179,22 +206,22 @@ impl<'s> Evaluator<'_, 's> {
             .filter(|_| is_product && numbers.next().is_none())
     }
 
-    /// Writes a number as an angle, in both units. What holds `pi` or is at most pi is more likely
-    /// in radians, anything else in degrees; what is more than a turn in radians is surely none.
-    /// Where that is not sure, the titles say what each comes to.
-    pub(super) fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
+    /// Writes a number as an angle, in both units. What comes from `pi` or is at most pi is more
+    /// likely in radians, anything else in degrees; what is more than a turn in radians is surely
+    /// none. Where that is not sure, the titles say what each comes to, and where the formula
+    /// speaks for both, the author is to choose.
+    pub fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);
         let is_sum = match &value.kind {
             ValueKind::Chain { rest, .. } => rest.iter().any(|step| !step.operator.is_of_product()),
             _ => false,
         };
-        let letter = |c: char| !c.is_ascii_alphanumeric() && c != '_';
-        let has_pi = text.split(letter).any(|word| word == "pi");
+        let origin = self.names.origin(value);
         let is_small = number != 0.0 && number.abs() <= std::f64::consts::PI;
         let is_sure = number == 0.0 || number.abs() > 2.0 * std::f64::consts::PI;
         let mut units = [Unit::Degrees, Unit::Radians];
-        if has_pi || is_small {
+        if origin == Origin::In(Unit::Radians) || (origin == Origin::Plain && is_small) {
             units.reverse();
         }
         units.map(|unit| {
@@ -213,7 +240,13 @@ impl<'s> Evaluator<'_, 's> {
             }
             let is_safe = is_literal && is_sure && unit == Unit::Degrees;
             let fix = Fix::new(title, [Edit::new(value.span, text)]);
-            (unit, fix.being(Applicability::safe_if(is_safe)))
+            (
+                unit,
+                fix.being(match origin {
+                    Origin::Unclear => Applicability::Placeholder,
+                    _ => Applicability::safe_if(is_safe),
+                }),
+            )
         })
     }
 

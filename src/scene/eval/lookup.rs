@@ -6,7 +6,7 @@ use super::{
     suggestion::{Meaning, Suggestion},
 };
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Edit, Label, MOST_PROBLEMS},
+    diagnostic::{Applicability, Diagnostic, Edit, Label, MOST_PROBLEMS, TELLS_ALL},
     scene::error::error,
     schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
@@ -158,7 +158,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// The value of a name that is suggested, or of a colour's code.
-    fn meaning(&self, name: &str) -> Option<Value> {
+    pub(super) fn meaning(&self, name: &str) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
         }
@@ -181,11 +181,12 @@ impl<'s> Evaluator<'_, 's> {
         if is_color && matches!(name.len(), 3 | 6) && is_digits {
             return Some((format!("#{name}"), Applicability::Safe));
         }
-        // `olive green`: of two colours the first one.
-        if let Some((first, _)) = name.split_once(char::is_whitespace)
-            && css::color(first).is_some()
-        {
-            return Some((first.to_owned(), Applicability::Unsafe));
+        if name == "M_PI" {
+            return Some(("pi".to_owned(), Applicability::Unsafe));
+        }
+        // `olive green`: of two colours nobody knows which one.
+        if name.contains(' ') && name.split(' ').all(|word| css::color(word).is_some()) {
+            return None;
         }
         let is_of_type = |name: &&str| match (self.meaning(name), wanted) {
             (Some(value), Some(wanted)) => value.kind() == wanted,
@@ -217,8 +218,11 @@ impl<'s> Evaluator<'_, 's> {
             _ => None,
         };
         match defined {
-            Some(defined) if defined.from != SourceId::File => {
-                format!("{noun} (from {})", self.sources.get(defined.from).name())
+            Some(defined) if defined.from.source != SourceId::File => {
+                format!(
+                    "{noun} (from {})",
+                    self.sources.get(defined.from.source).name()
+                )
             }
             Some(defined) => {
                 let line = self.sources.file.line(defined.place.start);
@@ -232,6 +236,12 @@ impl<'s> Evaluator<'_, 's> {
 /// What to do about a name if no other one was meant.
 fn no_other(name: &str, is_color: bool) -> String {
     match is_color {
+        true if TELLS_ALL && name.contains(' ') => {
+            format!(
+                "write one of them, or `({})` to take turns in a `for`",
+                name.replace(' ', ", ")
+            )
+        }
         true => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
         false => format!("define it before it is used: `let {name} = …`"),
     }

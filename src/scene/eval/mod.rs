@@ -11,6 +11,7 @@ mod lists;
 mod lookup;
 mod names;
 mod operators;
+mod origin;
 mod suggestion;
 
 pub use calls::in_bytes;

@@ -5,15 +5,18 @@ use std::{
     collections::{HashMap, HashSet, hash_map::Entry},
 };
 
-use super::suggestion::{Meaning, Suggestions};
+use super::{
+    origin::Origin,
+    suggestion::{Meaning, Suggestions},
+};
 use crate::{
     diagnostic::Problems,
     schema::Value,
-    source::{SourceId, Span},
+    source::Span,
     suggest::Budget,
     syntax::{
         Tree,
-        tree::{Item, Name},
+        tree::{self, Item, Name},
     },
 };
 
@@ -55,8 +58,10 @@ pub(in crate::scene) struct Defined {
     pub value: Option<Value>,
     /// The name in the definition.
     pub place: Span,
-    /// The text that its value stands in: the file, or an argument.
-    pub from: SourceId,
+    /// Its value, in the file or in an argument.
+    pub from: Span,
+    /// What its formula tells of the unit that it lacks.
+    pub origin: Origin,
 }
 
 impl<'s> Names<'s> {
@@ -78,23 +83,30 @@ impl<'s> Names<'s> {
     }
 
     /// Defines a name; a second time it keeps its value.
-    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, from: SourceId) {
+    pub fn define(&mut self, name: Name<'s>, value: Option<Value>, tree: &tree::Value<'s>) {
+        let origin = self.origin(tree);
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
             self.order.push(name.text);
             free.insert(Defined {
                 value,
                 place: name.span,
-                from,
+                from: tree.span,
+                origin,
             });
         }
     }
 
     /// Gives an index a value, within its block; none while it is not known yet.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
-        let place = name.span;
-        let from = SourceId::File;
-        self.defined
-            .insert(name.text, Defined { value, place, from });
+        let index = Defined {
+            value,
+            place: name.span,
+            from: name.span,
+            origin: Origin::Plain,
+        };
+        if self.defined.insert(name.text, index).is_none() {
+            self.order.push(name.text);
+        }
     }
 
     /// Takes away what an index hides: a definition of its name that stands further down, and is
@@ -118,6 +130,8 @@ impl<'s> Names<'s> {
     pub fn forget_index(&mut self, name: Name<'s>) {
         if self.place(name.text) == Some(name.span) {
             self.defined.remove(name.text);
+            let last = self.order.iter().rposition(|other| *other == name.text);
+            last.map(|at| self.order.remove(at));
         }
     }
 

@@ -146,7 +146,9 @@ impl<'s> Evaluator<'_, 's> {
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
         let with_unit = |tree: &tree::Value<'s>, value: Value| match value {
-            Value::Number(number) => self.units(tree, number).map(|(_, fix)| fix).into(),
+            Value::Number(number) if self.set_in(tree).is_none() => {
+                self.units(tree, number).map(|(_, fix)| fix).into()
+            }
             _ => Vec::new(),
         };
         let fits = |gives| is_sum && wanted.is_none_or(|wanted| wanted == gives);

@@ -150,7 +150,7 @@ impl<'s> Lowering<'s> {
     /// How a value of another type has to be written for a field, if that can be told, and whether
     /// that is sure.
     pub(super) fn converted(
-        &self,
+        &mut self,
         row: &Field,
         tree: &tree::Value<'s>,
         value: Value,
@@ -159,8 +159,10 @@ impl<'s> Lowering<'s> {
         let unsure = |text: String| (text, Applicability::Unsafe);
         match (row.takes, value, &tree.kind) {
             (Type::Angle, Value::Number(number), ValueKind::Number(_)) => {
-                let angle = Value::Angle(Unit::Degrees.of(number));
-                row.allows(angle).then(|| unsure(format!("{text}deg")))
+                let [(unit, _), _] = self.evaluator().units(tree, number);
+                let angle = Value::Angle(unit.of(number));
+                row.allows(angle)
+                    .then(|| unsure(format!("{text}{}", unit.name())))
             }
             (Type::Number, Value::Angle(_), ValueKind::Angle { number, .. }) => {
                 let fits = row.allows(Value::Number(number.parse().ok()?));
@@ -172,6 +174,8 @@ impl<'s> Lowering<'s> {
                 Some(unsure(format!("({text}, {text}, {text})")))
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
+            // A plane of one colour.
+            (Type::Colors, Value::Color(_), _) => Some(unsure(format!("({text}, {text})"))),
             _ => None,
         }
     }

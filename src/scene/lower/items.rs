@@ -6,10 +6,10 @@ use super::{
     lowering::{Lowering, mentions},
 };
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Edit, Fix},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, TELLS_ALL},
     scene::error::{error, twice},
-    schema::{self, predefined},
-    source::{SourceId, Span, sort_by_span},
+    schema::{self, Kind, Type, predefined},
+    source::{Span, sort_by_span},
     suggest,
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
@@ -56,11 +56,10 @@ impl<'s> Lowering<'s> {
                     self.problems.push(problem);
                 }
                 // What uses it below is silent: what it means there, nobody can tell.
-                self.names.define(name, None, SourceId::File);
+                self.names.define(name, None, &definition.value);
             }
             (None, None) => {
-                let from = definition.value.span.source;
-                self.names.define(name, value, from);
+                self.names.define(name, value, &definition.value);
             }
             // It stays what it is.
             (None, Some(_)) if reported => {}
@@ -94,7 +93,10 @@ impl<'s> Lowering<'s> {
         let duplicate = first.map(|first| {
             let message = format!("there are two `{}` blocks", row.name);
             twice("duplicate_block", message, [first.keyword, block.keyword()])
-                .help("keep one, with the fields of both")
+                .help(match row.kind {
+                    Kind::Camera if TELLS_ALL => "keep one; `--set camera.eye='(4, 2, 8)'` shows the scene from elsewhere, and `pinhole sheet --sweep` from many places",
+                    _ => "keep one, with the fields of both",
+                })
                 .fixes(fixes::one_of_two(
                     row.name,
                     [first.span, block.span],
@@ -108,7 +110,9 @@ impl<'s> Lowering<'s> {
             if row.is_object {
                 return self.repeated(row, block, repetition);
             }
-            self.not_repeated(row, repetition);
+            if !repetition.indices.is_empty() {
+                self.not_repeated(row, repetition);
+            }
         }
         let lowered = self.lowered(row, block);
         if row.is_object {
@@ -200,6 +204,11 @@ impl<'s> Lowering<'s> {
     }
 
     fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
+        let (told, kind) = (self.problems.len(), block.row);
+        let is_free = ["color", "colors"]
+            .into_iter()
+            .filter(|name| *name != field.name.text)
+            .all(|other| kind.field(other).is_some() && block.given(other).is_none());
         let rows = block.row.fields.iter().zip(&mut block.given);
         let mut rows = rows.filter(|(row, _)| row.name == field.name.text);
         let Some((row, slot)) = rows.next() else {
@@ -213,6 +222,7 @@ impl<'s> Lowering<'s> {
             span: field.value.span,
             value: self.typed(row, &field.value),
         };
+        self.other_colors(told, field, row.takes, is_free);
         if let Some(first) = slot {
             let message = format!("`{}` is given twice", row.name);
             let fields = [first.field(), given.field()];
@@ -223,6 +233,45 @@ impl<'s> Lowering<'s> {
             );
         } else {
             *slot = Some(given);
+        }
+    }
+
+    /// Colours of another number than a field takes, as in `color (red, green, blue)`: where the
+    /// block has a free field for so many, it is that one.
+    fn other_colors(&mut self, told: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
+        if !TELLS_ALL {
+            return;
+        }
+        let is_color = |value: &tree::Value<'s>| match &value.kind {
+            ValueKind::Call(call) => call.function.text == "rgb",
+            kind => matches!(kind, ValueKind::Name(_) | ValueKind::ColorCode(_)),
+        };
+        let parts = match &field.value.kind {
+            ValueKind::Tuple(_) => field.value.parts(),
+            _ => vec![&field.value],
+        };
+        let (other, help) = match (takes, parts.len(), self.is_odd) {
+            (Type::Color, 3, _) if is_free => ("colors", ""),
+            (Type::FaceColors, 1, _) | (Type::FaceColors, 2, Some(_)) if is_free => ("color", ""),
+            (Type::Color, 2, None) => (
+                "",
+                "write one colour; a pair takes turns where objects have indices, as in `for i < 8`",
+            ),
+            (Type::FaceColors, 2, None) => (
+                "",
+                "write three colours, of the faces across x, y and z, or one `color`",
+            ),
+            _ => return,
+        };
+        let new = self.problems.get_mut(told..).unwrap_or_default();
+        if let [problem] = new
+            && problem.code == "pinhole::wrong_type"
+            && parts.into_iter().all(is_color)
+        {
+            let fix = (!other.is_empty()).then(|| Fix::write(field.name.span, other).safe());
+            let title = fix.as_ref().map(|fix| fix.title.clone());
+            problem.help = title.or(Some(help.to_owned()));
+            problem.fixes = fix.into_iter().collect();
         }
     }
 

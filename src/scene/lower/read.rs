@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::lowering::Lowering;
 use crate::{
     cancel::{self, Cancelled},
-    diagnostic::{self, Diagnostic},
+    diagnostic::{self, Diagnostic, TELLS_ALL},
     scene::{
         eval::Names,
         model::Reading,
@@ -149,6 +149,17 @@ impl<'s> Lowering<'s> {
             .iter_mut()
             .flat_map(|problem| &mut problem.fixes);
         fixes.for_each(|fix| fix.mind(self.sources));
+        // An argument that is used in several places is wrong once.
+        let mut in_sets: Vec<Span> = Vec::new();
+        let is_told = |it: &Diagnostic| TELLS_ALL && it.is("bare_angle");
+        diagnostics.retain(|it| match it.labels.first().map(|label| label.span) {
+            Some(span) if span.source != SourceId::File && is_told(it) => {
+                let is_new = !in_sets.contains(&span);
+                in_sets.push(span);
+                is_new
+            }
+            _ => true,
+        });
         diagnostic::sort(&mut diagnostics);
         (parts, diagnostics, self.names)
     }
@@ -174,6 +185,14 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         diagnostics.clear();
         let first = Span::new(SourceId::File, 0, 2);
         diagnostics.push(syntax::UTF16.at(first, &[], None));
+        return;
+    }
+    // No text has these; two may be slips.
+    let start = sources.file.text().bytes().take(1 << 14);
+    if TELLS_ALL && start.filter(|&byte| byte == 0).count() > 2 {
+        diagnostics.clear();
+        let first = Span::new(SourceId::File, 0, sources.file.floor_char_boundary(4));
+        diagnostics.push(syntax::FOREIGN_FILE.at(first, &["a binary file", ""], None));
         return;
     }
     let Some(&first) = invalid.first() else {

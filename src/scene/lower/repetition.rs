@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use super::lowering::Lowering;
 use crate::{
-    diagnostic::{Edit, Fix, Label},
+    diagnostic::{Edit, Fix, Label, TELLS_ALL},
     numbers,
     scene::error::{error, twice, warning},
     schema::{self, Type, Value, predefined},
     source::Span,
     syntax::{
-        NESTING_LIMIT,
+        NESTING_LIMIT, shorten,
         tokens::has_name,
         tree::{Block, Index, Name, Repetition},
     },
@@ -28,6 +28,11 @@ impl<'s> Lowering<'s> {
         block: &Block<'s>,
         repetition: &Repetition<'s>,
     ) {
+        if repetition.indices.is_empty() {
+            // How its indices are called is not known.
+            self.names.know_words("i j k");
+            return self.unbuilt(row, block);
+        }
         let hidden = repetition.indices.iter();
         let hidden: Vec<_> = hidden
             .filter_map(|index| self.names.hide_below(index.name))
@@ -119,12 +124,20 @@ impl<'s> Lowering<'s> {
         });
         let changing: Vec<_> = fields.collect();
         if combinations.is_empty() {
+            let told = self.problems.len();
             // What is wrong in it is told, whatever its indices would be.
             for index in &repetition.indices {
                 self.names.set_index(index.name, None);
             }
-            self.is_odd = Some(false);
-            self.lowered(row, block);
+            self.unbuilt(row, block);
+            if TELLS_ALL && self.problems.len() == told {
+                let span = repetition.span();
+                let written = shorten(self.sources.text(span));
+                let message = format!("`{written}` makes no objects");
+                let problem = warning("no_objects", message).at(span, "no combination is left");
+                self.problems
+                    .push(problem.help("let each index count up to 1 or more"));
+            }
         }
         let mut lowered = None;
         let mut warnings = BTreeSet::new();
@@ -158,6 +171,13 @@ impl<'s> Lowering<'s> {
                 break;
             }
         }
+        self.is_odd = None;
+    }
+
+    /// Reads the values of a block whose objects are none, or not known.
+    fn unbuilt(&mut self, row: &'static schema::Block, block: &Block<'s>) {
+        self.is_odd = Some(false);
+        self.lowered(row, block);
         self.is_odd = None;
     }
 
@@ -195,7 +215,13 @@ impl<'s> Lowering<'s> {
 
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
-        if has_name(self.sources.text(behind), name.text) {
+        let text = self.sources.text(behind);
+        // A name in other letters is reported where it is used.
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        if block.open.is_none()
+            || has_name(text, name.text)
+            || words.any(|word| word != name.text && word.eq_ignore_ascii_case(name.text))
+        {
             return;
         }
         let message = format!("the index `{}` is not used", name.text);
@@ -221,7 +247,22 @@ impl<'s> Lowering<'s> {
         };
         let message = format!("`{name}` counts up to a whole number, and this is {found}");
         let problem = error("bad_count", message).at(tree.span, "how many there are");
-        let help = format!("write a whole number that is not negative, such as `{name} < 8`");
+        let written = shorten(self.sources.text(tree.span));
+        let help = match value {
+            _ if !TELLS_ALL => format!("write a whole number, such as `{name} < 8`"),
+            Value::Number(number) if number < 0.0 => {
+                format!("write `{name} < max(0, {written})`, if there is none then")
+            }
+            Value::Number(number) if tree.parts().is_empty() => {
+                format!(
+                    "write `{name} < {}` or `{name} < {}`",
+                    number.floor(),
+                    number.ceil()
+                )
+            }
+            Value::Number(_) => format!("make `{written}` a whole number"),
+            _ => format!("write a whole number, such as `{name} < 8`"),
+        };
         self.problems.push(problem.help(help));
         None
     }
@@ -272,7 +313,19 @@ impl<'s> Lowering<'s> {
             problem.fixes.retain(|fix| fix.edits.iter().all(keeps));
             if problem.fixes.len() < count && is_told {
                 let help = "its value differs by index: write a formula that does for all of them";
-                problem.help = Some(help.to_owned());
+                let first = problem
+                    .labels
+                    .first()
+                    .map(|label| self.sources.text(label.span));
+                problem.help = Some(match first {
+                    // The first index is 0.
+                    Some(written)
+                        if TELLS_ALL && problem.message.ends_with("more than 0, and it is 0") =>
+                    {
+                        format!("{help}, such as `{} + 1`", shorten(written))
+                    }
+                    _ => help.to_owned(),
+                });
             }
             let place = problem.labels.first().map(|label| label.span);
             let depends =

@@ -85,7 +85,7 @@ impl<'s> Recovery<'_, 's> {
     /// start of a line that is indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
-        (self.is(0, "let") || self.starts_block())
+        (self.is(0, "let") || self.starts_block() || self.starts_item())
             && self.is_on_new_line(0)
             && self.words.is_kind(self.within.kind)
             && self.indent(start) <= self.indent(block.span.start)
@@ -279,7 +279,7 @@ impl<'s> Recovery<'_, 's> {
             && !self.is_foreign_call();
         let is_field = match self.is_field_name(word) {
             true => !self.words.is_let(word),
-            false => is_next || self.starts_block(),
+            false => is_next || self.starts_block() || self.starts_item(),
         };
         let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
         let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();
@@ -293,7 +293,7 @@ impl<'s> Recovery<'_, 's> {
     fn no_field(&mut self, block: &mut Block<'s>) {
         let (start, told) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
-            return self.stray_parenthesis();
+            return self.stray_parenthesis(true);
         }
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);

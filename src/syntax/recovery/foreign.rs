@@ -5,12 +5,14 @@ use memchr::memmem;
 
 use super::Recovery;
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Diagnostic, Edit, Fix, Label, TELLS_ALL},
+    schema::{self, Type},
     source::Span,
     syntax::{
         messages::{self as say, FOREIGN_FILES, statement},
+        problem::replace,
         tokens::{Lexer, is_color_code, line_end},
-        tree::Item,
+        tree::{Item, Name, Value, bad},
     },
 };
 
@@ -25,7 +27,38 @@ pub(super) enum Place {
     Operator,
 }
 
-impl Recovery<'_, '_> {
+/// Characters of books and other languages that are no part of this one: what to write for one in
+/// the place of a value, and for one behind a value.
+const OF_BOOKS: &[(&str, [&str; 2])] = &[
+    ("π", ["write `pi`", "write `* pi`"]),
+    (
+        "√",
+        [
+            "write `sqrt(2)` for the square root of 2",
+            "write `* sqrt(2)` for times the square root of 2",
+        ],
+    ),
+    ("²³⁴ⁿ", ["write a product, such as `r * r`"; 2]),
+    ("½", ["write `0.5`", "write `+ 0.5`"]),
+    ("¼", ["write `0.25`", "write `+ 0.25`"]),
+    ("¾", ["write `0.75`", "write `+ 0.75`"]),
+    (
+        "?",
+        ["there are no conditions: `pinhole explain condition` says what to write instead"; 2],
+    ),
+];
+
+/// What to write in place of a remainder, and of a condition between colours.
+pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
+
+/// What to write for a word with a character of books.
+pub(super) fn of_books(word: &str, is_behind: bool) -> Option<&'static str> {
+    let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
+    let (_, [value, behind]) = OF_BOOKS.iter().find(is_in)?;
+    Some(if is_behind { behind } else { value })
+}
+
+impl<'s> Recovery<'_, 's> {
     /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands
     /// in braces behind it.
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
@@ -40,6 +73,96 @@ impl Recovery<'_, '_> {
             self.bump();
             self.skip_block();
         }
+    }
+
+    /// `Math.sin(a)`, `np.cos(a)`, `std::f64::consts::PI`: known words behind those of a library.
+    pub(super) fn of_other_library(&mut self, first: Name<'s>) -> Option<Value<'s>> {
+        if !TELLS_ALL {
+            return None;
+        }
+        let mut last = 0;
+        loop {
+            let signs = match (self.word(last), self.word(last + 1)) {
+                (".", _) => 1,
+                (":", ":") => 2,
+                _ => break,
+            };
+            if !(self.is_adjacent(last) && self.is_name(last + signs)) {
+                break;
+            }
+            last += signs + 1;
+        }
+        let word = self.word(last.checked_sub(1)?).to_ascii_lowercase();
+        let row = schema::function(&word);
+        let text = row.map(|row| row.name).or((word == "pi").then_some("pi"))?;
+        if self.words.is_let(first.text) {
+            return None;
+        }
+        let mut span = first.span;
+        for _ in 0..last {
+            span = span.to(self.bump());
+        }
+        let words = [&*self.short(span), text];
+        self.report(&say::FOREIGN_NAME, span, &words, replace(span, text));
+        if row.is_some() && self.is(0, "(") {
+            self.call(Name { text, span });
+        }
+        Some(bad(span.to(self.behind())))
+    }
+
+    /// `n > 1 ? a : b` from behind its first value on, and `if n > 1 then a`: passed over, up to
+    /// where the value ends.
+    pub(super) fn condition(&mut self) -> bool {
+        const FAR: usize = 24;
+        if !TELLS_ALL {
+            return false;
+        }
+        let is_comparison = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?")
+            || (self.is(0, "=") && self.is(1, "="));
+        let is_end = |this: &mut Self, at: usize| {
+            matches!(this.word(at), "" | "{" | "}" | "let") || (at > 0 && this.is_on_new_line(at))
+        };
+        let before = (0..FAR)
+            .take_while(|at| !is_end(self, *at))
+            .collect::<Vec<_>>();
+        let is_one = match self.word(0) {
+            "if" => !self.words.is_let("if"),
+            _ => is_comparison && before.into_iter().any(|at| self.is(at, "?")),
+        };
+        if !is_one {
+            return false;
+        }
+        let (start, mut open) = (self.here(), 0_usize);
+        loop {
+            let word = self.word(0);
+            let is_outside = self.lists == 0
+                && (self.last_end > start.start && self.is_on_new_line(0)
+                    || self.is_field_name(word) && self.starts_value(1));
+            let is_end = self.lists > 0 && open == 0 && matches!(word, ")" | "]" | ",");
+            match word {
+                "" | "{" | "}" | "let" => break,
+                _ if is_outside || is_end => break,
+                "(" => open += 1,
+                ")" => open = open.saturating_sub(1),
+                _ => {}
+            }
+            self.bump();
+        }
+        let span = start.to(self.behind());
+        // `i % 2 == 0 ? red : blue` is one mistake.
+        let of_remainder = |it: &Diagnostic| it.message == "there is no operator `%`";
+        let last = self.problems.last().filter(|it| of_remainder(it));
+        let of_color = matches!(self.within.takes, Some(Type::Color | Type::Colors));
+        let mut said = statement("if").unwrap_or_default();
+        if of_color || last.is_some() {
+            said[1] = TURNS.trim_start_matches("there is no remainder: ");
+        }
+        let is_new = |label: &Label| label.span.start < start.start;
+        if last.and_then(|it| it.labels.first()).is_some_and(is_new) {
+            self.problems.truncate(self.problems.len() - 1);
+        }
+        self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
+        true
     }
 
     /// Passes over comments of other languages. They end with their line, or before the `}` of a

@@ -2,7 +2,7 @@
 
 use super::{Recovery, foreign::Place, is_name, unquoted};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Edit, Fix, TELLS_ALL},
     schema,
     source::Span,
     suggest,
@@ -10,7 +10,7 @@ use crate::{
         messages::{self as say, statement},
         problem::shorten,
         tokens::TokenKind,
-        tree::{Block, Definition, Item, Name, Value, ValueKind, bad},
+        tree::{Block, Definition, Item, Name, Repetition, Value, ValueKind, bad},
     },
 };
 
@@ -30,7 +30,7 @@ impl<'s> Recovery<'_, 's> {
             "let" => self.definition(),
             "}" => self.stray_brace(),
             "," | ";" => self.separator(),
-            ")" | "]" => self.stray_parenthesis(),
+            ")" | "]" => self.stray_parenthesis(true),
             "{" => {
                 let span = self.here();
                 self.report(&say::MISSING_KIND, span, &[], None);
@@ -127,14 +127,25 @@ impl<'s> Recovery<'_, 's> {
         if is_function && let Some(said) = statement("function") {
             self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         } else {
-            self.report(&say::BAD_NAME, span, &[&self.short(span)], None);
+            // `2ball`: the digits stand behind.
+            let written = self.short(span);
+            let letters = written.trim_start_matches(|c: char| c.is_ascii_digit());
+            let digits = written.len() - letters.len();
+            let help = match TELLS_ALL && is_name(letters) && digits > 0 {
+                true => format!(
+                    ", as in `{letters}{}`",
+                    written.get(..digits).unwrap_or_default()
+                ),
+                false => String::new(),
+            };
+            self.report(&say::BAD_NAME, span, &[&written, &help], None);
         }
         self.items.push(Item::Bad(span));
         None
     }
 
     /// How many tokens of the line stand before one of some words, or the end of the line.
-    fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
+    pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
         while count < FAR && !self.is_on_new_line(count) && !is_end(self.word(count)) {
             count += 1;
@@ -160,17 +171,18 @@ impl<'s> Recovery<'_, 's> {
         let kind = self.is_name(0).then(|| self.name());
         let has_name = self.is_name(0) && !self.is_repetition(0);
         let name = has_name.then(|| self.name());
-        let mut block = Block::new(span, kind, name);
-        if self.is_repetition(0) {
-            match self.repetition() {
-                Ok(repetition) => block.repetition = Some(Box::new(repetition)),
-                Err(bad) => block.bad.push(bad),
-            }
-            if !self.is(0, "{") {
-                return self.items.push(Item::Bad(block.span.to(self.behind())));
-            }
+        let block = Block::new(span, kind, name);
+        self.with_indices(block);
+    }
+
+    /// Reads a block from behind its kind and its name on.
+    fn with_indices(&mut self, mut block: Block<'s>) {
+        let goes_on = self.indices(&mut block);
+        match block.kind {
+            _ if !goes_on => self.items.push(Item::Bad(block.span.to(self.behind()))),
+            Some(kind) if !self.is(0, "{") => self.without_open(block, kind),
+            _ => self.open_block(block),
         }
-        self.open_block(block);
     }
 
     /// Reads a block from its `{` on.
@@ -238,7 +250,9 @@ impl<'s> Recovery<'_, 's> {
             return self.block();
         }
         let rest = self.here();
-        self.skip_head();
+        while !self.is(0, "{") && !self.is_repetition(0) && self.kind(0) != TokenKind::End {
+            self.bump();
+        }
         let rest = rest.to(self.behind());
         let (kind, written) = (shorten(first.text), self.written(rest));
         let words = unquoted(written).split([' ', '-', '.', '\t']);
@@ -252,17 +266,17 @@ impl<'s> Recovery<'_, 's> {
             let title = format!("write `{kind} {{`");
             matches!(written, "=" | ":").then(|| self.remove(title, rest))
         };
-        if schema::block(first.text).is_some_and(|row| row.is_object)
-            && written.contains(['[', '<'])
-        {
-            self.report(&say::BAD_REPETITION, rest, &[], None);
+        let is_object = schema::block(first.text).is_some_and(|row| row.is_object);
+        let mut block = Block::new(first.span, Some(first), None);
+        block.bad = vec![first.span.to(rest)];
+        if is_object && self.counted_name(&kind, rest) {
+            let (keyword, indices) = (rest, Vec::new());
+            block.repetition = Some(Box::new(Repetition { keyword, indices }));
         } else {
             let said = say::BAD_HEAD.safe_if(words.len() == 1);
             self.report(&said, rest, &[&kind], fix);
         }
-        let mut block = Block::new(first.span, Some(first), None);
-        block.bad = vec![first.span.to(rest)];
-        self.open_block(block);
+        self.with_indices(block);
     }
 
     /// `let Ball = sphere {`, `Ball = sphere {` and `sphere = Ball {`, from behind the `=` on.
@@ -292,8 +306,15 @@ impl<'s> Recovery<'_, 's> {
         let has_name =
             row.is_object && self.is_name(0) && !self.is_on_new_line(0) && !is_field(self);
         let name = has_name.then(|| self.name());
-        let head = kind.span.to(self.behind());
-        let mut block = Block::new(head, Some(kind), name);
+        let block = Block::new(kind.span, Some(kind), name);
+        self.without_open(block, kind);
+        true
+    }
+
+    /// Reads a block from where its `{` is missing on.
+    fn without_open(&mut self, mut block: Block<'s>, kind: Name<'s>) {
+        let head = block.span.to(self.behind());
+        block.span = head;
         let close = if self.is(0, "(") { ")" } else { "}" };
         // What is written in place of the ` {`.
         let mut open = self.behind();
@@ -302,7 +323,7 @@ impl<'s> Recovery<'_, 's> {
         }
         let mut fix = None;
         block.bad.push(open);
-        if is_field(self) {
+        if self.is_name(0) && self.words.takes(kind.text, self.word(0)).is_some() {
             self.body(&mut block, close);
             // Where nothing closes it, or braces stand within, it is not known where it ends.
             let is_flat = !self.written(block.span).contains('{');
@@ -320,7 +341,6 @@ impl<'s> Recovery<'_, 's> {
         }
         self.report(&say::UNOPENED_BLOCK, head, &[&self.short(head)], fix);
         self.items.push(Item::Block(block));
-        true
     }
 
     // Lines that are no items.
@@ -350,7 +370,13 @@ impl<'s> Recovery<'_, 's> {
         let written = self.written(value.span);
         let mut used = written.split(|c: char| !c.is_alphanumeric());
         let is_used = used.any(|used| used == word);
-        if is_plain && (self.words.is_let(word) || is_used) {
+        let is_defined = |item: &Item<'s>| match item {
+            Item::Definition(it) => it.name.is_some_and(|it| it.text == word),
+            _ => false,
+        };
+        const NEAR: usize = 64;
+        let is_again = TELLS_ALL && self.items.iter().rev().take(NEAR).any(is_defined);
+        if is_plain && (self.words.is_let(word) || is_used || is_again) {
             let what = "assignments: a name keeps its value";
             let help = "give the new value a name of its own with `let NAME = VALUE`";
             self.problems.truncate(told);
@@ -420,15 +446,17 @@ impl<'s> Recovery<'_, 's> {
 
     // What closes nothing.
 
-    /// `)` or `]` that was never opened.
-    pub(super) fn stray_parenthesis(&mut self) {
+    /// `)` or `]` that was never opened. It is taken away only where it would mean nothing wherever
+    /// it was opened.
+    pub(super) fn stray_parenthesis(&mut self, is_needless: bool) {
         let sign = self.word(0);
         let span = self.bump();
         // What opened it may be in something else that is wrong in its line.
         let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();
-        let fix = (!is_opened).then(|| self.remove(format!("remove this `{sign}`"), span));
+        let fix =
+            (is_needless && !is_opened).then(|| self.remove(format!("remove this `{sign}`"), span));
         self.report(&say::STRAY_CLOSING, span, &[sign], fix);
     }
 

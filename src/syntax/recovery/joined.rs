@@ -4,14 +4,14 @@
 use super::{Recovery, example, is_plain_number};
 use crate::{
     color::are_shares,
-    diagnostic::{Edit, Fix},
+    diagnostic::{Edit, Fix, TELLS_ALL},
     schema::{self, Type},
     source::Span,
     syntax::{
         messages as say,
         problem::replace,
-        tokens::numeric_part,
-        tree::{Value, ValueKind, bad},
+        tokens::{Lexer, TokenKind, numeric_part},
+        tree::{Operator, Step, Value, ValueKind, bad},
     },
 };
 
@@ -65,13 +65,32 @@ impl<'s> Recovery<'_, 's> {
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
             // `2 ball`, where a vector should stand: times whatever it is.
-            (Some(Type::Vector), 2) if commas == 0 && is_named_factor(&first, &second) => {
+            (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
             (Some(Type::Vector | Type::FaceColors) | None, 3) | (Some(Type::Colors), 2)
                 if are_parts =>
             {
                 self.missing_parentheses(span, Some(replace(span, right)));
+            }
+            (Some(Type::Colors | Type::FaceColors), _)
+                if TELLS_ALL && values.iter().all(|it| self.is_color(it)) =>
+            {
+                self.missing_parentheses(span, None);
+            }
+            (Some(Type::Color), _)
+                if TELLS_ALL && commas > 0 && values.iter().all(|it| self.is_color(it)) =>
+            {
+                let help = match (values.len(), self.is_field_name("colors")) {
+                    (3, true) => format!("write `colors {right}`"),
+                    _ => format!("write one colour, or `{right}` to take turns in a `for`"),
+                };
+                self.report(&say::MISSING_PARENTHESES, span, &[&help], None);
+            }
+            (Some(Type::Vector), 2)
+                if TELLS_ALL && commas == 0 && !values.iter().any(|it| self.is_number(it)) =>
+            {
+                self.missing_between(&first, &second);
             }
             (Some(Type::Vector), _) if !matches!(first.kind, ValueKind::Tuple(_)) => {
                 self.missing_parentheses(span, None);
@@ -93,17 +112,12 @@ impl<'s> Recovery<'_, 's> {
 
     /// Two values with nothing between: an operator is missing, or the name of a field.
     pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
-        let is_color = |value: &Value<'s>| match &value.kind {
-            ValueKind::Call(call) => call.function.text == "rgb",
-            ValueKind::Name(name) => self.words.is_color(name),
-            kind => matches!(kind, ValueKind::ColorCode(_)),
-        };
-        let is_whole = is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
+        let is_whole = self.is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
         let (l, r) = (self.short(left.span), self.short(right.span));
         let is_method = self.within.takes == Some(Type::Method);
         if self.within.is_block && self.lists == 0 && (is_whole || is_method) {
             let takes_color = self.words.takes(self.within.kind, "color").is_some();
-            let said = match takes_color && is_color(right) {
+            let said = match takes_color && self.is_color(right) {
                 true => &say::COLOR_WITHOUT_NAME,
                 false => &say::MISSING_FIELD_NAME,
             };
@@ -113,8 +127,9 @@ impl<'s> Recovery<'_, 's> {
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // `2 ball` and `(n * 0.28) ball`, in the place of a vector.
-        let is_scaled = self.within.takes == Some(Type::Vector) && is_named_factor(left, right);
+        // `2 ball` and `(n * 0.28) ball`, in the place of a vector or an angle.
+        let is_scaled = matches!(self.within.takes, Some(Type::Vector | Type::Angle))
+            && self.is_named_factor(left, right);
         let is_product =
             is_scaled || are_numbers && matches!(self.within.takes, None | Some(Type::Number));
         if let ValueKind::Name(name) = left.kind
@@ -137,6 +152,47 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
     }
 
+    /// `sin30deg * i)`: the `)` in front of which reading stopped belongs to the only function since
+    /// an offset that is written together with its argument.
+    pub(super) fn unopened_call(&mut self, start: usize) -> bool {
+        if !TELLS_ALL {
+            return false;
+        }
+        let end = self.here().start;
+        // Of a longer value with many parentheses too many, each would be read to its end.
+        const LONGEST: usize = 1000;
+        if end - start > LONGEST {
+            return false;
+        }
+        let mut lexer = Lexer::new(self.text.get(..end).unwrap_or_default(), start);
+        let tokens = std::iter::repeat_with(|| lexer.token());
+        let tokens = tokens.take_while(|token| token.kind != TokenKind::End);
+        let names = tokens.filter(|token| token.kind == TokenKind::Name);
+        let mut calls = names.filter_map(|token| {
+            let word = self.text.get(token.start..token.end)?;
+            let split = |row: &schema::Function| Some((row.name, word.strip_prefix(row.name)?));
+            let mut rows = schema::FUNCTIONS.iter().filter_map(split);
+            let is_argument = |rest: &str| {
+                matches!(
+                    rest.trim_start_matches(|c: char| c.is_ascii_digit()),
+                    "" | "deg" | "rad"
+                ) || self.words.is_value(rest)
+            };
+            let (name, rest) = rows.find(|(_, rest)| !rest.is_empty() && is_argument(rest))?;
+            let is_known = self.words.is_value(word);
+            (!is_known).then_some((token, name, rest))
+        });
+        let (Some((token, name, rest)), None) = (calls.next(), calls.next()) else {
+            return false;
+        };
+        let span = Span::new(self.id, token.start, token.end);
+        let edit = Edit::insert(self.id, token.start + name.len(), "(");
+        let fix = Fix::new(format!("write `{name}({rest}`"), [edit]);
+        self.report(&say::MISSING_OPEN, span, &[name, rest], fix);
+        self.bump();
+        true
+    }
+
     /// Whether a value starts with a name that is surely that of a number.
     pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
         match &value.kind {
@@ -146,6 +202,33 @@ impl<'s> Recovery<'_, 's> {
             }
             _ => false,
         }
+    }
+
+    fn is_color(&self, value: &Value<'s>) -> bool {
+        match &value.kind {
+            ValueKind::Call(call) => call.function.text == "rgb",
+            ValueKind::Name(name) => self.words.is_color(name),
+            kind => matches!(kind, ValueKind::ColorCode(_)),
+        }
+    }
+
+    /// Whether a value is surely made of numbers.
+    pub(super) fn is_number(&self, value: &Value<'s>) -> bool {
+        match &value.kind {
+            ValueKind::Number(_) => true,
+            ValueKind::Name(name) => self.words.is_factor(name),
+            ValueKind::Tuple(_) | ValueKind::Call(_) => false,
+            _ => {
+                let parts = value.parts();
+                !parts.is_empty() && parts.into_iter().all(|part| self.is_number(part))
+            }
+        }
+    }
+
+    /// Whether a number, or numbers in parentheses, stand before a name.
+    fn is_named_factor(&self, left: &Value<'s>, right: &Value<'s>) -> bool {
+        let is_factor = is_plain_number(left) || matches!(left.kind, ValueKind::Parentheses(_));
+        is_factor && self.is_number(left) && matches!(right.kind, ValueKind::Name(_))
     }
 
     /// `1,5` and `1,000,000`
@@ -173,12 +256,6 @@ impl<'s> Recovery<'_, 's> {
     }
 }
 
-/// Whether a number, or an expression in parentheses, stands before a name.
-fn is_named_factor(left: &Value<'_>, right: &Value<'_>) -> bool {
-    let is_factor = is_plain_number(left) || matches!(left.kind, ValueKind::Parentheses(_));
-    is_factor && matches!(right.kind, ValueKind::Name(_))
-}
-
 /// Whether digits stand in groups of three.
 fn are_thousands(text: &str) -> bool {
     let mut groups = text.split(' ');
@@ -188,6 +265,34 @@ fn are_thousands(text: &str) -> bool {
         && text
             .bytes()
             .all(|byte| byte.is_ascii_digit() || byte == b' ')
+}
+
+/// Whether a parenthesis that closes behind a value means nothing, wherever it was opened.
+pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
+    match &value.kind {
+        ValueKind::Chain { first, rest } => {
+            let is_plain = |value: &Value<'_>| value.parts().is_empty();
+            let keeps = |step: &Step<'_>| {
+                is_plain(&step.operand)
+                    && matches!(step.operator, Operator::Add | Operator::Multiply)
+            };
+            rest.split_last().is_none_or(|(last, before)| {
+                is_plain(first) && before.iter().all(keeps) && is_same_in_parentheses(&last.operand)
+            })
+        }
+        ValueKind::Negation { .. } => is_plain_number(value),
+        // `normalize(1, 0, 0))`
+        ValueKind::Call(call)
+            if schema::function(call.function.text)
+                .is_some_and(|row| !row.accepts(call.arguments.len())) =>
+        {
+            false
+        }
+        _ => value
+            .parts()
+            .last()
+            .is_none_or(|last| is_same_in_parentheses(last)),
+    }
 }
 
 pub(super) fn are_names(values: &[Value<'_>]) -> bool {

@@ -178,7 +178,9 @@ impl<'s> Recovery<'_, 's> {
                 let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
                 let last = list.elements.last().map(|element| &element.value);
                 let last = last.filter(|value| value.kind != ValueKind::Bad);
-                let fits = is_whole && count.contains(&list.elements.len());
+                // A sum or a product may end behind any part of it.
+                let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
+                let fits = is_whole && is_sure && count.contains(&list.elements.len());
                 self.unclosed(open, close, last.filter(|_| fits).map(|last| last.span.end));
                 list.span = open.to(self.behind());
                 list.is_round = true;
@@ -188,7 +190,8 @@ impl<'s> Recovery<'_, 's> {
                     list.gaps.push(list.elements.len());
                 }
                 // `x = 3`
-                if self.is_name(0) && matches!(self.word(1), "=" | ":") {
+                let is_path = self.is(1, ":") && self.is(2, ":");
+                if self.is_name(0) && matches!(self.word(1), "=" | ":") && !is_path {
                     let name = self.bump();
                     labels.push(name.to(self.bump()));
                 }

@@ -14,6 +14,7 @@
 
 mod fields;
 mod foreign;
+mod head;
 mod items;
 mod joined;
 mod lists;
@@ -321,6 +322,15 @@ impl<'w, 's> Recovery<'w, 's> {
         self.within.is_block && self.words.takes(self.within.kind, name).is_some()
     }
 
+    /// Whether a line starts here that is the head of a block of a known kind, right or wrong.
+    fn starts_item(&mut self) -> bool {
+        let word = self.word(0);
+        self.is_on_new_line(0) && self.words.is_kind(word) && !self.is_field_name(word) && {
+            let count = self.find_in_line(|word| matches!(word, "{" | "}"));
+            self.is(count, "{") && !self.is_on_new_line(count)
+        }
+    }
+
     // Going on.
 
     /// Whether what stood before must have ended: at a brace, `let`, the name of a field, or a
@@ -331,6 +341,7 @@ impl<'w, 's> Recovery<'w, 's> {
             || (self.is_on_new_line(0) && (!self.within.is_block || self.is_name(0)))
             || (self.is_name(0) && self.is_field_name(word))
             || self.starts_block()
+            || self.starts_item()
     }
 
     /// Passes over what stands before the next field, line, item or closing brace.
@@ -375,7 +386,7 @@ impl<'w, 's> Recovery<'w, 's> {
         let before = self.line_before(span.start).trim_end();
         let is_behind_part =
             self.lists > 0 && before.ends_with(|c: char| c.is_alphanumeric() || c == ')');
-        let of_books = values::of_books(&written, expected != "a value" || is_behind_part);
+        let of_books = foreign::of_books(&written, expected != "a value" || is_behind_part);
         let help = of_books.unwrap_or(help);
         self.report(&say::UNEXPECTED, span, &[expected, &written, help], None);
     }

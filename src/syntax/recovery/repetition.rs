@@ -1,14 +1,14 @@
 //! Indices: what stands between the name of an object and its `{`.
 
-use super::{Recovery, is_name};
+use super::{Recovery, head, is_name};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Edit, Fix, TELLS_ALL},
     source::Span,
     syntax::{
         messages as say,
         problem::{replace, shorten},
         tokens::{TokenKind, is_name_char},
-        tree::{Index, Repetition, ValueKind},
+        tree::{Block, Index, Repetition, ValueKind},
     },
 };
 
@@ -19,38 +19,151 @@ impl<'s> Recovery<'_, 's> {
         let is_word = words.contains(&self.word(ahead)) && !self.is_on_new_line(ahead);
         let next = ahead + 1;
         is_word
-            && (self.is_name(next) || self.is(next, "(") || self.kind(next) == TokenKind::Number)
+            && (self.kind(next) == TokenKind::Name
+                || self.is(next, "(")
+                || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads `for i < 8, j < i`. In what other languages write for it there is one mistake,
-    /// whatever stands before the `{`.
-    pub(super) fn repetition(&mut self) -> Result<Repetition<'s>, Span> {
+    /// Reads the indices of a block, if there are any: `for i < 8, j < i`. In what other languages
+    /// write for it there is one mistake, whatever stands before the `{`. Answers whether the block
+    /// goes on behind them.
+    pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
+        if !self.is_repetition(0) {
+            return true;
+        }
         let told = self.problems.len();
+        let kind = block.kind.map_or("", |kind| kind.text);
         let (is_for, keyword) = (self.is(0, "for"), self.bump());
-        let mut indices = Vec::new();
-        while is_for && self.is_name(0) && self.is(1, "<") {
+        let mut repetition = Repetition {
+            keyword,
+            indices: Vec::new(),
+        };
+        let mut goes_on = is_for;
+        while goes_on && self.is_name(0) && self.is(1, "<") {
             let index = self.index();
-            let is_last = index.comma.is_none();
-            indices.push(index);
-            if is_last && self.is(0, "{") {
-                return Ok(Repetition { keyword, indices });
+            goes_on = index.comma.is_some();
+            repetition.indices.push(index);
+        }
+        let is_end = matches!(self.word(0), "{" | "}") || self.is_on_new_line(0);
+        let is_right =
+            !repetition.indices.is_empty() && !goes_on && (is_end || self.starts_fields(kind));
+        if !is_right {
+            while matches!(self.word(0), "(" | "let") {
+                self.bump();
             }
-            if is_last {
-                break;
+            while !matches!(self.word(0), "{" | "}" | "let")
+                && self.kind(0) != TokenKind::End
+                && !self.starts_fields(kind)
+                && !(self.is_on_new_line(0) && (self.is_head(0) || self.starts_item()))
+            {
+                self.bump();
             }
+            let span = keyword.to(self.behind());
+            if self.problems.len() == told {
+                self.bad_repetition(span, block.name.is_some());
+            }
+            block.bad.push(span);
+            repetition.indices.clear();
         }
-        while !matches!(self.word(0), "{" | "}" | "let")
-            && self.kind(0) != TokenKind::End
-            && !(self.is_on_new_line(0) && self.is_head(0))
-        {
-            self.bump();
+        block.repetition = Some(Box::new(repetition));
+        is_right || self.is(0, "{") || self.starts_fields(kind)
+    }
+
+    /// Whether a field of a kind with its value stands here, so that a `{` is missing before it.
+    pub(super) fn starts_fields(&mut self, kind: &str) -> bool {
+        let is_field = self.is_name(0) && self.words.takes(kind, self.word(0)).is_some();
+        is_field && self.starts_value(1) && !self.is(1, "<")
+    }
+
+    fn bad_repetition(&mut self, span: Span, has_name: bool) {
+        if !TELLS_ALL {
+            return self.told(span, "", "", None, false);
         }
-        let span = keyword.to(self.behind());
-        if self.problems.len() == told {
-            let fix = from_zero(self.written(span)).map(|right| replace(span, right));
-            self.report(&say::BAD_REPETITION, span, &[], fix);
+        let written = self.written(span);
+        let slip = head::slip(written, has_name);
+        let fix = slip.right.map(|right| replace(span, right));
+        let is_char = |c: char| !c.is_ascii_alphanumeric();
+        let words = |text| str::split(text, is_char).filter(|word| !word.is_empty());
+        // Nothing but signs is new or gone.
+        let mut edits = fix.iter().flat_map(|fix| &fix.edits);
+        let is_safe = edits.all(|edit| words(&edit.text).eq(words(written)));
+        let at = Span::new(
+            self.id,
+            span.start + slip.at.start,
+            span.start + slip.at.end,
+        );
+        self.told(at, slip.said, &slip.help, fix, is_safe);
+    }
+
+    /// Reports a slip in a head; without words, how a head is written.
+    pub(super) fn told(
+        &mut self,
+        at: Span,
+        said: &str,
+        help: &str,
+        fix: impl Into<Option<Fix>>,
+        is_safe: bool,
+    ) {
+        let or = |text, other| if str::is_empty(text) { other } else { text };
+        let words = [or(said, say::REPEATED), or(help, say::REPEATED_SO)];
+        let said = say::BAD_REPETITION.safe_if(is_safe);
+        self.report(&said, at, &words, fix);
+    }
+
+    /// `Ball[8]`, `Ball[i] for i < 8` and `i < 8` in place of a name, up to the `for` or the `{`.
+    /// Answers whether it was one of them.
+    pub(super) fn counted_name(&mut self, kind: &str, rest: Span) -> bool {
+        let written = self.written(rest);
+        if !TELLS_ALL {
+            let is_one = written.contains(['[', '<']);
+            if is_one {
+                self.told(rest, "", "", None, false);
+            }
+            return is_one;
         }
-        Err(span)
+        let id = self.id;
+        let part = |from, to| Span::new(id, rest.start + from, rest.start + to);
+        if let Some(open) = written.find('[') {
+            let (name, index) = written.split_at(open);
+            let inner = index.trim_matches(['[', ']', ' ']);
+            let (at, is_repeated) = (part(open, written.len()), self.is_repetition(0));
+            let fix = Fix::new(format!("write `{kind} {name}`"), [Edit::new(at, "")]);
+            let said = match is_repeated {
+                true => "the objects of a head with indices are numbered by themselves",
+                false => "a count stands in a `for`",
+            };
+            let head = format!("{kind} {name}");
+            let head = head.trim_end();
+            let head = match is_name(inner) && !self.words.is_let(inner) {
+                true => format!("write `{head} for {inner} < 8 {{` with the number of its values"),
+                false => format!("write `{head} for i < {inner} {{`, and use `i` in the values"),
+            };
+            self.told(at, said, &head, Some(fix).filter(|_| is_repeated), false);
+            return true;
+        }
+        let Some((before, _)) = written.split_once('<').filter(|_| !self.is_repetition(0)) else {
+            return false;
+        };
+        let name = before
+            .trim_end()
+            .bytes()
+            .rev()
+            .take_while(|&byte| is_name_char(byte));
+        let start = before.trim_end().len() - name.count();
+        let index = format!("for {}", written.get(start..).unwrap_or_default());
+        let slip = head::slip(&index, true);
+        let fix = (slip.right.is_some() && slip.said.is_empty()).then(|| {
+            let edit = Edit::insert(self.id, rest.start + start, "for ");
+            Fix::new(format!("write `{}`", shorten(&index)), [edit])
+        });
+        self.told(
+            part(start, written.len()),
+            "an index stands behind a `for`",
+            "",
+            fix,
+            true,
+        );
+        true
     }
 
     /// Reads `i < 8`, with the comma behind it, or `i <= 7`.
@@ -78,16 +191,4 @@ impl<'s> Recovery<'_, 's> {
             comma,
         }
     }
-}
-
-/// `for i in 0..8` and `for i in range(8)`, as they are written here.
-fn from_zero(written: &str) -> Option<String> {
-    let (index, range) = written.strip_prefix("for ")?.split_once(" in ")?;
-    let range = range.trim();
-    let of_python = range
-        .strip_prefix("range(")
-        .and_then(|rest| rest.strip_suffix(')'));
-    let count = range.strip_prefix("0..").or(of_python)?;
-    let is_count = !count.is_empty() && count.bytes().all(is_name_char);
-    (is_count && is_name(index)).then(|| format!("for {index} < {count}"))
 }

@@ -1,8 +1,14 @@
 //! Values: operators and operands.
 
-use super::{Recovery, example, foreign::Place, is_name, joined::are_names, unquoted};
+use super::{
+    Recovery, example,
+    foreign::{self, Place},
+    is_name,
+    joined::{are_names, is_same_in_parentheses},
+    unquoted,
+};
 use crate::{
-    diagnostic::{Edit, Fix},
+    diagnostic::{Edit, Fix, TELLS_ALL},
     schema::{self, Type},
     source::Span,
     syntax::{
@@ -17,34 +23,6 @@ use crate::{
 const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
 /// Those of a sum.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
-
-/// Characters of books and other languages that are no part of this one: what to write for one in
-/// the place of a value, and for one behind a value.
-const OF_BOOKS: &[(&str, [&str; 2])] = &[
-    ("π", ["write `pi`", "write `* pi`"]),
-    (
-        "√",
-        [
-            "write `sqrt(2)` for the square root of 2",
-            "write `* sqrt(2)` for times the square root of 2",
-        ],
-    ),
-    ("²³⁴ⁿ", ["write a product, such as `r * r`"; 2]),
-    ("½", ["write `0.5`", "write `+ 0.5`"]),
-    ("¼", ["write `0.25`", "write `+ 0.25`"]),
-    ("¾", ["write `0.75`", "write `+ 0.75`"]),
-    (
-        "?",
-        ["there are no conditions: `pinhole explain condition` says what to write instead"; 2],
-    ),
-];
-
-/// What to write for a word with a character of books.
-pub(super) fn of_books(word: &str, is_behind: bool) -> Option<&'static str> {
-    let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
-    let (_, [value, behind]) = OF_BOOKS.iter().find(is_in)?;
-    Some(if is_behind { behind } else { value })
-}
 
 impl<'s> Recovery<'_, 's> {
     /// The value of a field, of a definition, or of a `--set`, with whatever stands in place of it.
@@ -79,12 +57,36 @@ impl<'s> Recovery<'_, 's> {
         }
         if values.len() > 1 && self.closes_nothing() {
             let (sign, span) = (self.word(0), self.bump());
-            self.report(&say::STRAY_CLOSING, span, &[sign], None);
-            return bad(start.to(span));
+            let parts = self
+                .within
+                .takes
+                .and_then(Type::parts)
+                .map(|(_, count)| count);
+            let is_list = parts == Some(values.len()) && commas + 1 == values.len();
+            let is_positive = self.words.is_positive(self.within.kind, self.within.field);
+            let is_sure = values.iter().all(|value| match &value.kind {
+                ValueKind::Name(name) => self.words.is_value(name),
+                ValueKind::Negation { .. } if is_positive => false,
+                _ => self.is_number(value),
+            });
+            let fix = (TELLS_ALL && is_list && is_sure && sign == ")").then(|| {
+                let title = format!("write `({})`", self.list_of(&values));
+                Fix::new(title, [Edit::insert(self.id, start.start, "(")])
+            });
+            self.report(&say::STRAY_CLOSING, span, &[sign], fix);
+            self.operations(bad(start.to(span)));
+            return bad(start.to(self.behind()));
         }
         let mut value = self.joined(values, commas);
         while self.closes_nothing() {
-            self.stray_parenthesis();
+            let is_needless = is_same_in_parentheses(&value);
+            let is_call = self.unopened_call(start.start);
+            if !is_call {
+                self.stray_parenthesis(is_needless);
+            }
+            if is_call || !is_needless {
+                value = bad(value.span);
+            }
             let goes_on = PRODUCT.contains(&self.word(0)) || SUM.contains(&self.word(0));
             if !(goes_on || self.ends_value() || self.is_boundary())
                 && let Some(found) = self.problems.last_mut()
@@ -131,6 +133,7 @@ impl<'s> Recovery<'_, 's> {
         matches!(self.kind(1), TokenKind::Number | TokenKind::Color)
             || matches!(word, "-" | "(")
             || (self.is_name(1) && self.words.is_value(word))
+            || (self.is_name(1) && matches!(self.word(2), "," | ")"))
     }
 
     /// `multi-jittered`. A comment or the end of a line does not belong into a name.
@@ -154,10 +157,14 @@ impl<'s> Recovery<'_, 's> {
 
     fn operations(&mut self, left: Value<'s>) -> Value<'s> {
         let left = self.chain(left, PRODUCT, Self::signed);
-        self.chain(left, SUM, |this| {
+        let left = self.chain(left, SUM, |this| {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
-        })
+        });
+        match !self.is(0, "if") && !self.is_on_new_line(0) && self.condition() {
+            true => bad(left.span.to(self.behind())),
+            false => left,
+        }
     }
 
     /// Goes on with a value as long as these operators follow.
@@ -217,9 +224,7 @@ impl<'s> Recovery<'_, 's> {
 
     fn unknown_operator(&mut self, written: &str, span: Span, is_between: bool, fix: Option<Fix>) {
         let help = match written {
-            "%" if is_between => {
-                "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows"
-            }
+            "%" if is_between => foreign::TURNS,
             "%" => "write the number itself, such as `0.5`",
             _ => "write a product, such as `a * a`, or `sqrt(a)`",
         };
@@ -264,6 +269,7 @@ impl<'s> Recovery<'_, 's> {
                 word == "let"
                     || (self.is_field_name(word) && !self.words.is_value(word))
                     || (self.is_on_new_line(0) && self.is_head(0))
+                    || self.starts_item()
             }
             _ if word == "{" => !self.is_flat_list(),
             _ => matches!(word, "}" | ")" | "]" | "," | ";" | "="),
@@ -306,6 +312,7 @@ impl<'s> Recovery<'_, 's> {
         let word = self.word(0);
         match (self.kind(0), word) {
             (TokenKind::Number, _) => self.number(),
+            (TokenKind::Name, "if") if self.condition() => bad(self.behind()),
             (TokenKind::Name, _) if !self.ends_value() => self.reference(),
             (TokenKind::Color, _) | (_, "#") => self.color(),
             (TokenKind::Quoted, _) => self.quoted(),
@@ -347,6 +354,9 @@ impl<'s> Recovery<'_, 's> {
     /// A name, the call of a function, or what people write for one.
     fn reference(&mut self) -> Value<'s> {
         let name = self.name();
+        if let Some(value) = self.of_other_library(name) {
+            return value;
+        }
         if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
             self.bump();
             let span = name.span.to(self.bump());
@@ -373,6 +383,11 @@ impl<'s> Recovery<'_, 's> {
             let told = self.problems.len();
             self.group("]");
             self.problems.truncate(told);
+            // `Ball[3].center`
+            if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
+                self.bump();
+                self.bump();
+            }
             let span = name.span.to(self.behind());
             let words = match is_let {
                 true => [

@@ -22,7 +22,7 @@ fn mended(text: &str) -> Option<String> {
     }
 }
 
-const QUESTIONS: [&str; 5] = ["offered", "of_all", "at_the_end", "mended", "kind"];
+const QUESTIONS: [&str; 6] = ["offered", "of_all", "at_the_end", "mended", "kind", "told"];
 
 fn answer(question: &str, text: &str, _: &str) -> String {
     let camera = match text.contains("camera {") {
@@ -48,7 +48,22 @@ fn answer(question: &str, text: &str, _: &str) -> String {
         let mended = mended.map_or_else(String::new, |mended| of_text(&mended));
         return format!("{} | {mended}", codes(&whole, &[]).join(" "));
     }
-    let first = diagnostics(&sources(&whole)).swap_remove(0);
+    let mut found = diagnostics(&sources(&whole));
+    if found.is_empty() {
+        return "nothing".to_owned();
+    }
+    let first = found.remove(0);
+    if question == "told" {
+        let others = found
+            .iter()
+            .map(|other| format!(" | and {}", other.message));
+        let others: String = others.collect();
+        let at = &whole[first.labels[0].span.range()];
+        let help = first.help.unwrap_or_default();
+        let kind = first.fixes.first().map(|fix| fix.applicability.word());
+        let kind = kind.map(|kind| format!(" | {kind}")).unwrap_or_default();
+        return format!("{} | {at} | {help}{kind}{others}", first.message);
+    }
     let offered = first.fixes.iter().map(|fix| {
         let fixed = apply(fix, SourceId::File, &whole);
         if question == "of_all" {

@@ -142,7 +142,9 @@ fn number_length(text: &str) -> usize {
 fn keywords() -> impl Iterator<Item = &'static str> {
     let blocks = BLOCKS.iter().map(|block| block.name);
     let fields = BLOCKS.iter().flat_map(|block| block.field_names());
-    blocks.chain(fields).chain(["let", "rgb", "deg", "rad"])
+    blocks
+        .chain(fields)
+        .chain(["let", "for", "rgb", "deg", "rad"])
 }
 
 /// Whether two words are all but the same.

@@ -1,6 +1,7 @@
 //! What diagnostics offer to do: each fix does away with its problem and makes no new error.
 
 mod answers;
+mod delimiters;
 mod kept;
 mod law;
 mod mistyped;

@@ -114,10 +114,10 @@ fn a_mistake_of_many_objects_is_reported_once() {
         sphere for i < 9 { center (i, 1, 0) color (red, 2) } -> part_type: 2
         sphere for i < 9 { center (j, 1, 0) } -> unused_index: i; unknown_name: j
         sphere B for i < 9, j < { center (i, j, 0) } -> unexpected: {
-        sphere B for i < 9 j < 9 { center (i, j, 0) } -> bad_repetition: for i < 9 j < 9
+        sphere B for i < 9 j < 9 { center (i, j, 0) } -> bad_repetition: j
         sphere B for { center (0, 1, 0) } -> bad_head: B for
-        sphere B repeat i < 8 { center (i, 1, 0) } -> bad_repetition: repeat i < 8
-        sphere B for 8 { center (0, 1, 0) } -> bad_repetition: for 8
+        sphere B repeat i < 8 { center (i, 1, 0) } -> bad_repetition: repeat
+        sphere B for 8 { center (0, 1, 0) } -> bad_repetition: 8
         let n = i sphere for i < 9 { center (i, 1, 0) } -> unknown_name: i
         sphere for i < 9 { center (i, 1, 0) } sphere { center (i, 1, 0) } -> unknown_name: i
     ";

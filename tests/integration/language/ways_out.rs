@@ -56,8 +56,8 @@ fn the_advice_is_the_way_out() {
         sphere for k < 3 { let x = n center (k, x, 0) } -> write it before the block
         sphere { for k < 3 center (k, 1, 0) } -> write them before the `{`, as in `sphere for i < 8 {`
         sphere { for j < 3, k < j center (k, j, 0) } -> write them before the `{`, as in `sphere for i < 8 {`
-        sphere Ball[8] { center (0, 1, 0) } -> write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first
-        sphere k < 8 { center (k, 1, 0) } -> write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first
+        sphere Ball[8] { center (0, 1, 0) } -> write `sphere Ball for i < 8 {`, and use `i` in the values
+        sphere k < 8 { center (k, 1, 0) } -> write `for k < 8`
         sphere for k in 0..3 { center (k, 1, 0) } -> write `for k < 3`
         sphere B for k in range(n) { center (k, 1, 0) } -> write `for k < n`
         sphere for k <= 3 { center (k, 1, 0) } -> write `k < 4`: an index begins at 0

@@ -1,0 +1,98 @@
+//! Where a number without a unit comes from: from `pi`, so that it counts radians, or not.
+//!
+//! In: a value's tree, and the origins of the `let`s that it uses. Out: the unit that was meant, as
+//! far as its formula tells.
+
+use super::names::Names;
+use crate::{
+    schema::predefined,
+    syntax::tree::{self, Operator, Unit, ValueKind},
+};
+
+/// What the formula of a number tells of the unit that it lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// Nothing: it is made of numbers without `pi`.
+    Plain,
+    /// It counts these.
+    In(Unit),
+    /// What it is made of speaks for both units.
+    Unclear,
+}
+
+use Origin::{In, Plain, Unclear};
+
+/// The first digits of pi, of multiples of it, and of pi / 180, as people write them out.
+const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
+
+impl Names<'_> {
+    /// What a number's formula tells of its unit.
+    pub(super) fn origin(&self, value: &tree::Value<'_>) -> Origin {
+        let all = || {
+            let parts = value.parts().into_iter();
+            parts.fold(Plain, |sum, part| sum.plus(self.origin(part)))
+        };
+        match &value.kind {
+            ValueKind::Number(text) if LIKE_PI.iter().any(|digits| text.starts_with(digits)) => {
+                In(Unit::Radians)
+            }
+            ValueKind::Name("pi") => In(Unit::Radians),
+            ValueKind::Name(name) => match self.defined.get(name) {
+                Some(defined) => defined.origin,
+                None if predefined(name).is_some() => Plain,
+                None => Unclear,
+            },
+            ValueKind::Call(call) => match (call.function.text, all()) {
+                ("sin" | "cos" | "tan", _) => Plain,
+                ("sqrt", In(_)) => Unclear,
+                (_, all) => all,
+            },
+            ValueKind::Chain { first, rest }
+                if rest.iter().all(|it| it.operator.is_of_product()) =>
+            {
+                let first = (self.origin(first), is_half_turn(first));
+                let product = rest.iter().fold(first, |(left, by_turn), step| {
+                    let (operand, right) = (&step.operand, self.origin(&step.operand));
+                    let unit = match &operand.kind {
+                        ValueKind::Angle { unit, .. } => Some(*unit),
+                        ValueKind::Name("deg") => Some(Unit::Degrees),
+                        ValueKind::Name("rad") => Some(Unit::Radians),
+                        _ => None,
+                    };
+                    let by_turn = by_turn || is_half_turn(operand);
+                    let product = match (left, step.operator, right, unit) {
+                        (_, Operator::Divide, _, Some(unit)) => In(unit),
+                        // `x * 180 / pi`
+                        (Plain | In(Unit::Radians), Operator::Divide, In(Unit::Radians), _)
+                            if by_turn =>
+                        {
+                            In(Unit::Degrees)
+                        }
+                        (left, _, Plain, _) => left,
+                        (Plain, Operator::Multiply, right, _) => right,
+                        _ => Unclear,
+                    };
+                    (product, by_turn)
+                });
+                product.0
+            }
+            _ => all(),
+        }
+    }
+}
+
+impl Origin {
+    /// That of a sum.
+    fn plus(self, other: Self) -> Self {
+        match (self, other) {
+            (Plain, it) | (it, Plain) => it,
+            (a, b) if a == b => a,
+            _ => Unclear,
+        }
+    }
+}
+
+/// Whether a factor is the degrees of a half or a whole turn.
+fn is_half_turn(factor: &tree::Value<'_>) -> bool {
+    matches!(factor.kind, ValueKind::Number("180" | "360"))
+}

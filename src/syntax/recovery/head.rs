@@ -1,0 +1,294 @@
+//! What people write for `for i < 8, j < i` in the head of an object, as tables.
+//!
+//! In: the head's text from its first word on. Out: which part of it is written otherwise, what is
+//! different, and the head as it is written here, if that is certain.
+
+use std::ops::Range;
+
+use crate::syntax::tokens::{is_name_char, numeric_part};
+
+/// The first slip in a head.
+pub(super) struct Slip {
+    /// Its place in the text.
+    pub at: Range<usize>,
+    /// What is different here; nothing where it is not known.
+    pub said: &'static str,
+    /// What to do where the head is not certain.
+    pub help: String,
+    /// The head as it is written here.
+    pub right: Option<String>,
+}
+
+/// What is read, what is different, what is written instead, and what to do where that is not
+/// certain. Of what is read, `I` and `W` are names, `O` is one if another follows it, `N` and `M` are
+/// values, `$` is the end, and the slip stands between `«` and `»`.
+type Row = [&'static str; 4];
+
+const FROM_ZERO: &str = "an index begins at 0 by itself";
+const NO_RANGE: &str = "an index has a count, and no range";
+const EITHER: &str = "write `for {I} < {N}`, or `for {I} < {N+1}` if {N} is one of its values";
+const TO: &str = "write `for {I} < {N-M+1}`, and `{I} + {M}` for `{I}` in the values";
+const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the values";
+const LACKS_COUNT: &str =
+    "write `for {I} < 8` with the number of its values, or `for i < {I}` if `{I}` is that";
+/// Stands in place of the name of the object.
+const NAME_FIRST: &str = "^";
+
+/// An index with its count.
+#[rustfmt::skip]
+const INDICES: [Row; 23] = [
+    ["I < N", "", "{I} < {N}", ""],
+    ["« 0 <= » I < N", FROM_ZERO, "{I} < {N}", ""],
+    ["« 0 < » I < N", FROM_ZERO, "", "write `for {I} < {N} - 1`, and `{I} + 1` for `{I}` in the values"],
+    ["« M <= » I < N", FROM_ZERO, "", UP_TO],
+    ["I « <= » N", "an index ends before its count, and is never equal to it", "{I} < {N+1}", ""],
+    ["I « in|=|:=|from range ( N ) »", NO_RANGE, "{I} < {N}", ""],
+    ["I « in|=|:=|from range ( 0 , N ) »", NO_RANGE, "{I} < {N}", ""],
+    ["I « in|=|:=|from range ( M , N ) »", NO_RANGE, "", UP_TO],
+    ["I « in|=|:=|from 0 ..=|...|to|: N »", NO_RANGE, "", EITHER],
+    ["I « in|=|:=|from 0 ..<|.. N »", NO_RANGE, "{I} < {N}", ""],
+    ["I « in|=|:=|from [|( 0 ..|to|:|, N ]|) »", NO_RANGE, "", EITHER],
+    ["I « in|=|:=|from M ..=|...|to|: N »", NO_RANGE, "", TO],
+    ["I « in|=|:=|from M ..<|..|until N »", NO_RANGE, "", UP_TO],
+    ["I « in|=|:=|from [|( M ..|to|:|, N ]|) »", NO_RANGE, "", TO],
+    ["« O I = 0 ; » I < N", FROM_ZERO, "{I} < {N}", ""],
+    ["« O I = 0 ; » I <= N", FROM_ZERO, "{I} < {N+1}", ""],
+    ["« O I = M ; » I < N", FROM_ZERO, "", UP_TO],
+    ["« O I = M ; » I <= N", FROM_ZERO, "", TO],
+    ["« W » I < N", "an index is a name alone", "{I} < {N}", ""],
+    ["I « in|==|=|:=|:|to|until » N", "`<` stands between an index and its count", "", "write `for {I} < {N}`"],
+    ["« I » $", "an index lacks its count", "", LACKS_COUNT],
+    ["« I » ,", "an index lacks its count", "", LACKS_COUNT],
+    ["« N » $", "an index lacks its name", "", "write `for i < {N}`, and use `i` in the values"],
+];
+
+const COMMA: &str = "a comma separates two indices";
+
+/// What follows an index.
+#[rustfmt::skip]
+const BEHIND: [Row; 9] = [
+    ["« , » $", "no comma stands behind the last index", "", ""],
+    [",", "", ", ", ""],
+    ["« ; I ++|+=1 »", "an index counts by 1 by itself", "", ""],
+    ["« ; ++ I »", "an index counts by 1 by itself", "", ""],
+    ["« ; I += 1 »", "an index counts by 1 by itself", "", ""],
+    ["« ;|and|&&|&|for|x|× »", COMMA, ", ", ""],
+    ["« step|by M »", "an index counts by 1", "", "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values"],
+    ["« :|do|then|=>|, » $", "nothing stands between a count and the `{`", "", ""],
+    ["« W » $", "the name of an object stands before the `for`", NAME_FIRST, ""],
+];
+
+/// Finds the first slip in a head that starts with `for`, or with what stands for it.
+pub(super) fn slip(head: &str, has_name: bool) -> Slip {
+    let mut found = Found::default();
+    let keyword = name_length(head);
+    let behind =
+        |text: &str, at: usize| text.len() - text.get(at..).unwrap_or_default().trim_start().len();
+    let (mut text, mut at, mut slip) = (head, keyword, None);
+    let open = behind(text, at);
+    let close = open + group_length(text.get(open..).unwrap_or_default());
+    let is_in_parentheses = close > open && behind(text, close) == text.len();
+    if is_in_parentheses {
+        (text, at) = (text.get(..close - 1).unwrap_or_default(), open + 1);
+    }
+    let (mut is_sure, mut is_index, mut name) = (true, true, "");
+    let mut right = String::from("for ");
+    while is_index || behind(text, at) < text.len() {
+        let mut find = |rows: &'static [Row]| {
+            rows.iter()
+                .find_map(|row| Some((row, found.read(row[0], text, at)?)))
+        };
+        let mut row = find(if is_index { &INDICES } else { &BEHIND });
+        if row.is_none() && !is_index && find(&INDICES[..1]).is_some() {
+            let start = behind(text, at);
+            row = Some((&["", COMMA, ", ", ""], (at, start..start + found.i.len())));
+        }
+        let Some(([_, said, written, help], (end, under))) = row else {
+            slip.get_or_insert((behind(text, at)..text.len(), "", String::new()));
+            is_sure = false;
+            break;
+        };
+        let mut help = found.filled(help);
+        match *written {
+            NAME_FIRST if has_name => help = found.filled("take `{W}` away"),
+            NAME_FIRST => name = found.w,
+            _ => right += &found.filled(written),
+        }
+        is_sure &= help.is_empty();
+        if !said.is_empty() {
+            slip.get_or_insert((under, said, help));
+        }
+        (at, is_index) = (end, *written == ", ");
+    }
+    if is_in_parentheses {
+        slip.get_or_insert((
+            open..open + 1,
+            "indices stand without parentheses",
+            String::new(),
+        ));
+    }
+    let (mut at, mut said, help) = slip.unwrap_or((0..head.len(), "", String::new()));
+    if head.get(..keyword) != Some("for") {
+        (at, said) = (0..keyword, "an object is repeated by `for`");
+    }
+    let right = is_sure.then(|| format!("{name} {right}").trim_start().to_owned());
+    Slip {
+        at,
+        said,
+        help,
+        right,
+    }
+}
+
+/// What was read of a head last.
+#[derive(Default)]
+struct Found<'t> {
+    i: &'t str,
+    n: &'t str,
+    m: &'t str,
+    w: &'t str,
+}
+
+impl<'t> Found<'t> {
+    /// Reads what a row says; answers where it ends, and where the slip is.
+    fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
+        let (mut at, mut under) = (from, from..from);
+        for item in row.split(' ') {
+            let rest = text.get(at..)?.trim_start();
+            let start = text.len() - rest.len();
+            let (slot, length) = match item {
+                "«" => {
+                    under.start = start;
+                    continue;
+                }
+                "»" => {
+                    under.end = at;
+                    continue;
+                }
+                "$" if rest.is_empty() => continue,
+                "$" => return None,
+                "O" => {
+                    let length = name_length(rest);
+                    let other = rest.get(length..)?.trim_start();
+                    at = if name_length(other) > 0 {
+                        start + length
+                    } else {
+                        start
+                    };
+                    continue;
+                }
+                "I" => (Some(&mut self.i), name_length(rest)),
+                "W" => (Some(&mut self.w), name_length(rest)),
+                "N" => (Some(&mut self.n), value_length(rest)),
+                "M" => (Some(&mut self.m), value_length(rest)),
+                _ => {
+                    let is_it = |word: &&str| {
+                        let behind = rest.strip_prefix(word);
+                        let is_word = word.ends_with(|c: char| c.is_alphanumeric());
+                        let goes_on = |it: &str| it.bytes().next().is_some_and(is_name_char);
+                        behind.is_some_and(|it| !is_word || !goes_on(it))
+                    };
+                    (None, item.split('|').find(is_it)?.len())
+                }
+            };
+            if length == 0 {
+                return None;
+            }
+            if let Some(slot) = slot {
+                *slot = rest.get(..length)?;
+            }
+            at = start + length;
+        }
+        Some((at, under))
+    }
+
+    /// A text with what was read in the places of its letters.
+    fn filled(&self, text: &str) -> String {
+        let [n, m] = [self.n, self.m].map(|text| text.parse::<u32>().ok());
+        let or = |number: Option<u32>, text: String| number.map_or(text, |it| it.to_string());
+        let both = n.zip(m);
+        let less = or(
+            both.and_then(|(n, m)| n.checked_sub(m)),
+            format!("{} - {}", self.n, self.m),
+        );
+        let plus = |text: &str| {
+            or(
+                text.parse::<u32>().ok().and_then(|n| n.checked_add(1)),
+                format!("{text} + 1"),
+            )
+        };
+        let of = both.filter(|(_, m)| *m > 0).map(|(n, m)| n.div_ceil(m));
+        text.replace("{I}", self.i)
+            .replace("{N}", self.n)
+            .replace("{M}", self.m)
+            .replace("{W}", self.w)
+            .replace("{N+1}", &plus(self.n))
+            .replace("{N-M}", &less)
+            .replace("{N-M+1}", &plus(&less))
+            .replace("{N/M}", &or(of, format!("{} / {}", self.n, self.m)))
+    }
+}
+
+/// How long the name is that a text starts with.
+fn name_length(text: &str) -> usize {
+    let is_name = !text.starts_with(|c: char| c.is_ascii_digit());
+    let length = text.bytes().take_while(|&byte| is_name_char(byte)).count();
+    if is_name { length } else { 0 }
+}
+
+/// How long what stands in parentheses is.
+fn group_length(text: &str) -> usize {
+    if !text.starts_with('(') {
+        return 0;
+    }
+    let mut depth = 0_usize;
+    for (at, sign) in text.bytes().enumerate() {
+        match sign {
+            b'(' => depth += 1,
+            b')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth == 0 {
+            return if sign == b')' { at + 1 } else { 0 };
+        }
+    }
+    0
+}
+
+/// How long the value is that a text starts with: operands with operators between them.
+fn value_length(text: &str) -> usize {
+    let mut end = 0;
+    loop {
+        let behind = text.get(end..).unwrap_or_default().trim_start();
+        let operand = match (end, behind.strip_prefix(['+', '-', '*', '/'])) {
+            (0, _) => behind,
+            (_, Some(operand)) => operand,
+            (_, None) => return end,
+        };
+        let operand = operand.trim_start();
+        let operand = operand.strip_prefix('-').unwrap_or(operand);
+        // `0..8` is no number with two points.
+        let number = numeric_part(operand);
+        let is_range = operand
+            .get(number.len()..)
+            .is_some_and(|rest| rest.starts_with('.'));
+        let number = if is_range {
+            number.trim_end_matches('.')
+        } else {
+            number
+        };
+        let name = name_length(operand);
+        let called = name + group_length(operand.get(name..).unwrap_or_default());
+        let is_value = |text: &str| !text.contains(['<', '=', ';']);
+        let called = if operand.get(name..called).is_some_and(is_value) {
+            called
+        } else {
+            name
+        };
+        let length = number.len().max(called);
+        if length == 0 {
+            return end;
+        }
+        end = text.len() - operand.len() + length;
+    }
+}
