@@ -92,13 +92,13 @@ impl Frames {
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
-        last: &mut HashMap<Uri, SceneVersion>,
+        last: &mut HashMap<Uri, Option<SceneVersion>>,
     ) -> Result<Option<Value>, Refusal> {
         let Some(frame) = self.0.first_mut() else {
             return Ok(None);
         };
-        let newest = scenes.get_mut(&frame.uri).and_then(Option::as_mut);
-        let mut versions = newest.into_iter().chain(last.get_mut(&frame.uri));
+        let versions = [scenes, last].map(|of| of.get_mut(&frame.uri)?.as_mut());
+        let mut versions = versions.into_iter().flatten();
         match versions.find(|version| version.number == frame.version) {
             Some(version) => frame.advance(version),
             None => Ok(Some(Value::Null)),

@@ -192,11 +192,15 @@ fn shown(params: &Value) -> Result<Shown, Refusal> {
 
 fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let mut overlays = viewport::overlays(&version.scene, &shown(params)?);
-    if overlays
-        .objects
-        .iter()
-        .any(|it| is_board(&version.scene.objects[it.object]))
-    {
+    let objects = &version.scene.objects;
+    let has_board = || {
+        overlays
+            .objects
+            .iter()
+            .any(|it| is_board(&objects[it.object]))
+    };
+    // The engine of a page has to be small.
+    if cfg!(not(target_family = "wasm")) && has_board() {
         let (scene, world) = version.world(1);
         viewport::hide(&mut overlays, scene, world);
     }

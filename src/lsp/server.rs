@@ -51,7 +51,7 @@ pub struct Server {
     /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
     /// Of each text that has changed, the last version without errors before that.
-    last: HashMap<Uri, SceneVersion>,
+    last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
@@ -164,7 +164,7 @@ impl Server {
             }
             let params = &request.params;
             let wants_last = about == "frame" && params.get("last") == Some(&Value::Bool(true));
-            let last = || self.last.get(&uri).filter(|_| wants_last);
+            let last = || self.last.get(&uri).filter(|_| wants_last)?.as_ref();
             let pictured = version.as_ref().or_else(last);
             match (pictured, about) {
                 (Some(version), "frame") => {
@@ -204,7 +204,7 @@ impl Server {
 
     /// Keeps the last version without errors of a text that has changed.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
-        let Some(Some(version)) = self.scenes.remove(uri) else {
+        let Some(version @ Some(_)) = self.scenes.remove(uri) else {
             // Frames that are made are of an earlier version, and go on.
             return Vec::new();
         };
