@@ -44,8 +44,8 @@ pub struct Slider<'a> {
 }
 
 /// The numbers and angles that definitions are, with their bounds: those of the line comment behind
-/// one, as `// [1:5]`, `// [1:0.1:5]` or `// [0deg:5deg:90deg]`, or else those of the fields that it
-/// stands in.
+/// one, as `// [1:5]`, `// [1:0.1:5]` or `// [0deg:5deg:90deg]`, or else those of the fields
+/// that it stands in.
 pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<Slider<'a>> {
     let slider = |definition: &'a Definition<'_>| {
         let (name, value) = (definition.name.as_ref()?, &definition.value);

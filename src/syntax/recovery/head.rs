@@ -20,8 +20,8 @@ pub(super) struct Slip {
 }
 
 /// What is read, what is different, what is written instead, and what to do where that is not
-/// certain. Of what is read, `I` and `W` are names, `O` is one if another follows it, `N` and `M` are
-/// values, `$` is the end, and the slip stands between `«` and `»`.
+/// certain. Of what is read, `I` and `W` are names, `O` is one if another follows it, `N` and `M`
+/// are values, `$` is the end, and the slip stands between `«` and `»`.
 type Row = [&'static str; 4];
 
 const FROM_ZERO: &str = "an index begins at 0 by itself";

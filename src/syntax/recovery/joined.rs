@@ -152,8 +152,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
     }
 
-    /// `sin30deg * i)`: the `)` in front of which reading stopped belongs to the only function since
-    /// an offset that is written together with its argument.
+    /// `sin30deg * i)`: the `)` in front of which reading stopped belongs to the only function
+    /// since an offset that is written together with its argument.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         if !TELLS_ALL {
             return false;

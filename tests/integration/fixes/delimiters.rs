@@ -1,5 +1,5 @@
-//! A brace or a parenthesis is missing: the first report is about it, and no fix takes away what the
-//! author wrote.
+//! A brace or a parenthesis is missing: the first report is about it, and no fix takes away what
+//! the author wrote.
 
 use std::{collections::BTreeSet, fs};
 
