@@ -204,14 +204,9 @@ impl<'s> Lowering<'s> {
     }
 
     fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
-        let (told, kind) = (self.problems.len(), block.row);
-        let is_free = ["color", "colors"]
-            .into_iter()
-            .filter(|name| *name != field.name.text)
-            .all(|other| kind.field(other).is_some() && block.given(other).is_none());
-        let rows = block.row.fields.iter().zip(&mut block.given);
-        let mut rows = rows.filter(|(row, _)| row.name == field.name.text);
-        let Some((row, slot)) = rows.next() else {
+        let told = self.problems.len();
+        let mut rows = block.row.fields.iter().enumerate();
+        let Some((at, row)) = rows.find(|(_, row)| row.name == field.name.text) else {
             return;
         };
         if matches!(field.value.kind, ValueKind::Missing) {
@@ -222,7 +217,16 @@ impl<'s> Lowering<'s> {
             span: field.value.span,
             value: self.typed(row, &field.value),
         };
-        self.other_colors(told, field, row.takes, is_free);
+        if TELLS_ALL && self.problems.len() > told {
+            let mut others = ["color", "colors"].into_iter();
+            let is_free = others
+                .find(|name| *name != row.name)
+                .is_some_and(|it| block.row.field(it).is_some() && block.given(it).is_none());
+            self.other_colors(told, field, row.takes, is_free);
+        }
+        let Some(slot) = block.given.get_mut(at) else {
+            return;
+        };
         if let Some(first) = slot {
             let message = format!("`{}` is given twice", row.name);
             let fields = [first.field(), given.field()];
@@ -239,9 +243,6 @@ impl<'s> Lowering<'s> {
     /// Colours of another number than a field takes, as in `color (red, green, blue)`: where the
     /// block has a free field for so many, it is that one.
     fn other_colors(&mut self, told: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
-        if !TELLS_ALL {
-            return;
-        }
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
             kind => matches!(kind, ValueKind::Name(_) | ValueKind::ColorCode(_)),

@@ -16,6 +16,9 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
+/// Number of bytes at the start of a file that tell whether it is a text.
+const BINARY_BYTES: usize = 1 << 14;
+
 /// Reads a scene: parses the file and the overrides, and makes of them what they mean.
 pub fn read(sources: &Sources) -> Reading {
     read_in_parts(sources, PART)
@@ -188,8 +191,9 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         return;
     }
     // No text has these; two may be slips.
-    let start = sources.file.text().bytes().take(1 << 14);
-    if TELLS_ALL && start.filter(|&byte| byte == 0).count() > 2 {
+    let mut start = sources.file.text().as_bytes();
+    start = start.get(..BINARY_BYTES).unwrap_or(start);
+    if TELLS_ALL && start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {
         diagnostics.clear();
         let first = Span::new(SourceId::File, 0, sources.file.floor_char_boundary(4));
         diagnostics.push(syntax::FOREIGN_FILE.at(first, &["a binary file", ""], None));

@@ -312,20 +312,8 @@ impl<'s> Lowering<'s> {
             let is_told = edits.any(|edit| !keeps(edit) && help.contains(&*edit.text));
             problem.fixes.retain(|fix| fix.edits.iter().all(keeps));
             if problem.fixes.len() < count && is_told {
-                let help = "its value differs by index: write a formula that does for all of them";
-                let first = problem
-                    .labels
-                    .first()
-                    .map(|label| self.sources.text(label.span));
-                problem.help = Some(match first {
-                    // The first index is 0.
-                    Some(written)
-                        if TELLS_ALL && problem.message.ends_with("more than 0, and it is 0") =>
-                    {
-                        format!("{help}, such as `{} + 1`", shorten(written))
-                    }
-                    _ => help.to_owned(),
-                });
+                let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
+                problem.help = Some(help.to_owned());
             }
             let place = problem.labels.first().map(|label| label.span);
             let depends =

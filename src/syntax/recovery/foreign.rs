@@ -16,6 +16,9 @@ use crate::{
     },
 };
 
+/// Maximum number of tokens from a comparison to the `?` of its condition.
+const CONDITION_TOKENS: usize = 24;
+
 /// What may stand in a place: what starts a comment differs.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
@@ -110,24 +113,28 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
+    /// Whether a `?` follows in what may be the same value.
+    fn has_question_mark(&mut self) -> bool {
+        for at in 0..CONDITION_TOKENS {
+            match self.word(at) {
+                "?" => return true,
+                "" | "{" | "}" | "let" => return false,
+                _ if at > 0 && self.is_on_new_line(at) => return false,
+                _ => {}
+            }
+        }
+        false
+    }
+
     /// `n > 1 ? a : b` from behind its first value on, and `if n > 1 then a`: passed over, up to
     /// where the value ends.
     pub(super) fn condition(&mut self) -> bool {
-        const FAR: usize = 24;
-        if !TELLS_ALL {
-            return false;
-        }
-        let is_comparison = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?")
-            || (self.is(0, "=") && self.is(1, "="));
-        let is_end = |this: &mut Self, at: usize| {
-            matches!(this.word(at), "" | "{" | "}" | "let") || (at > 0 && this.is_on_new_line(at))
-        };
-        let before = (0..FAR)
-            .take_while(|at| !is_end(self, *at))
-            .collect::<Vec<_>>();
         let is_one = match self.word(0) {
+            _ if !TELLS_ALL => false,
             "if" => !self.words.is_let("if"),
-            _ => is_comparison && before.into_iter().any(|at| self.is(at, "?")),
+            ">" | "<" | "!" | "&" | "|" | "?" => self.has_question_mark(),
+            "=" => self.is(1, "=") && self.has_question_mark(),
+            _ => false,
         };
         if !is_one {
             return false;

@@ -21,6 +21,10 @@ const OTHER_LETS: &str =
 /// As far as this a line is searched for what tells what it is.
 const FAR: usize = 24;
 
+/// Maximum number of items before a line that are searched for another value of the same name: of
+/// long texts each line would be compared with all.
+const ITEMS_BEFORE: usize = 64;
+
 impl<'s> Recovery<'_, 's> {
     /// Reads one item, or what stands in the place of one.
     pub(super) fn any_item(&mut self) {
@@ -374,8 +378,8 @@ impl<'s> Recovery<'_, 's> {
             Item::Definition(it) => it.name.is_some_and(|it| it.text == word),
             _ => false,
         };
-        const NEAR: usize = 64;
-        let is_again = TELLS_ALL && self.items.iter().rev().take(NEAR).any(is_defined);
+        let mut before = self.items.iter().rev().take(ITEMS_BEFORE);
+        let is_again = TELLS_ALL && before.any(is_defined);
         if is_plain && (self.words.is_let(word) || is_used || is_again) {
             let what = "assignments: a name keeps its value";
             let help = "give the new value a name of its own with `let NAME = VALUE`";

@@ -161,10 +161,12 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        match !self.is(0, "if") && !self.is_on_new_line(0) && self.condition() {
-            true => bad(left.span.to(self.behind())),
-            false => left,
+        // An `if` is read in the place of an operand.
+        let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
+        if compares && !self.is_on_new_line(0) && self.condition() {
+            return bad(left.span.to(self.behind()));
         }
+        left
     }
 
     /// Goes on with a value as long as these operators follow.
