@@ -70,8 +70,8 @@ pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
         .collect()
 }
 
-/// How far a number changes for one by which another changes that moves with it: as much, as `v0`
-/// and `v1`, or half as much, to either side, as the center of a box for its size.
+/// Ratios between the amounts of numbers that change together: `v0` and `v1` change by the same
+/// amount, the center of a box by half of that of its size, to either side.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
 /// Relative deviation of two amounts that are the same but for rounding.
@@ -82,7 +82,7 @@ const SAME: f64 = 1e-6;
 pub struct Rounding {
     /// Number of decimals, which may be less than 0.
     decimals: i32,
-    /// Amounts that are rounded already: what has changed by one has all digits of the sum.
+    /// Sizes of amounts that are rounded already: a sum with one of them keeps all of its digits.
     exact: Vec<f64>,
 }
 
@@ -122,7 +122,8 @@ fn along(change: &mut Change, axis: usize) -> Option<&mut f64> {
 }
 
 impl Rounding {
-    /// A number that has changed by an amount; the number itself where the amount is no decimal.
+    /// Returns the rounded sum of a number and an amount: the number itself if the amount is rounded
+    /// to 0.
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {

@@ -1,7 +1,5 @@
 //! What can be drawn over a picture: horizon, vanishing points with the lines that lead there, and the objects' outlines and handles.
 
-use std::{iter, mem};
-
 use glam::{DVec2, DVec3};
 
 use super::{
@@ -162,26 +160,24 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
             let parts = (first.distance(last) / LOOK).ceil().clamp(1.0, MOST_LOOKS);
             left -= parts;
             let places = (1..parts as u32).map(|part| first.lerp(last, f64::from(part) / parts));
-            let ends = iter::once(first).chain(places).chain([last, to]);
-            let mut begin = from;
-            for end in ends.filter(|end| *end != from) {
-                let is_straight = begin != from;
-                let piece = [mem::replace(&mut begin, end), end];
-                if piece[0] == end || !is_seen(index, piece[0].midpoint(end)) {
+            let mut ends = vec![from, first];
+            ends.extend(places.chain([last, to]));
+            ends.dedup();
+            for (part, piece) in ends.windows(2).enumerate() {
+                let [begin, end] = [piece[0], piece[1]];
+                if !is_seen(index, begin.midpoint(end)) {
                     continue;
                 }
-                let joined = lines
-                    .last_mut()
-                    .filter(|line| line.last() == Some(&piece[0]));
+                let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
                         // Of a straight line only the ends are kept.
-                        if is_straight {
+                        if part > 0 {
                             line.pop();
                         }
                         line.push(end);
                     }
-                    None => lines.push(piece.to_vec()),
+                    None => lines.push(vec![begin, end]),
                 }
             }
         }

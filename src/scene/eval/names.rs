@@ -96,6 +96,11 @@ impl<'s> Names<'s> {
         }
     }
 
+    /// What a number's formula tells of the unit that it lacks.
+    pub fn origin(&self, value: &tree::Value<'_>) -> Origin {
+        Origin::of(value, &|name| Some(self.defined.get(name)?.origin))
+    }
+
     /// Gives an index a value, within its block; none while it is not known yet.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {

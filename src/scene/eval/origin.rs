@@ -3,7 +3,6 @@
 //! In: a value's tree, and the origins of the `let`s that it uses. Out: the unit that was meant, as
 //! far as its formula tells.
 
-use super::names::Names;
 use crate::{
     schema::predefined,
     syntax::tree::{self, Operator, Unit, ValueKind},
@@ -25,20 +24,20 @@ use Origin::{In, Plain, Unclear};
 /// The first digits of pi, of multiples of it, and of pi / 180, as people write them out.
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
-impl Names<'_> {
-    /// What a number's formula tells of its unit.
-    pub(super) fn origin(&self, value: &tree::Value<'_>) -> Origin {
+impl Origin {
+    /// What a number's formula tells of its unit, with the origins of the names that it uses.
+    pub fn of(value: &tree::Value<'_>, known: &impl Fn(&str) -> Option<Self>) -> Self {
         let all = || {
             let parts = value.parts().into_iter();
-            parts.fold(Plain, |sum, part| sum.plus(self.origin(part)))
+            parts.fold(Plain, |sum, part| sum.plus(Self::of(part, known)))
         };
         match &value.kind {
             ValueKind::Number(text) if LIKE_PI.iter().any(|digits| text.starts_with(digits)) => {
                 In(Unit::Radians)
             }
             ValueKind::Name("pi") => In(Unit::Radians),
-            ValueKind::Name(name) => match self.defined.get(name) {
-                Some(defined) => defined.origin,
+            ValueKind::Name(name) => match known(name) {
+                Some(origin) => origin,
                 None if predefined(name).is_some() => Plain,
                 None => Unclear,
             },
@@ -50,9 +49,9 @@ impl Names<'_> {
             ValueKind::Chain { first, rest }
                 if rest.iter().all(|it| it.operator.is_of_product()) =>
             {
-                let first = (self.origin(first), is_half_turn(first));
+                let first = (Self::of(first, known), is_half_turn(first));
                 let product = rest.iter().fold(first, |(left, by_turn), step| {
-                    let (operand, right) = (&step.operand, self.origin(&step.operand));
+                    let (operand, right) = (&step.operand, Self::of(&step.operand, known));
                     let unit = match &operand.kind {
                         ValueKind::Angle { unit, .. } => Some(*unit),
                         ValueKind::Name("deg") => Some(Unit::Degrees),
@@ -79,9 +78,7 @@ impl Names<'_> {
             _ => all(),
         }
     }
-}
 
-impl Origin {
     /// That of a sum.
     fn plus(self, other: Self) -> Self {
         match (self, other) {

@@ -59,6 +59,41 @@ test("where the hand lets go is where the handle comes, however late the host an
   }
 });
 
+test("drags wait for those before them, and Escape takes back the one that waits", async t => {
+  const late = {};
+  const page = await open(await launch(t), await host(t), { late });
+  await page.selectOption("#objects", { label: "Ball (sphere)" });
+  await rested(page);
+  await dragged(page, DRAGS.handle);
+  await rested(page);
+  await dragged(page, DRAGS.camera);
+  await rested(page);
+  const both = await text(page);
+  for (let i = 0; i < 2; i++) await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), FIGURE);
+  late["pinhole/drag"] = LATE;
+  // One is let go, the next one is given up, and a third one follows.
+  await dragged(page, DRAGS.handle);
+  const given = await onPage(page, BALL);
+  await hand(page, given, [50, 20], { hold: true });
+  await page.keyboard.press("Escape");
+  await page.mouse.up();
+  await dragged(page, DRAGS.camera);
+  const begin = Date.now();
+  while ((await text(page)) !== both && Date.now() - begin < 3 * BEHIND) await page.waitForTimeout(20);
+  assert.equal(await text(page), both);
+  await page.waitForFunction(() => document.querySelector("#drag-note").hidden);
+  for (let i = 0; i < 2; i++) await page.click("#undo");
+  assert.equal(await text(page), FIGURE);
+  late["pinhole/drag"] = LATE;
+  await page.evaluate(() => document.querySelector("input[name=tool][value=move]").click());
+  await hand(page, await handle(page, "Ball: center"), [70, 30]);
+  await page.keyboard.press("Escape");
+  await page.waitForTimeout(BEHIND);
+  assert.equal(await text(page), FIGURE);
+});
+
 test("the last good picture of a text with errors is finished, too", async t => {
   const scene = FIGURE.replace(/per_pixel\s+\d+/, "per_pixel 800");
   assert.notEqual(scene, FIGURE);

@@ -333,4 +333,31 @@ fn what_is_not_held_stays() {
         }
         assert!(shapes[0] != shapes[5]);
     }
+
+    // What the camera looks along stays when it is panned.
+    let text =
+        "sphere { center (0, 0, 0) } camera { eye (3, 3.55, 8) lookat (0.2, 0.8, 0.125) d 2.75 }";
+    let ahead = |text: &str| {
+        let camera = read(text).camera;
+        match camera.view {
+            View::Lookat(point) => (camera.eye, point - camera.eye),
+            View::Direction(_) => panic!("it looks at a point"),
+        }
+    };
+    let mut panned = text.to_owned();
+    for to in [dvec2(310.0, 170.0), dvec2(500.5, 33.25), dvec2(77.0, 401.0)] {
+        let from = dvec2(300.0, 200.0);
+        let moved = Drag {
+            object: None,
+            handle: "pan",
+            from,
+            to,
+            along: None,
+            step: None,
+        };
+        panned = dragged(&panned, &moved).expect("it is panned");
+    }
+    let [(eye, before), (panned_eye, after)] = [text, &panned].map(ahead);
+    assert!(before.distance(after) < 1e-12, "{panned}");
+    assert!(eye.distance(panned_eye) > 0.1);
 }

@@ -51,15 +51,18 @@ fn overlays_are_not_more_than_a_page_can_show() {
 /// A board's square is drawn where it is seen, and not across what stands in front of it.
 #[test]
 fn outlines_of_boards_are_not_drawn_over_other_objects() {
-    let view = "camera { eye (0, 1, 5) lookat (0, 0, 0) } checkerboard { square 2 }";
-    // What stands there; how many lines are left of the square.
-    for (before, count) in [
-        ("", 1),
-        ("sphere { center (0, -5, 0) radius 1 }", 1),
-        ("sphere { center (1, 0.3, 0) radius 0.6 }", 2),
-        ("sphere { center (0.5, 0.5, 3) radius 1 }", 0),
+    let camera = "camera { eye (0, 1, 5) lookat (0, 0, 0) }";
+    // How large a square is, and what stands there; how many lines are left of the square.
+    for (square, before, count) in [
+        (2, "", 1),
+        (2, "sphere { center (0, -5, 0) radius 1 }", 1),
+        (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
+        (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
+        // Whoever stands on a square has sides of it far outside of the picture.
+        (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
-        let mut talk = Talk::with(&format!("{view} {before}"));
+        let board = format!("{camera} checkerboard {{ square {square} }}");
+        let mut talk = Talk::with(&format!("{board} {before}"));
         let overlays = talk.ask("pinhole/overlays", json!({ "only": [0] }));
         let lines: Vec<Vec<[f64; 2]>> =
             serde_json::from_value(overlays["objects"][0]["outline"].clone()).expect("lines");
