@@ -21,10 +21,6 @@ use serde_json::{Value, json};
 
 use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
 
-/// Whether all is told of rarer mistakes: the page's engine, which has to be small, tells the least
-/// of them.
-pub const TELLS_ALL: bool = cfg!(not(target_family = "wasm"));
-
 /// Whether a problem keeps the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Severity {

@@ -1,6 +1,6 @@
 //! Messages as JSON.
 
-use lsp_server::{ErrorCode, Message};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -48,20 +48,48 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     // A response is never answered.
     let is_response = !has("method") && (has("result") || has("error"));
     let id = identifier(value.get("id").cloned());
-    // What has an identifier and nothing else would pass for a response, and a request with an odd one for a notification; the
-    // protocol's whole numbers have 32 bits.
-    let is_whole = |id: &Value| id.as_i64().is_some_and(|id| i32::try_from(id).is_ok());
-    let is_odd = |id: &Value| !id.is_string() && !is_whole(id);
-    let is_call =
-        value.get("method").is_some_and(Value::is_string) && !value.get("id").is_some_and(is_odd);
-    match serde_json::from_value(value) {
-        Ok(message) if is_call || is_response => Ok(message),
-        _ if is_response => Err(Malformed::Unanswered("a response to nothing".to_owned())),
-        _ => {
+    match message(value) {
+        Some(message) => Ok(message),
+        None if is_response => Err(Malformed::Unanswered("a response to nothing".to_owned())),
+        None => {
             let message = "this is neither a request nor a notification".to_owned();
             malformed(id, ErrorCode::InvalidRequest, message)
         }
     }
+}
+
+/// The message that a value is, if it is one. lsp-server would copy each text in it, and take a request with an odd identifier
+/// for a notification.
+fn message(mut value: Value) -> Option<Message> {
+    let mut take = |name: &str| value.get_mut(name).map(Value::take);
+    let id = match take("id") {
+        None => None,
+        Some(Value::String(id)) => Some(RequestId::from(id)),
+        // The protocol's whole numbers have 32 bits.
+        Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
+    };
+    let method = match take("method") {
+        None => None,
+        Some(Value::String(method)) => Some(method),
+        Some(_) => return None,
+    };
+    let params = take("params").unwrap_or_default();
+    Some(match (id, method) {
+        (Some(id), Some(method)) => Message::from(Request { id, method, params }),
+        (None, Some(method)) => Notification { method, params }.into(),
+        (Some(id), None) => {
+            let response_result = match take("error") {
+                Some(error) => Err(serde_json::from_value(error).ok()?),
+                None => Ok(take("result")?),
+            };
+            let response = Response {
+                id,
+                response_result,
+            };
+            response.into()
+        }
+        (None, None) => return None,
+    })
 }
 
 /// Returns how many values a text in JSON may have: each but the first follows one of these signs.

@@ -193,14 +193,11 @@ fn shown(params: &Value) -> Result<Shown, Refusal> {
 fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
     let mut overlays = viewport::overlays(&version.scene, &shown(params)?);
     let objects = &version.scene.objects;
-    let has_board = || {
-        overlays
-            .objects
-            .iter()
-            .any(|it| is_board(&objects[it.object]))
-    };
-    // The engine of a page has to be small.
-    if cfg!(not(target_family = "wasm")) && has_board() {
+    let has_board = overlays
+        .objects
+        .iter()
+        .any(|it| is_board(&objects[it.object]));
+    if has_board {
         let (scene, world) = version.world(1);
         viewport::hide(&mut overlays, scene, world);
     }

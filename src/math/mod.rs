@@ -22,5 +22,5 @@ pub use double::{Double, two_product, two_sum};
 pub use dyadic::{Dyadic, Dyadic3};
 pub use radius::{Radius, Wide};
 pub use real::{ROUND, Real, floor};
-pub use simd_width::SimdWidth;
+pub use simd_width::{HAS_WIDER, SimdWidth};
 pub use sine::sin_cos;

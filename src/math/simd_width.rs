@@ -14,3 +14,7 @@ pub enum SimdWidth {
     /// Those that every processor of its kind has, which are quicker where there are few numbers.
     Baseline,
 }
+
+/// Whether loops are compiled for wider vectors, too. Elsewhere a second copy of them would only make
+/// the program larger.
+pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

@@ -45,7 +45,7 @@ use self::{
 pub use self::{points::Points, rng::CounterRng};
 use crate::{
     area::Area,
-    math::SimdWidth,
+    math::{HAS_WIDER, SimdWidth},
     scene::{Count, Method, Sampler},
 };
 
@@ -171,8 +171,8 @@ impl Sampling {
         let pattern = &self.patterns[usize::from(count != self.count)];
         let out = out.room(range.clone().count());
         match vectors {
-            SimdWidth::Widest => place_simd(pattern, key, range, out),
-            SimdWidth::Baseline => pattern.place(key, range, out),
+            SimdWidth::Widest if HAS_WIDER => place_simd(pattern, key, range, out),
+            _ => pattern.place(key, range, out),
         }
     }
 }

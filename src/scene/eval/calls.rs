@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::{Applicability, TELLS_ALL},
+    diagnostic::Applicability,
     numbers,
     scene::{
         error::{error, warning},
@@ -104,7 +104,7 @@ impl<'s> Evaluator<'_, 's> {
         }
         let (label, help) = match near {
             _ if is_value => {
-                let left = self.meaning(name).filter(|_| TELLS_ALL);
+                let left = self.meaning(name);
                 let left = left.map(|value| value.kind());
                 let right = match arguments {
                     [only] => *only,
@@ -115,10 +115,9 @@ impl<'s> Evaluator<'_, 's> {
                     Some(sign) => {
                         format!("write an operator between, such as `{name} {sign} (…)`")
                     }
-                    None if TELLS_ALL => {
+                    None => {
                         format!("take `{name}` away, or what stands behind it")
                     }
-                    None => "write an operator between".to_owned(),
                 };
                 ("a value, not a function", help)
             }
@@ -159,7 +158,7 @@ impl<'s> Evaluator<'_, 's> {
             error("argument_count", message)
                 .at(span, format!("{found} given"))
                 .help(match arguments {
-                    [only] if TELLS_ALL && row.more => format!(
+                    [only] if row.more => format!(
                         "write `{}` alone, or give `{}` another number",
                         shorten(&text(only)),
                         row.name

@@ -3,7 +3,7 @@
 use super::{names::Names, origin::Origin};
 use crate::{
     color::Color,
-    diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems, TELLS_ALL},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems},
     scene::error::{error, warning},
     schema::{self, Type, Value},
     source::{Source, SourceId, Sources, Span},
@@ -171,9 +171,6 @@ impl<'s> Evaluator<'_, 's> {
     /// The first name in a value that an argument gives another value, and that: what is wrong with
     /// it is not the file's.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
-        if !TELLS_ALL {
-            return None;
-        }
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
         };

@@ -6,7 +6,7 @@ use super::{
     suggestion::{Meaning, Suggestion},
 };
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Edit, Label, MOST_PROBLEMS, TELLS_ALL},
+    diagnostic::{Applicability, Diagnostic, Edit, Label, MOST_PROBLEMS},
     scene::error::error,
     schema::{self, Predefined, Type, Value, css, predefined},
     source::{SourceId, Span},
@@ -236,7 +236,7 @@ impl<'s> Evaluator<'_, 's> {
 /// What to do about a name if no other one was meant.
 fn no_other(name: &str, is_color: bool) -> String {
     match is_color {
-        true if TELLS_ALL && name.contains(' ') => {
+        true if name.contains(' ') => {
             format!(
                 "write one of them, or `({})` to take turns in a `for`",
                 name.replace(' ', ", ")

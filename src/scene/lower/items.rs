@@ -6,7 +6,7 @@ use super::{
     lowering::{Lowering, mentions},
 };
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Edit, Fix, TELLS_ALL},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix},
     scene::error::{error, twice},
     schema::{self, Kind, Type, predefined},
     source::{Span, sort_by_span},
@@ -94,7 +94,7 @@ impl<'s> Lowering<'s> {
             let message = format!("there are two `{}` blocks", row.name);
             twice("duplicate_block", message, [first.keyword, block.keyword()])
                 .help(match row.kind {
-                    Kind::Camera if TELLS_ALL => "keep one; `--set camera.eye='(4, 2, 8)'` shows the scene from elsewhere, and `pinhole sheet --sweep` from many places",
+                    Kind::Camera => "keep one; `--set camera.eye='(4, 2, 8)'` shows the scene from elsewhere, and `pinhole sheet --sweep` from many places",
                     _ => "keep one, with the fields of both",
                 })
                 .fixes(fixes::one_of_two(
@@ -217,7 +217,7 @@ impl<'s> Lowering<'s> {
             span: field.value.span,
             value: self.typed(row, &field.value),
         };
-        if TELLS_ALL && self.problems.len() > told {
+        if self.problems.len() > told {
             let mut others = ["color", "colors"].into_iter();
             let is_free = others
                 .find(|name| *name != row.name)

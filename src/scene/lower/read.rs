@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::lowering::Lowering;
 use crate::{
     cancel::{self, Cancelled},
-    diagnostic::{self, Diagnostic, TELLS_ALL},
+    diagnostic::{self, Diagnostic},
     scene::{
         eval::Names,
         model::Reading,
@@ -154,7 +154,7 @@ impl<'s> Lowering<'s> {
         fixes.for_each(|fix| fix.mind(self.sources));
         // An argument that is used in several places is wrong once.
         let mut in_sets: Vec<Span> = Vec::new();
-        let is_told = |it: &Diagnostic| TELLS_ALL && it.is("bare_angle");
+        let is_told = |it: &Diagnostic| it.is("bare_angle");
         diagnostics.retain(|it| match it.labels.first().map(|label| label.span) {
             Some(span) if span.source != SourceId::File && is_told(it) => {
                 let is_new = !in_sets.contains(&span);
@@ -193,7 +193,7 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     // No text has these; two may be slips.
     let mut start = sources.file.text().as_bytes();
     start = start.get(..BINARY_BYTES).unwrap_or(start);
-    if TELLS_ALL && start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {
+    if start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {
         diagnostics.clear();
         let first = Span::new(SourceId::File, 0, sources.file.floor_char_boundary(4));
         diagnostics.push(syntax::FOREIGN_FILE.at(first, &["a binary file", ""], None));

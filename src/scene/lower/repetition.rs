@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::lowering::Lowering;
 use crate::{
-    diagnostic::{Edit, Fix, Label, TELLS_ALL},
+    diagnostic::{Edit, Fix, Label},
     numbers,
     scene::error::{error, twice, warning},
     schema::{self, Type, Value, predefined},
@@ -130,7 +130,7 @@ impl<'s> Lowering<'s> {
                 self.names.set_index(index.name, None);
             }
             self.unbuilt(row, block);
-            if TELLS_ALL && self.problems.len() == told {
+            if self.problems.len() == told {
                 let span = repetition.span();
                 let written = shorten(self.sources.text(span));
                 let message = format!("`{written}` makes no objects");
@@ -249,7 +249,6 @@ impl<'s> Lowering<'s> {
         let problem = error("bad_count", message).at(tree.span, "how many there are");
         let written = shorten(self.sources.text(tree.span));
         let help = match value {
-            _ if !TELLS_ALL => format!("write a whole number, such as `{name} < 8`"),
             Value::Number(number) if number < 0.0 => {
                 format!("write `{name} < max(0, {written})`, if there is none then")
             }

@@ -2,7 +2,7 @@
 
 use super::{Recovery, foreign::Place, is_name, unquoted};
 use crate::{
-    diagnostic::{Edit, Fix, TELLS_ALL},
+    diagnostic::{Edit, Fix},
     schema,
     source::Span,
     suggest,
@@ -135,7 +135,7 @@ impl<'s> Recovery<'_, 's> {
             let written = self.short(span);
             let letters = written.trim_start_matches(|c: char| c.is_ascii_digit());
             let digits = written.len() - letters.len();
-            let help = match TELLS_ALL && is_name(letters) && digits > 0 {
+            let help = match is_name(letters) && digits > 0 {
                 true => format!(
                     ", as in `{letters}{}`",
                     written.get(..digits).unwrap_or_default()
@@ -379,7 +379,7 @@ impl<'s> Recovery<'_, 's> {
             _ => false,
         };
         let mut before = self.items.iter().rev().take(ITEMS_BEFORE);
-        let is_again = TELLS_ALL && before.any(is_defined);
+        let is_again = before.any(is_defined);
         if is_plain && (self.words.is_let(word) || is_used || is_again) {
             let what = "assignments: a name keeps its value";
             let help = "give the new value a name of its own with `let NAME = VALUE`";

@@ -4,7 +4,7 @@
 use super::{Recovery, example, is_plain_number};
 use crate::{
     color::are_shares,
-    diagnostic::{Edit, Fix, TELLS_ALL},
+    diagnostic::{Edit, Fix},
     schema::{self, Type},
     source::Span,
     syntax::{
@@ -74,13 +74,11 @@ impl<'s> Recovery<'_, 's> {
                 self.missing_parentheses(span, Some(replace(span, right)));
             }
             (Some(Type::Colors | Type::FaceColors), _)
-                if TELLS_ALL && values.iter().all(|it| self.is_color(it)) =>
+                if values.iter().all(|it| self.is_color(it)) =>
             {
                 self.missing_parentheses(span, None);
             }
-            (Some(Type::Color), _)
-                if TELLS_ALL && commas > 0 && values.iter().all(|it| self.is_color(it)) =>
-            {
+            (Some(Type::Color), _) if commas > 0 && values.iter().all(|it| self.is_color(it)) => {
                 let help = match (values.len(), self.is_field_name("colors")) {
                     (3, true) => format!("write `colors {right}`"),
                     _ => format!("write one colour, or `{right}` to take turns in a `for`"),
@@ -88,7 +86,7 @@ impl<'s> Recovery<'_, 's> {
                 self.report(&say::MISSING_PARENTHESES, span, &[&help], None);
             }
             (Some(Type::Vector), 2)
-                if TELLS_ALL && commas == 0 && !values.iter().any(|it| self.is_number(it)) =>
+                if commas == 0 && !values.iter().any(|it| self.is_number(it)) =>
             {
                 self.missing_between(&first, &second);
             }
@@ -155,9 +153,6 @@ impl<'s> Recovery<'_, 's> {
     /// `sin30deg * i)`: the `)` in front of which reading stopped belongs to the only function
     /// since an offset that is written together with its argument.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
-        if !TELLS_ALL {
-            return false;
-        }
         let end = self.here().start;
         // Of a longer value with many parentheses too many, each would be read to its end.
         const LONGEST: usize = 1000;

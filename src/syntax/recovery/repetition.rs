@@ -2,7 +2,7 @@
 
 use super::{Recovery, head, is_name};
 use crate::{
-    diagnostic::{Edit, Fix, TELLS_ALL},
+    diagnostic::{Edit, Fix},
     source::Span,
     syntax::{
         messages as say,
@@ -76,9 +76,6 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn bad_repetition(&mut self, span: Span, has_name: bool) {
-        if !TELLS_ALL {
-            return self.told(span, "", "", None, false);
-        }
         let written = self.written(span);
         let slip = head::slip(written, has_name);
         let fix = slip.right.map(|right| replace(span, right));
@@ -114,13 +111,6 @@ impl<'s> Recovery<'_, 's> {
     /// Answers whether it was one of them.
     pub(super) fn counted_name(&mut self, kind: &str, rest: Span) -> bool {
         let written = self.written(rest);
-        if !TELLS_ALL {
-            let is_one = written.contains(['[', '<']);
-            if is_one {
-                self.told(rest, "", "", None, false);
-            }
-            return is_one;
-        }
         let id = self.id;
         let part = |from, to| Span::new(id, rest.start + from, rest.start + to);
         if let Some(open) = written.find('[') {

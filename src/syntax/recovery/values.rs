@@ -8,7 +8,7 @@ use super::{
     unquoted,
 };
 use crate::{
-    diagnostic::{Edit, Fix, TELLS_ALL},
+    diagnostic::{Edit, Fix},
     schema::{self, Type},
     source::Span,
     syntax::{
@@ -69,7 +69,7 @@ impl<'s> Recovery<'_, 's> {
                 ValueKind::Negation { .. } if is_positive => false,
                 _ => self.is_number(value),
             });
-            let fix = (TELLS_ALL && is_list && is_sure && sign == ")").then(|| {
+            let fix = (is_list && is_sure && sign == ")").then(|| {
                 let title = format!("write `({})`", self.list_of(&values));
                 Fix::new(title, [Edit::insert(self.id, start.start, "(")])
             });

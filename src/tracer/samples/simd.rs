@@ -13,7 +13,7 @@ use super::{
     },
     pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, PixelSurface, PreparedPixel},
 };
-use crate::math::{ROUND, SimdWidth, UP};
+use crate::math::{HAS_WIDER, ROUND, SimdWidth, UP};
 
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -30,8 +30,8 @@ impl PreparedPixel {
     /// What the first `count` samples of a chunk see, and how often each colour is seen.
     pub(super) fn chunk(&mut self, points: At, count: usize, vectors: SimdWidth) {
         match vectors {
-            SimdWidth::Widest => see_simd(self, points, count),
-            SimdWidth::Baseline => self.see(points, count),
+            SimdWidth::Widest if HAS_WIDER => see_simd(self, points, count),
+            _ => self.see(points, count),
         }
     }
 
