@@ -65,7 +65,9 @@ fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "make room, or download the scene"
         }
-        io::ErrorKind::AlreadyExists => "choose another name",
+        io::ErrorKind::AlreadyExists => {
+            "choose another name, or start Studio with that file to change it"
+        }
         _ => "try again, or download the scene",
     };
     NotSaved::Refused(format!("{name} is not saved: {error}; {advice}"))
@@ -196,7 +198,11 @@ impl SceneFile {
                     (name.to_owned(), path)
                 });
                 let path = path.as_path();
-                let unread = |why| NotSaved::Refused(format!("{own} cannot be read: {why}"));
+                let unread = |why| {
+                    NotSaved::Refused(format!(
+                        "{own} is not saved, as it cannot be read: {why}; save under another name"
+                    ))
+                };
                 let original = match Original::read(path, self.read) {
                     Ok(original) => original,
                     Err(error) if error.kind() == io::ErrorKind::NotFound => Original::missing(),
@@ -258,12 +264,16 @@ fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
 
 /// A name for a new file in a folder, and no path that leads elsewhere, on any system.
 fn check_name(name: &str) -> Result<(), &'static str> {
-    let is_elsewhere = |letter: char| matches!(letter, '/' | '\\' | ':') || letter.is_control();
+    let is_odd = |letter: char| ":*?\"<>|".contains(letter) || letter.is_control();
     let stem = name.strip_suffix(".scn");
     match stem {
         None | Some("") => Err("the name of a scene's file ends in .scn"),
-        Some(_) if name.contains(is_elsewhere) || name.starts_with('.') => {
+        Some(_) if name.contains(['/', '\\']) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
+        }
+        // Files on Windows cannot have them, and a colon there leads to another drive.
+        Some(_) if name.contains(is_odd) => {
+            Err("the name of a file has none of `: * ? \" < > |`, and no control character")
         }
         // Windows has devices of these names, whatever follows behind a dot.
         Some(stem) if is_device(stem.split('.').next().unwrap_or_default()) => {
@@ -362,6 +372,8 @@ mod tests {
             "..\\a.scn",
             "b/a.scn",
             "c:a.scn",
+            "a?.scn",
+            "a<b>|.scn",
             "a\0.scn",
             "a\n.scn",
             ".a.scn",

@@ -1,6 +1,5 @@
-// The connection to the engine: a web socket to the served host, or a web worker, carrying one
-// JSON-RPC message a text, of the editor's language client and of the page itself. A lost one is
-// opened anew after growing pauses, unless the host will not have this page any more.
+// The connection to the engine: a web socket to the host, or a web worker, with a JSON-RPC message
+// a text. A lost one is opened anew after growing pauses, unless the host refuses this page.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
@@ -10,9 +9,8 @@ import { Refusal } from "./protocol";
 /** Something that carries texts. */
 interface Wire { send(text: string): void }
 
-/** Why there is no connection. `lost` is for a moment, or for good; `ended` is the host's own
- *  word; `failed` is a worker: these are tried again. The others say why there will be none before
- *  an address is opened that the host has printed. */
+/** Why there is no connection. After `lost`, `ended` (the host's own word) and `failed` (a worker)
+ *  it is tried again; after the others not before an address of the host is opened. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
@@ -103,8 +101,7 @@ class Connection implements Transport {
   subscribe(handler: (text: string) => void): void { this.handle = handler; }
   unsubscribe(): void { this.handle = () => {}; }
 
-  /** Asks the server. Rejects with a `Refusal`, or another error if the connection is lost, or
-   *  what was asked is not wanted any more. */
+  /** Asks the server. Rejects with a `Refusal`, or otherwise if it is lost, or not wanted more. */
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
     // Without a server nobody is ever ready.
     if (this.wire === null) throw new Error(NO_CONNECTION);

@@ -40,8 +40,7 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Hears of a pointer that was pressed until it is let go, or given up: by Escape, or by the
- *  function that this returns. */
+/** Hears of a pointer until it is let go, or given up: by Escape, or by what this returns. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
   end: () => void, cancel: () => void): () => void {
   const following = new AbortController();

@@ -27,6 +27,8 @@ let id = freshId();
 let isKept = false;
 /** What is to be kept under which key, or forgotten for null, as soon as that can be done. */
 const due = new Map<string, Draft | null>();
+/** What was restored last: it is kept until it is saved, so that Undo does not lose it. */
+let restored: Draft | null = null;
 /** What is offered and not answered yet, the newest first. */
 let offers: Draft[] = [];
 const bar = byId("draft-bar");
@@ -46,8 +48,11 @@ async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;
   const { isUnsaved, textToSave } = files;
-  if (isUnsaved || isKept) due.set(id, isUnsaved ? newDraft() : null);
-  isKept = isUnsaved;
+  if (saved !== undefined && restored !== null) due.set(restored.id, null);
+  if (saved !== undefined) restored = null;
+  const isNew = isUnsaved && textToSave !== restored?.text;
+  if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
+  isKept = isNew;
   // What is shown before there is a scene is still a draft.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
@@ -96,13 +101,15 @@ function show(): void {
 }
 
 function answer(draft: Draft, isRestored: boolean): void {
+  if (isRestored) leave();
+  forget(draft);
   if (isRestored) {
-    leave();
+    due.delete(draft.id);
+    restored = draft;
     // The host may have it, too: it is told when there is a connection.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
-  forget(draft);
   void keepDraft();
   editor.view.focus();
 }
@@ -113,12 +120,11 @@ function forget(draft: Draft): void {
   show();
 }
 
-/** Something else comes in the place of what is written, which is offered in its turn, or
- *  forgotten under its own key if it has just been undone. */
+/** Something else comes in the place of what is written: that is offered, unless it is undone. */
 function leave(): void {
   if (!files.isUnsaved) return void keepDraft();
-  const left = newDraft();
-  due.set(id, left);
+  const left = files.textToSave === restored?.text ? restored : newDraft();
+  due.set(left.id, left);
   offers.unshift(left);
   id = freshId();
   isKept = false;

@@ -1,6 +1,5 @@
-// A drag of an object's handle, or of the camera. What it does to the text depends on the text as
-// it was at the press, and on where the hand was then and is now, but not on the way between: the
-// server is asked about that text, which it has under an address of its own meanwhile.
+// A drag of an object's handle, or of the camera. It depends on the text at the press, which the
+// server has under an address of its own, and on where the hand was then and is now: on no way.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";

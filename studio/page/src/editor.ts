@@ -9,7 +9,7 @@ import { formatKeymap, hoverTooltips, jumpToDefinitionKeymap, LSPClient, renameK
 import { diff } from "@codemirror/merge";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { ChangeSet, EditorState, Prec, StateEffect, type ChangeSpec,
-  type Extension, type Text } from "@codemirror/state";
+  type Extension, type SelectionRange, type Text } from "@codemirror/state";
 import { drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter,
   highlightSpecialChars, keymap, lineNumbers, tooltips, type ViewUpdate } from "@codemirror/view";
 import type { Position, Range, TextEdit } from "vscode-languageserver-protocol";
@@ -36,8 +36,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces several lines at once itself: a browser would give the new ones the style of the old,
- *  which the page's policy refuses. */
+/** Replaces several lines itself: a browser would add styles, which the page's policy refuses. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -65,6 +64,16 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
     scrollIntoView: true, userEvent: "input.type" });
   return true;
 }));
+
+/** What hands elsewhere change is shown without moving the page, which they hold. */
+function withinText(view: EditorView, { head }: SelectionRange): boolean {
+  if (view.hasFocus) return false;
+  const { scrollDOM, documentPadding } = view;
+  const { top, bottom } = view.lineBlockAt(head);
+  const least = bottom + documentPadding.top - scrollDOM.clientHeight;
+  scrollDOM.scrollTop = Math.max(least, Math.min(scrollDOM.scrollTop, top));
+  return true;
+}
 
 /** A text with lines that end by LF, as the editor has them. */
 export function withLf(text: string): string {
@@ -110,6 +119,7 @@ class SceneEditor {
         // The tools above the text stay free.
         tooltips({ tooltipSpace: ({ dom }) => ({ left: 0, right: innerWidth, bottom: innerHeight,
           top: dom.getBoundingClientRect().top }) }),
+        EditorView.scrollHandler.of(withinText),
         bracketMatching(), closeBrackets(), closingBrace, replacedLines, gestureHistory(),
         sceneLanguage, sceneHighlighting, EditorView.lineWrapping,
         EditorView.contentAttributes.of({ "aria-label": "Text of the scene", tabindex: "0",

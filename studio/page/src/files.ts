@@ -8,7 +8,7 @@ import { connection, isServed } from "./connection";
 import { byId, create, createButton, download } from "./dom";
 import { editor, withLf } from "./editor";
 import { Refusal, type HostedFile, type Saved } from "./protocol";
-import { say } from "./status";
+import { say, unsay } from "./status";
 import { setText, visibleLine } from "./visible";
 
 /** The scene of a page without a file. */
@@ -114,8 +114,7 @@ class Files {
   /** The text with its file's ends of lines. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from.
-   *  Before the host has said what it has, its scene is that. */
+  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from. */
   restore(text: string, base?: string | null, name = this.at.name): void {
     if (!this.isTold) {
       this.early = { base, text };
@@ -127,9 +126,9 @@ class Files {
     this.show();
   }
 
-  /** The host says what file it has: at first, after the connection was lost, when a new scene
-   *  has got its name, and when the file has changed. */
+  /** The host says what file it has: at first, anew, when it has got a name, when it changes. */
   hosted({ name, text, reason, saved }: HostedFile): void {
+    unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
     // What becomes of the host's file is told when its scene is there again, and is saved.
     if (this.at !== this.hosts) return this.show();
@@ -165,6 +164,7 @@ class Files {
     } else if (text === seen) {
       // It is again what the page was made from: there is nothing to decide any more.
       this.conflict.close();
+      if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
       this.conflict.close();
       this.at.seen = this.at.base = text;

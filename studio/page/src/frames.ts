@@ -119,8 +119,7 @@ class Frames {
   }
 }
 
-/** The picture in the bytes of a PNG. Browsers with a decoder have it some milliseconds sooner
- *  than through a Blob, which other processes hand on. */
+/** The picture in a PNG. A decoder has it some milliseconds sooner than other processes do. */
 async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);

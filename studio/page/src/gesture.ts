@@ -35,8 +35,7 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // The history itself joins all but what it was told to isolate, which it knows by a time of
-      // 0: so this is less than the time since 1970.
+      // All is joined but what is isolated, whose time is 0: it is less than the time since 1970.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -79,8 +78,7 @@ export class Gesture {
   /** Whether nobody else has changed the text. */
   get isAlone(): boolean { return this.view.state.doc === this.current; }
 
-  /** Has a change of the text at the beginning in the place of those that stand there, and shows
-   *  its first place. */
+  /** Puts a change of the text at the beginning in the place of the last one, and shows it. */
   write(spec: ChangeSpec): void {
     if (this.over || !this.isAlone) return;
     const { base, current, view, written } = this;
@@ -101,8 +99,7 @@ export class Gesture {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
     this.over = true;
-    const isWritten = this.current !== this.base;
-    if (isWritten) this.view.dispatch({ annotations: isolateHistory.of("after") });
+    if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
   /** Ends as if nothing had happened: neither Undo nor Redo knows. */

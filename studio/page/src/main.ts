@@ -1,5 +1,4 @@
-// Pinhole Studio's page: the text on one side, its picture on the other, and either of them changes
-// the other. This file puts the parts together.
+// Pinhole Studio's page: a text and its picture. This file puts its parts together.
 
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";

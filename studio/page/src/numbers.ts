@@ -36,8 +36,7 @@ export function literalAt(at: number): Literal | null {
     end: node.to, value, written };
 }
 
-/** A hundredth to a tenth of the number, but no less than a hundredth, so that a way to zero
- *  ends; and no coarser than how it is written. */
+/** A hundredth to a tenth of the number, no less than 0.01, and no coarser than it is written. */
 function stepOf({ value, written }: Literal, limits: Limits | null): number {
   if (limits?.step) return limits.step;
   const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];

@@ -30,6 +30,7 @@ class Picture {
     new ResizeObserver(() => (this.fitted ? this.fit() : this.place())).observe(stage);
     stage.addEventListener("wheel", event => {
       event.preventDefault();
+      if (event.buttons !== 0) return; // a drag is under way
       // With the shift key browsers turn the wheel to the side.
       const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
       if (event.shiftKey) this.onDolly(turned);
@@ -111,14 +112,12 @@ class Picture {
   }
 
   private place(): void {
-    const { style } = this.canvas;
-    style.width = `${this.size[0] * this.zoom}px`;
-    style.height = `${this.size[1] * this.zoom}px`;
-    style.transform = `translate(${this.left}px, ${this.top}px)`;
-    style.imageRendering = this.zoom >= SQUARES ? "pixelated" : "auto";
+    const [width, height] = this.size.map(it => `${it * this.zoom}px`);
+    const imageRendering = this.zoom >= SQUARES ? "pixelated" : "auto";
+    const transform = `translate(${this.left}px, ${this.top}px)`;
+    Object.assign(this.canvas.style, { width, height, transform, imageRendering });
     this.onView();
   }
 }
 
-export const picture = new Picture(byId("stage"),
-  document.querySelector("canvas") as HTMLCanvasElement);
+export const picture = new Picture(byId("stage"), byId("canvas"));

@@ -32,6 +32,7 @@ function press(event: PointerEvent): void {
   const at = picture.local(event);
   places.set(event.pointerId, at);
   stage.setPointerCapture(event.pointerId);
+  stage.focus({ preventScroll: true }); // fingers would leave it in the text
   endKeys();
   // A second finger zooms: what the first one has begun does not count.
   if (places.size > 1) return giveUp();
@@ -49,11 +50,13 @@ function press(event: PointerEvent): void {
 function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | null> | Held): void {
   const drag = new Drag(start, hold);
   let moved = false;
+  const { zoom } = picture;
   const move = (next: PointerEvent) => {
     tools.held = next;
-    const [x, y] = picture.toPicture(picture.local(next));
-    moved ||= Math.hypot(x - start[0], y - start[1]) * picture.zoom > CLICK;
-    if (moved) drag.to([x, y]);
+    // The hand's way counts, wherever the page has the picture by now.
+    const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
+    moved ||= Math.hypot(dx, dy) > CLICK;
+    if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
   };
   giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }

@@ -68,11 +68,8 @@ export interface HostedFile {
   drafts?: Draft[];
 }
 
-/** A text that was not saved, under its page's key: what its scene is called, what it was made
- *  from, and when, in seconds since 1970. */
-export interface Draft {
-  id: string; name: string; text: string; base: string | null; time: number;
-}
+/** A text that was not saved, under its page's key, and what it was made from; in seconds. */
+export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
 /** Whether the file was saved; if not, what is in it now. */
 export type Saved = { ok: true } | { ok: false; text: string | null };

@@ -6,8 +6,7 @@ import { visible } from "./visible";
 const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI",
   "BR", "HR"]);
 
-/** The HTML with elements of plain formatting alone, without attributes; of a link its text, and
- *  of all others how they were written. */
+/** The HTML with plain formatting alone; of a link its text, of all others how they are written. */
 export function sanitized(html: string): string {
   // The parsed document has no window: nothing in it runs or loads.
   const { body } = new DOMParser().parseFromString(html, "text/html");

@@ -54,7 +54,7 @@ class Selection {
     const shown = [...this.menu.options].slice(1);
     const isShown = (it: HTMLOptionElement, i: number) => it.isEqualNode(shown[i] ?? null);
     if (options.length === shown.length && options.every(isShown)) return;
-    this.menu.replaceChildren(new Option("Nothing selected", ""), ...options);
+    this.menu.replaceChildren(new Option("No object", ""), ...options);
   }
 
   /** The text has changed: blocks are elsewhere, until the objects of the new text are known. */
@@ -92,8 +92,7 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** The block that was selected stays so wherever a change of the text has brought it, also away
-   *  from the cursor, until that is moved. */
+  /** The selected block stays so wherever the text has brought it, until the cursor is moved. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);

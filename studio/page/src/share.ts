@@ -85,10 +85,8 @@ const dialog = byId<HTMLDialogElement>("share-dialog");
 const field = byId<HTMLInputElement>("share-link");
 byId("copy").addEventListener("click", () => {
   field.select();
-  void navigator.clipboard.writeText(field.value).then(
-    () => (dialog.close(), say("The link is copied.")),
-    () => say(NO_COPY, "warning"),
-  );
+  const copied = () => (dialog.close(), say("The link is copied."));
+  void navigator.clipboard.writeText(field.value).then(copied, () => say(NO_COPY, "warning"));
 });
 byId("share").addEventListener("click", async () => {
   if (editor.text.length > LONGEST) return say(

@@ -18,6 +18,9 @@ export function say(text: string, tone: "plain" | "warning" = "plain"): void {
   said.dataset["tone"] = tone;
 }
 
+/** What was said is not so any more. */
+export function unsay(text: string): void { if (byId("said").textContent === text) say(""); }
+
 /** The text has changed: what was said of the one before is not true any more. */
 export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 

@@ -1,9 +1,7 @@
-// Text from a file, its name or the engine, as people may see it. The rule is that of the command
-// line (src/diagnostic/visible.rs): what is not seen, or has other text shown in another order than
-// it is written, stands there as its code.
+// Text from others, as people may see it. As on the command line (src/diagnostic/visible.rs), what
+// is not seen, or has text shown in another order than it is written, stands there as its code.
 
-/** Control characters, those that Unicode says to show nothing of, among them the controls of
- *  bidirectional text, and the marks of annotations; line feeds and tabs stay. */
+/** Control characters but line feeds and tabs, invisible ones, and marks of annotations. */
 const INVISIBLE = /(?![\n\t])[\p{Cc}\p{Default_Ignorable_Code_Point}\ufff9-\ufffb]/gu;
 const BREAKS = /[\n\t\u2028\u2029]/g;
 const code = (character: string): string => `\\u{${character.codePointAt(0)?.toString(16)}}`;

@@ -1,6 +1,5 @@
-// The engine in a web worker: JSON texts from the page, and JSON texts back. Between two slices of
-// its work it looks for new messages, so that a newer change supersedes a frame. The page says
-// nothing before it has been greeted.
+// The engine in a web worker: JSON texts from the page, and back. Between slices of work it looks
+// for new ones, so that a newer change supersedes a frame. The page waits until it is greeted.
 
 import init, { Engine } from "pinhole-engine";
 

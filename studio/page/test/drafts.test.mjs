@@ -248,6 +248,12 @@ for (const [name, go] of [
       await andFinished(page, () => page.keyboard.press("Control+z"));
     }
     assert.deepEqual(texts.sort(), [LARGER, `${NEARER}// on\n`].sort());
+    // Who has looked at both, and taken them back, still has both.
+    await kept(page);
+    await page.reload();
+    await finished(page);
+    await offered(page);
+    assert.equal(await page.locator("#draft-choices li").count(), 2);
     assert.equal(started.text(), FIGURE);
   });
 }
@@ -310,6 +316,20 @@ test("a host that stops is told after two seconds, and Save says that nothing is
   await page.waitForFunction(() => /Nothing is saved yet/.test(document.querySelector("#said").textContent), null, { timeout: 1000 });
   process.kill(started.pid, "SIGCONT");
   await page.waitForSelector("#connection-bar", { state: "hidden", timeout: 3000 });
+});
+
+test("that nothing was saved is said no longer when the host is there again", async t => {
+  const started = await host(t);
+  const page = await open(await launch(t), started);
+  await started.stop();
+  await page.waitForSelector("#connection-bar:not([hidden])");
+  await page.keyboard.press("Control+s");
+  await page.waitForFunction(() => /Nothing was saved/.test(document.querySelector("#said").textContent));
+  const again = await serve(started.file, { port: new URL(started.address).port });
+  t.after(() => again.stop());
+  await page.evaluate(address => (location.hash = new URL(address).hash), again.address);
+  await page.waitForSelector("#connection-bar", { state: "hidden" });
+  await page.waitForFunction(() => document.querySelector("#said").textContent === "");
 });
 
 test("while the host hangs or is gone, problems are not said to be there or not", async t => {

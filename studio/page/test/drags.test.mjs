@@ -241,3 +241,39 @@ test("a hand that is quicker than the answers moves things, too", async t => {
   await rested(page);
   assert.equal(await text(page), WATCHED);
 });
+
+test("at every size what is selected moves neither the page nor the picture, and things go where the hand goes", async t => {
+  // Wide scenes have lines far below the first ones, so that the selected one has to be scrolled to.
+  const started = await host(t, `${"// a line\n".repeat(60)}${FIGURE}`);
+  const browser = await launch(t);
+  const first = await open(browser, started, { viewport: { width: 1280, height: 720 } });
+  await select(first, "Ball (sphere)");
+  const middle = await first.evaluate(([x, y]) => {
+    const { left, top, width } = document.querySelector("canvas").getBoundingClientRect();
+    return [(x - left) * 1280 / width, (y - top) * 1280 / width];
+  }, await handle(first, "Ball: center"));
+  const sizes = [[640, 360], [667, 375], [700, 500], [740, 360], [820, 1180], [900, 700], [1024, 600], [1024, 768], [1100, 700], [1180, 820], [1280, 720], [390, 844]];
+  for (const hasTouch of [false, true]) for (const [width, height] of sizes) {
+    const page = await open(browser, started, { viewport: { width, height }, hasTouch });
+    const where = () => page.evaluate(() => {
+      const { x, y, width, height } = document.querySelector("canvas").getBoundingClientRect();
+      return [scrollX, scrollY, x, y, width, height].map(Math.round).join(" ");
+    });
+    const [before, at] = [await where(), await onPage(page, BALL)];
+    const [dx, dy] = [27, 7];
+    await hand(page, at, [dx, dy], { hold: true });
+    assert.equal(await where(), before, `${width} × ${height} while it is held`);
+    await page.mouse.up();
+    await rested(page);
+    assert.equal(await where(), before, `${width} × ${height}`);
+    const [x, y] = await handle(page, "Ball: center");
+    const begin = await onPage(page, middle);
+    // A step is at most 8 pixels.
+    assert.ok(Math.hypot(x - begin[0] - dx, y - begin[1] - dy) < 12, `${width} × ${height}: ${x - begin[0]}, ${y - begin[1]}`);
+    // Nothing is left to be offered to the next page.
+    await page.keyboard.press("Control+z");
+    await rested(page);
+    await page.waitForTimeout(600);
+    await page.context().close();
+  }
+});

@@ -74,9 +74,12 @@ test("a file that is no text is told, and not overwritten", async t => {
   await page.waitForFunction(() => /cannot be read: .*UTF-8/.test(document.querySelector("#said").textContent));
   await andFinished(page, () => type(page, LARGER));
   await page.keyboard.press("Control+s");
-  await page.waitForTimeout(500);
+  await page.waitForFunction(() => /is not saved, .*another name/.test(document.querySelector("#said").textContent));
   assert.deepEqual(readFileSync(started.file), latin);
   assert.equal(await text(page), LARGER);
+  // What is said of it is not so any more when it is a text again.
+  started.write(FIGURE);
+  await page.waitForFunction(() => /is there again/.test(document.querySelector("#said").textContent));
 });
 
 test("a file with lines that end by CR LF keeps them, and is compared by its text", async t => {
@@ -307,7 +310,7 @@ test("a name gets its ending, and one that will not do stays in the dialog with 
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, FIGURE));
   await page.keyboard.press("Control+s");
-  for (const [name, reason] of [["a/b", /no path/], ["taken", /something of this name/]]) {
+  for (const [name, reason] of [["a/b", /no path/], ["a:b", /has none of/], ["taken", /something of this name .* start Studio with that file/]]) {
     await page.fill("#name-field", name);
     await page.keyboard.press("Enter");
     await page.waitForFunction(reason => new RegExp(reason).test(document.querySelector("#name-problem").textContent), reason.source);

@@ -401,7 +401,7 @@ test("at each width what is selected, or that nothing is, can be read", async t 
     const [has, needs] = await page.evaluate(() => {
       const menu = document.querySelector("#objects");
       const copy = menu.cloneNode();
-      copy.append(new Option("Nothing selected"));
+      copy.append(new Option("No object"));
       Object.assign(copy.style, { position: "absolute", flex: "none", width: "max-content", maxWidth: "none", minWidth: "0" });
       menu.after(copy);
       const widths = [menu, copy].map(it => it.getBoundingClientRect().width);

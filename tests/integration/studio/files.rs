@@ -73,7 +73,10 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
     assert_eq!(told(&mut page), [Value::Null, json!(reason)]);
     for base in [None, Some("// mine")] {
         let error = save(&mut page, "// more", base)["error"].take();
-        assert_eq!(error["message"], format!("a.scn cannot be read: {reason}"));
+        assert_eq!(
+            error["message"],
+            format!("a.scn is not saved, as it cannot be read: {reason}; save under another name")
+        );
         assert_eq!(folder.read("a.scn"), b"// \xff");
     }
 }
@@ -210,7 +213,7 @@ fn a_scene_that_becomes_a_pipe_is_told_and_holds_nothing_up() {
     let reason = json!("it is a pipe, not a file");
     assert_eq!(told(&mut page), [Value::Null, reason]);
     let error = save(&mut page, "// mine", Some(SCENE))["error"].take();
-    let message = "a.scn cannot be read: it is a pipe, not a file";
+    let message = "a.scn is not saved, as it cannot be read: it is a pipe, not a file; save under another name";
     assert_eq!(error["message"], message);
     let id = studio.child.id().to_string();
     let ended = std::process::Command::new("kill")
