@@ -60,8 +60,9 @@ fn written_limits(limits: editor::Limits) -> Value {
     json!({
         "least": limits.least,
         "most": limits.most,
-        "open": limits.is_open,
-        "step": limits.step.or(limits.is_whole.then_some(1.0)),
+        "step": limits.step,
+        "decimals": limits.decimals,
+        "ends": limits.ends,
     })
 }
 
@@ -72,7 +73,7 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
         json!({
             "name": slider.name,
             "range": converter.range(slider.span),
-            "limits": written_limits(slider.limits),
+            "limits": slider.limits.map(written_limits),
             "note": slider.note,
         })
     };

@@ -11,18 +11,36 @@ use super::{
     handles::{Along, handles, moved},
 };
 use crate::{
+    color::Color,
     diagnostic::{Edit, Fix, apply},
     editor::Analysis,
     numbers::{rounded, short, short_vector, significant},
     projection::Projection,
     scene::{Part, Parts, SMALLEST, Scene, Shape},
-    schema,
+    schema::{self, css},
     source::{Source, SourceId, Sources, sort_by_span},
     tracer::vertices,
 };
 
 /// Number of rows in which a free place is looked for: a scene of more objects is not made by hand.
 const ROWS: i32 = 100;
+
+/// Colours of new objects, far from each other and from gray and white, which boards have.
+const COLORS: [&str; 10] = [
+    "olive",
+    "teal",
+    "orange",
+    "crimson",
+    "royalblue",
+    "turquoise",
+    "purple",
+    "limegreen",
+    "hotpink",
+    "sienna",
+];
+
+/// Distance of two colours, in steps of sRGB's channels, up to which they are taken for each other.
+const ALIKE: f64 = 48.0;
 
 /// A block that is new.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +75,15 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
         _ => format!("y {}", short(free_height(&scene))),
     };
+    // So that it is told from others, and can be given another one by a click.
+    let color = match row.name {
+        "sphere" => Some("olive"),
+        "triangle" => Some("teal"),
+        "box" => Some("orange"),
+        _ => None,
+    };
+    let color = color.map(|own| format!("  color {}", free_color(&scene, own)));
+    let fields = fields + color.as_deref().unwrap_or_default();
     let name = free_name(analysis, kind);
     let text = analysis.text();
     let end = text.trim_end().len();
@@ -70,6 +97,20 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         name: Some(name),
         cursor: text[..end].encode_utf16().count() + gap.len(),
     })
+}
+
+/// A kind's own colour, or else the first one of a list that nothing in the scene has; one after
+/// the other where all are there.
+fn free_color(scene: &Scene, own: &'static str) -> &'static str {
+    let shapes = scene.objects.iter().flat_map(|it| it.shape.colors());
+    let taken: Vec<Color> = shapes.chain([scene.image.background]).collect();
+    let is_free = |name: &&str| {
+        let color = css::color(name).map(|it| DVec3::from(it.srgb));
+        let is_far = |it: &Color| color.is_some_and(|own| own.distance(it.srgb.into()) > ALIKE);
+        taken.iter().all(is_far)
+    };
+    let found = std::iter::once(own).chain(COLORS).find(is_free);
+    found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
 /// The scene of a text with errors, as far as it can be read: the smallest scene's parts stand in
@@ -183,16 +224,43 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let middles =
         shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
     let taken: Vec<DVec3> = middles.collect();
-    let place = |steps: i32, row: i32| {
-        let [aside, behind] = [steps, row].map(|steps| 2.5 * size * f64::from(steps));
+    let place = |floor: Option<f64>, steps: i32, row: i32| {
+        // Every other row is half a place aside, so that it is seen between what stands before it.
+        let aside = f64::from(steps) + 0.5 * f64::from(row % 2);
+        let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
         // What stands on a floor keeps all digits of its height.
         floor.map_or(at, |y| at.with_y(y + size))
     };
+    let is_seen = |at: &DVec3| is_seen(*at, size, &projection);
+    // Each row has seven places, and the next one is behind it. Where no floor is seen, they are in
+    // the air.
+    let row = |floor, row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(floor, steps, row));
+    let rows = |floor| (0..ROWS).flat_map(move |it| row(floor, it));
+    let mut places = rows(floor).chain(rows(None)).filter(is_seen);
     let is_free = |at: &DVec3| taken.iter().all(|it| it.distance(*at) > 1.5 * size);
-    // Each row has seven places, and the next one is behind it.
-    let row = |row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(steps, row));
-    let found = (0..ROWS).flat_map(row).find(is_free);
-    (found.unwrap_or(place(0, 0)), size)
+    let is_apart = |at: DVec3, it: DVec3| {
+        let nearest = projection.depth(at).min(projection.depth(it));
+        let radius = size / (projection.pitch * nearest);
+        let seen = projection.point(at).zip(projection.point(it));
+        seen.is_none_or(|(at, it)| at.distance(it) > radius)
+    };
+    let is_clear = |at: &DVec3| is_free(at) && taken.iter().all(|it| is_apart(*at, *it));
+    let found = places.clone().find(is_clear);
+    let found = found.or_else(|| places.clone().find(is_free));
+    let middle = || projection.eye + projection.ahead * distance;
+    let found = found.or_else(|| places.next()).unwrap_or_else(middle);
+    (found, size)
+}
+
+/// Whether a cube about a place, so far in each direction, lies within the picture.
+fn is_seen(at: DVec3, size: f64, projection: &Projection) -> bool {
+    let corner = |index: u8| {
+        let sides = [1, 2, 4].map(|bit| if index & bit == 0 { -size } else { size });
+        projection.point(at + DVec3::from(sides))
+    };
+    (0..8).map(corner).all(|corner| {
+        corner.is_some_and(|it| it.cmpge(DVec2::ZERO).all() && it.cmple(projection.size).all())
+    })
 }

@@ -11,13 +11,11 @@ import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
 /** A number literal, with the sign that belongs to it, and where its unit ends. */
-interface Literal { from: number; to: number; end: number; value: number; written: string }
+interface Literal { from: number; to: number; end: number; value: number }
 
 /** So many screen pixels of a drag are one step. */
 const DRAG_PIXELS = 4;
 
-/** Bounds so far apart leave nothing to turn on a slider, as those of a seed. */
-const FAR = 1e6;
 /** A minus sign that belongs to the number, since it has nothing to subtract from. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
@@ -33,43 +31,12 @@ export function literalAt(at: number): Literal | null {
   const isNegative = SIGN.test(before);
   const value = Number(written.replaceAll("_", "")) * (isNegative ? -1 : 1);
   return { from: node.from - (isNegative ? 1 : 0), to: node.from + written.length,
-    end: node.to, value, written };
+    end: node.to, value };
 }
 
-/** A hundredth to a tenth of the number, no less than 0.01, and no coarser than it is written. */
-function stepOf({ value, written }: Literal, limits: Limits | null): number {
-  if (limits?.step) return limits.step;
-  const [, fraction = "", power = "0"] = /^[^.e]*(?:\.([\d_]*))?(?:e(.*))?$/i.exec(written) ?? [];
-  const lastDigit = Number(power) - fraction.replaceAll("_", "").length;
-  const exponent = Math.max(Math.floor(Math.log10(Math.abs(value) || 1)) - 1, -2);
-  return 10 ** (lastDigit < 0 ? Math.min(exponent, lastDigit) : exponent);
-}
-
-export function format(value: number, step: number): string {
-  // A step of 0.25 has two decimals, one of 1e-7 seven.
-  const [, fraction = "", power = "0"] = /^\d+(?:\.(\d+))?(?:e(.*))?$/
-    .exec(String(Number(step.toPrecision(12)))) ?? [];
-  const decimals = Math.max(0, fraction.length - Number(power));
-  return String(Number(value.toFixed(Math.min(decimals, 100))) + 0); // no minus before a zero
-}
-
-/** Says between which numbers the one at an offset may be; null if nobody knows. */
+/** Says how the number at an offset is turned; null if nobody knows. */
 function limitsOf(at: number): Promise<Limits | null> {
   return editor.ask("pinhole/limits", { position: editor.position(at) });
-}
-
-/** The least and the greatest value that a number can be turned to. */
-function bounds(step: number, limits: Limits | null): [number, number] {
-  const margin = limits?.open ? step : 0;
-  return [(limits?.least ?? -Infinity) + margin, (limits?.most ?? Infinity) - margin];
-}
-
-/** The same for a slider: about the value that is there, unless both bounds are known and near. */
-function offered(value: number, step: number, limits: Limits | null): [number, number] {
-  const span = Math.max(Math.abs(value), 50 * step);
-  const [least, most] = bounds(step, limits);
-  if (limits?.open === false && most - least < FAR) return [least, most];
-  return [Math.max(least, value - span), Math.min(most, value + span)];
 }
 
 /** Turns one number through a gesture, as far as its limits allow, which the server knows. */
@@ -80,12 +47,13 @@ export class Turn {
 
   /** The value may depend on the step. */
   async set(value: (step: number) => number): Promise<void> {
-    const { literal, literal: { from, to } } = this;
+    const { from, to } = this.literal;
     const limits = await this.limits;
-    const step = stepOf(literal, limits);
-    const [least, most] = bounds(step, limits);
-    const insert = format(Math.min(most, Math.max(least, value(step))), step);
-    this.gesture.write({ from, to, insert });
+    if (limits === null) return;
+    const { least, most, step, decimals } = limits;
+    const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
+    // No minus before a zero.
+    this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
   }
 
   end(): void { void this.limits.then(() => this.gesture.end()); }
@@ -127,14 +95,12 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number between the ends that its limits leave, unless a hand holds it. */
+  /** Shows the number between the ends of its limits, unless a hand holds it. */
   show(): Literal | null {
     const found = this.literal();
-    if (found === null || this.turn !== null) return found;
-    const { value } = found;
-    const step = stepOf(found, this.limits);
-    const [min, max] = offered(value, step, this.limits);
-    Object.assign(this.range, { min, max, step, value });
+    if (found === null || this.turn !== null || this.limits === null) return found;
+    const { ends: [min, max], step } = this.limits;
+    Object.assign(this.range, { min, max, step, value: found.value });
     return found;
   }
 }
@@ -158,7 +124,16 @@ const sliderField = StateField.define<number | null>({
 
 const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.of(pos) });
 
-function createSlider({ state }: EditorView): TooltipView {
+/** The limits of the number whose slider was opened. */
+let opened: Limits | null = null;
+
+/** Opens the slider of a number, if the cursor still stands there when its limits are known. */
+async function open(at: number): Promise<void> {
+  opened = await limitsOf(at + 1);
+  if (opened !== null && atCursor()?.from === at) show(at);
+}
+
+function createSlider(): TooltipView {
   const dom = create("div", "slider");
   const dial = new Dial(() => literalAt((editor.view.state.field(sliderField) ?? 0) + 1));
   const { range, literal } = dial;
@@ -175,11 +150,16 @@ function createSlider({ state }: EditorView): TooltipView {
   grip.title = "Drag to the side; in the text, drag a number with the Alt key";
   grip.addEventListener("pointerdown", event => scrub(event, literal()));
   dom.append(less, range, more, grip);
-  void limitsOf((state.field(sliderField) ?? 0) + 1).then(found => {
-    dial.limits = found;
+  const refresh = async () => {
+    const found = literal();
+    if (found !== null) dial.limits = await limitsOf(found.to) ?? dial.limits;
     adapt();
-  });
-  return { dom, mount: adapt, update: ({ docChanged }) => { if (docChanged) adapt(); } };
+  };
+  dial.limits = opened;
+  return { dom, mount: adapt, update({ docChanged }) {
+    if (docChanged) adapt();
+    if (docChanged && dial.turn === null) void refresh();
+  } };
 }
 
 /** Turns a number by the way of the pointer to the side, until it is let go. */
@@ -221,7 +201,7 @@ export const numberControls: Extension = [
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;
-      if (literal !== null) show(literal.from);
+      if (literal !== null) void open(literal.from);
       return false;
     },
   }),
@@ -232,8 +212,8 @@ export const numberControls: Extension = [
     { key: "Alt-Enter", run: ({ dom }) => {
       const literal = atCursor();
       if (literal === null) return false;
-      show(literal.from);
-      requestAnimationFrame(() => dom.querySelector<HTMLInputElement>(".slider input")?.focus());
+      void open(literal.from).then(() => requestAnimationFrame(() =>
+        dom.querySelector<HTMLInputElement>(".slider input")?.focus()));
       return true;
     } },
     { key: "Escape", run: ({ state }) => {

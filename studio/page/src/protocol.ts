@@ -45,13 +45,13 @@ export interface Dragged {
   also?: string[];
 }
 
-/** Between which numbers a number may be; `open` excludes the bounds themselves. */
+/** How a number is turned, and between which `ends` on a slider. */
 export interface Limits {
-  least: number | null; most: number | null; open: boolean; step: number | null;
+  least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A number or angle that a `let` is, and what a slider of it may be turned to; `note` says why the
- *  comment behind it is no range. */
-export interface Slider { name: string; range: Range; limits: Limits; note: string | null }
+/** A `let`, and how a slider turns it, if it is a number or angle; `note` says why the comment
+ *  behind it is no range. */
+export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
 /** A block that is new: what writes it, and the offset at which it begins. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }

@@ -25,7 +25,9 @@ export function mapSliders(changes: ChangeDesc): void {
 
 function show({ dial, value }: Row): void {
   const found = dial.show();
-  if (found !== null) setText(value, editor.view.state.sliceDoc(found.from, found.end));
+  const written = found === null ? "" : editor.view.state.sliceDoc(found.from, found.end);
+  setText(value, written);
+  value.title = written;
 }
 
 /** The text has come to rest: sliders are those of its definitions. */
@@ -43,6 +45,7 @@ export async function refreshSliders(): Promise<void> {
     setText(row.note, note ?? "");
     row.at = editor.offset(range.start);
     row.dial.limits = limits;
+    row.element.classList.toggle("note-only", limits === null);
     show(row);
   });
 }
@@ -68,6 +71,12 @@ export function stop(): void {
   row.dial.end();
 }
 
+document.addEventListener("keydown", event => {
+  if (event.key !== "Escape" || playing === null) return;
+  event.stopPropagation();
+  stop();
+}, true);
+
 /** Moves a number to and fro until it is stopped; it begins where it is. */
 function play(row: Row): void {
   const isNew = playing !== row;
@@ -77,16 +86,21 @@ function play(row: Row): void {
   row.button.setAttribute("aria-pressed", "true");
   const { dial, dial: { range } } = row;
   const [least, most] = [Number(range.min), Number(range.max)];
-  const begin = performance.now() - PLAY * (Number(range.value) - least) / (most - least);
+  let good = dial.literal()?.value ?? Number(range.value);
+  const begin = performance.now() - PLAY * (good - least) / (most - least);
   const go = async () => {
     if (playing !== row) return;
     if (frames.dragging !== null && frames.dragging !== dial) return stop();
     const part = ((performance.now() - begin) / PLAY) % 2;
     range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
-    await dial.set(Number(range.value));
-    await frames.coarse;
-    // Whoever drags something, changes the text otherwise, or undoes that, has it rest.
-    if (frames.dragging !== dial || !dial.turn?.gesture.isAlone) stop();
+    const next = Number(range.value);
+    await dial.set(next);
+    // An error has it rest where there was none.
+    const isBroken = await frames.coarse === null;
+    if (isBroken && playing === row) await dial.set(good);
+    good = next;
+    // So does who drags something, changes the text otherwise, or undoes that.
+    if (isBroken || frames.dragging !== dial || !dial.turn?.gesture.isAlone) stop();
     else requestAnimationFrame(() => void go());
   };
   void go();

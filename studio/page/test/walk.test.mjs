@@ -36,7 +36,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
     async slider() {
       await rested(page);
       const before = await text(page);
-      // A text with errors has its first problem in the place of sliders.
+      // A text without its definition has none.
       if (await page.isHidden(".slider-row input")) return;
       const { x, y, width, height } = await page.locator(".slider-row input").boundingBox();
       const isTaken = random() < 0.5;

@@ -4,87 +4,224 @@ use serde_json::{Value, json};
 
 use super::talk::Talk;
 
+/// The least and the greatest number, the step, and the ends of a slider.
+fn limits(found: &Value) -> Value {
+    match found {
+        Value::Null => Value::Null,
+        _ => json!([found["least"], found["most"], found["step"], found["ends"]]),
+    }
+}
+
 /// A slider need not offer what the language forbids.
 #[test]
 fn a_number_has_the_limits_of_its_field() {
-    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox { center (0, 0, 0) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }";
+    let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox for i < 3 { center (i, 0, -0.25) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }\nsphere { radius 8 / 2 }";
     let mut talk = Talk::with(text);
-    let limits = |least: Value, most: Value, open: bool, whole: bool| json!({ "least": least, "most": most, "open": open, "step": whole.then_some(1.0) });
-    let pi = std::f64::consts::PI;
     for (before, expected) in [
-        ("radius 1", limits(json!(0.0), Value::Null, true, false)),
-        ("per_pixel 16", limits(json!(1.0), Value::Null, false, true)),
-        ("fov 1", limits(json!(0.0), json!(pi), true, false)),
-        ("size (1, 2", limits(json!(0.0), Value::Null, true, false)),
-        ("eye (0", limits(Value::Null, Value::Null, false, false)),
-        ("let a = 3", Value::Null),
-        ("radius a + 1", Value::Null),
+        ("radius 1", json!([0.1, null, 0.1, [0.1, 6.0]])),
+        ("per_pixel 16", json!([1.0, null, 1.0, [1.0, 32.0]])),
+        ("fov 1", json!([0.1, 3.0, 0.1, [0.1, 3.0]])),
+        ("size (1, 2", json!([0.1, null, 0.1, [0.1, 7.0]])),
+        ("eye (0", json!([null, null, 0.1, [-5.0, 5.0]])),
+        ("(i, 0, -0.25", json!([null, null, 0.01, [-0.75, 0.25]])),
+        ("i < 3", json!([0.0, null, 1.0, [0.0, 13.0]])),
+        // Where a formula comes of it, too.
+        ("let a = 3", json!([-0.9, null, 0.1, [-0.9, 8.0]])),
+        ("radius a + 1", json!([-2.9, null, 0.1, [-2.9, 6.0]])),
+        ("radius 8", json!([0.1, null, 0.1, [0.1, 16.0]])),
+        ("8 / 2", json!([0.1, null, 0.1, [0.1, 7.0]])),
+        ("radius a", Value::Null),
     ] {
         let at = text.find(before).expect("it is there") + before.len();
         let lines: Vec<&str> = text[..at].split('\n').collect();
         let character = lines[lines.len() - 1].len();
         let position = json!({ "line": lines.len() - 1, "character": character });
         let found = talk.ask("pinhole/limits", json!({ "position": position }));
-        assert_eq!(found, expected, "{before}");
+        assert_eq!(limits(&found), expected, "{before}");
+    }
+}
+
+/// A slider does not lead into errors, and a count has whole steps, wherever the number stands.
+#[test]
+fn a_slider_does_not_lead_into_errors() {
+    let many = "sphere { center (1, 2, 3) }\n".repeat(3000);
+    for (value, rest, expected) in [
+        (
+            "1",
+            "sphere { radius a / 2 }",
+            json!([0.1, null, 0.1, [0.1, 6.0]]),
+        ),
+        (
+            "-1",
+            "sphere { radius -a / 2 }",
+            json!([null, -0.1, 0.1, [-6.0, -0.1]]),
+        ),
+        (
+            "1.25",
+            "sphere { radius 2 - a }",
+            json!([null, 1.99, 0.01, [0.0, 1.99]]),
+        ),
+        (
+            "(1)",
+            "sphere { center (0, sqrt(a), 0) }",
+            json!([0.0, null, 0.1, [0.0, 6.0]]),
+        ),
+        (
+            "0.5",
+            "sphere { center (0, asin(a) / 1rad, 0) }",
+            json!([null, null, 0.01, [0.0, 1.0]]),
+        ),
+        (
+            "40deg",
+            "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
+            json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
+        ),
+        // Both of a direct use and of a formula.
+        (
+            "1",
+            "sphere { radius a }\nsphere { radius 3 - a }",
+            json!([0.1, 2.9, 0.1, [0.1, 2.9]]),
+        ),
+        // Counts.
+        (
+            "4",
+            "sphere for i < a { center (i, 0, 0) }",
+            json!([0.0, null, 1.0, [0.0, 14.0]]),
+        ),
+        (
+            "4",
+            "sphere for i < 2 * a { center (i, 0, 0) }",
+            json!([0.0, null, 1.0, [0.0, 14.0]]),
+        ),
+        (
+            "4",
+            "sphere for i < a - 2 { center (i, 0, 0) }",
+            json!([2.0, null, 1.0, [2.0, 14.0]]),
+        ),
+        (
+            "100",
+            "sphere for i < a { center (i, 0, 0) }",
+            json!([0.0, null, 1.0, [0.0, 200.0]]),
+        ),
+        (
+            "4",
+            "sampler { per_pixel a }",
+            json!([1.0, null, 1.0, [1.0, 14.0]]),
+        ),
+        (
+            "4",
+            "sampler { per_pixel a * a }",
+            json!([1.0, null, 1.0, [1.0, 14.0]]),
+        ),
+        (
+            "4",
+            "sampler { seed a }",
+            json!([0.0, 9_007_199_254_740_991.0, 1.0, [0.0, 14.0]]),
+        ),
+        (
+            "4 // [0.5:0.5:8.5]",
+            "sphere for i < a { center (i, 0, 0) }",
+            json!([1.0, 8.0, 1.0, [1.0, 8.0]]),
+        ),
+        // A number at the end of what is right is none.
+        (
+            "1",
+            "sphere { center (0, asin(a) / 1rad, 0) }",
+            json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
+        ),
+        // Errors that are there already do not count, and where all near is wrong, nothing is known.
+        (
+            "1",
+            "sphere { radios 1 radius a / 2 }",
+            json!([0.1, null, 0.1, [0.1, 6.0]]),
+        ),
+        (
+            "4",
+            "sphere for i < a / 4 { center (i, 0, 0) }",
+            json!([null, null, 0.1, [-1.0, 9.0]]),
+        ),
+        // A long text is not read again.
+        (
+            "1",
+            &format!("{many}sphere {{ radius a / 2 }}"),
+            json!([null, null, 0.1, [-4.0, 6.0]]),
+        ),
+    ] {
+        let camera = match rest.contains("camera") {
+            true => "",
+            false => "camera { eye (0, 0, 9) lookat (0, 0, 0) }\n",
+        };
+        let mut talk = Talk::with(&format!("let a = {value}\n{camera}{rest}\n"));
+        let found = &talk.ask("pinhole/sliders", json!({}))[0];
+        assert_eq!(limits(&found["limits"]), expected, "{value}: {rest:.100}");
     }
 }
 
 /// Definitions have sliders: by the comment behind them, or by the fields that they stand in.
 #[test]
 fn definitions_have_ranges() {
-    let pi = std::f64::consts::PI;
     let no_number = |it: &str| format!("`{it}` in the range is no number");
+    let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
     // What is written behind `=`; the least, the greatest number and the step; why there are none.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
-        ("-2 //[-3:3]", json!([-3.0, 3.0, null]), None),
-        ("3 // [3:1]", json!([1.0, 3.0, null]), None),
+        ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),
+        ("3 // [3:1]", json!([1.0, 3.0, 0.1]), None),
         ("3 // [5:1:0]", json!([0.0, 5.0, 1.0]), None),
         ("3 // [5:-1:0]", json!([0.0, 5.0, 1.0]), None),
         ("3000 // [1_000:1_000:9_000]", json!([1e3, 9e3, 1e3]), None),
         ("30deg // [0deg:5deg:90deg]", json!([0.0, 90.0, 5.0]), None),
         ("30deg // [ 0 : 5 : 90 deg ]", json!([0.0, 90.0, 5.0]), None),
-        ("30deg // [90deg:-90deg]", json!([-90.0, 90.0, null]), None),
-        ("1rad // [0deg:180deg]", json!([0.0, pi, null]), None),
+        ("30deg // [90deg:-90deg]", json!([-90.0, 90.0, 1.0]), None),
+        ("1rad // [0deg:180deg]", json!([0.0, 3.1, 0.1]), None),
+        ("30deg // [0rad:1rad]", json!([0.0, 57.0, 1.0]), None),
+        ("10deg // [0rad:0.1rad:1rad]", json!([0.0, 57.2, 5.7]), None),
+        ("1 // [0:0.001:1e6]", json!([0.0, 1e6, 0.001]), None),
+        ("1 // [-1e-3:+2.5E2]", json!([-0.001, 250.0, 0.1]), None),
         (
-            "30deg // [0rad:1rad]",
-            json!([0.0, 1_f64.to_degrees(), null]),
-            None,
+            "1 // [-1e308:1e308]",
+            json!([null, null, 0.1]),
+            Some("the ends of the range are too far apart".to_owned()),
         ),
-        ("1 // turn", json!([null, null, null]), None),
-        ("1 // [see: below]", json!([null, null, null]), None),
-        ("1 // [see: -> x]", json!([null, null, null]), None),
-        ("1 // [from: ...]", json!([null, null, null]), None),
-        ("1 // [1, 2]", json!([null, null, null]), None),
         (
-            "1 // [1:x]",
-            json!([null, null, null]),
-            Some(no_number("x")),
+            "1 // [0:2:1]",
+            json!([null, null, 0.1]),
+            Some("the step of the range is longer than the range".to_owned()),
         ),
-        ("1 // [1:]", json!([null, null, null]), Some(no_number(""))),
+        ("1 + 2 // [0:3]", json!([null, null, null]), alone()),
+        ("(1, 2) // [0:3]", json!([null, null, null]), alone()),
+        ("-(1) // [0:3]", json!([null, null, null]), alone()),
+        ("red // [0:3]", json!([null, null, null]), alone()),
+        ("1 // turn", json!([null, null, 0.1]), None),
+        ("1 // [see: below]", json!([null, null, 0.1]), None),
+        ("1 // [see: -> x]", json!([null, null, 0.1]), None),
+        ("1 // [from: ...]", json!([null, null, 0.1]), None),
+        ("1 // [1, 2]", json!([null, null, 0.1]), None),
+        ("1 // [1:x]", json!([null, null, 0.1]), Some(no_number("x"))),
+        ("1 // [1:]", json!([null, null, 0.1]), Some(no_number(""))),
         (
             "1 // [1:1e999]",
-            json!([null, null, null]),
+            json!([null, null, 0.1]),
             Some(no_number("1e999")),
         ),
         (
             "1 // [1deg:2deg]",
-            json!([null, null, null]),
+            json!([null, null, 0.1]),
             Some("the range is in deg, and the number has no unit".to_owned()),
         ),
         (
             "1 // [1:1]",
-            json!([null, null, null]),
+            json!([null, null, 0.1]),
             Some("both ends of the range are the same".to_owned()),
         ),
         (
             "1 // [1:0:2]",
-            json!([null, null, null]),
+            json!([null, null, 0.1]),
             Some("the step of the range is 0".to_owned()),
         ),
         (
             "1 // [1:2:3:4]",
-            json!([null, null, null]),
+            json!([null, null, 0.1]),
             Some("a range has two ends, and at most a step between them".to_owned()),
         ),
     ];
@@ -109,10 +246,12 @@ fn definitions_have_ranges() {
         json!([it["name"], limits["least"], limits["most"], limits["step"]])
     });
     let expected = [
-        json!(["c", 0.0, null, null]),
+        json!(["c", 0.1, null, 0.1]),
         json!(["n", 1.0, null, 1.0]),
         json!(["m", 1.0, 10.0, 1.0]),
-        json!(["t", 0.0, pi, null]),
+        json!(["t", 0.01, 3.13, 0.01]),
+        json!(["v", null, null, null]),
+        json!(["e", null, null, null]),
     ];
     assert_eq!(found.collect::<Vec<_>>(), expected);
 }

@@ -155,6 +155,79 @@ fn what_is_added_is_beside_what_is_there() {
     }
 }
 
+/// What is added lies within the picture, however much is there already, in colours that are told
+/// apart.
+#[test]
+fn what_is_added_is_within_the_picture() {
+    let board = "checkerboard { y 0 }\n";
+    let figure = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
+    for before in [
+        figure.to_owned(),
+        format!("{figure}{board}"),
+        format!("image {{ width 300 height 500 }}\n{figure}{board}"),
+        format!("camera {{ eye (0, 1, 6) lookat (0, 1, 0) fov 30deg }}\n{board}"),
+        // The board is not in the picture.
+        format!("camera {{ eye (0, 2, 6) lookat (0, 9, 0) }}\n{board}"),
+    ] {
+        let mut text = before.clone();
+        let mut colors = vec!["gray".to_owned(), "white".to_owned()];
+        for i in 0..9 {
+            let kind = ["box", "sphere", "triangle"][i % 3];
+            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": kind }));
+            let written = found["edits"][0]["newText"].as_str().expect("a text");
+            text = format!("{}{written}\n", text.trim_end());
+            let (_, color) = written.split_once("color ").expect("a colour");
+            let color = color.trim_end_matches(" }").to_owned();
+            assert!(!colors.contains(&color), "{text}");
+            colors.push(color);
+            let overlays = Talk::with(&text).ask("pinhole/overlays", json!({}));
+            let size: [f64; 2] = serde_json::from_value(overlays["size"].clone()).expect("a size");
+            let objects = overlays["objects"].as_array().expect("a list");
+            let lines = objects[objects.len() - 1]["outline"].as_array();
+            let lines = lines.expect("a list").iter();
+            let points: Vec<[f64; 2]> = lines
+                .flat_map(|line| line.as_array().expect("a line"))
+                .map(|point| serde_json::from_value(point.clone()).expect("a point"))
+                .collect();
+            let is_within =
+                |[x, y]: &[f64; 2]| (0.0..=size[0]).contains(x) && (0.0..=size[1]).contains(y);
+            assert!(!points.is_empty(), "{text}");
+            assert!(points.iter().all(is_within), "{text}{points:?}");
+        }
+    }
+}
+
+/// The first of a kind has the kind's own colour, unless something has that already.
+#[test]
+fn what_is_added_has_a_colour_of_its_own() {
+    for (before, kind, color) in [
+        ("", "sphere", "olive"),
+        ("", "triangle", "teal"),
+        ("", "box", "orange"),
+        ("sphere { center (0, 1, 0) }", "sphere", "teal"),
+        ("sphere { center (0, 1, 0) color #818203 }", "box", "orange"),
+        (
+            "sphere { center (0, 1, 0) color #818203 }",
+            "sphere",
+            "teal",
+        ),
+        (
+            "box { center (0, 1, 0) size (1, 1, 1) colors (olive, teal, red) }",
+            "sphere",
+            "orange",
+        ),
+        ("checkerboard { colors (olive, white) }", "sphere", "teal"),
+        ("image { background olive }", "sphere", "teal"),
+    ] {
+        let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }";
+        let mut talk = Talk::with(&format!("{camera}\n{before}"));
+        let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+        let written = found["edits"][0]["newText"].as_str().expect("a text");
+        let end = format!("  color {color} }}");
+        assert!(written.ends_with(&end), "{before}: {written}");
+    }
+}
+
 /// What is added touches the board, whatever its height is, and where the board comes later.
 #[test]
 fn what_is_added_stands_on_the_board() {

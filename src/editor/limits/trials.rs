@@ -1,0 +1,100 @@
+//! What a text would be with another number in it: whether that makes an error.
+
+use super::literal::{Literal, rounded};
+use crate::{
+    editor::Analysis,
+    source::{Source, Sources},
+};
+
+/// Number of bytes of text that are read for one answer at most.
+const BYTES: usize = 1 << 16;
+
+/// What an object of a repetition takes to make, in bytes of text that take as long to read.
+const OBJECT: usize = 12;
+
+/// Texts that differ from one in a number, as many as one answer may read.
+#[derive(Debug)]
+pub struct Trials<'a, 's> {
+    analysis: &'a Analysis<'s>,
+    /// How many errors the text itself has.
+    errors: usize,
+    /// How many more bytes may be read.
+    left: usize,
+}
+
+impl<'a, 's> Trials<'a, 's> {
+    /// Nothing is tried yet.
+    pub fn new(analysis: &'a Analysis<'s>) -> Self {
+        Self {
+            analysis,
+            errors: errors(analysis),
+            left: BYTES,
+        }
+    }
+
+    /// Whether a number in a literal's place makes no error that the text has not already; `None`
+    /// if that takes too long to find out, where it makes so many objects.
+    fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
+        let read = self.analysis.text().len();
+        if read + OBJECT * objects > self.left || !value.is_finite() {
+            return None;
+        }
+        let text = literal.replaced(self.analysis.source(), value);
+        let sources = Sources::new(Source::from_text(self.analysis.source().name(), text));
+        let tried = Analysis::new(&sources);
+        let made = OBJECT * tried.model.parts.objects.len();
+        self.left = self.left.saturating_sub(read + made);
+        Some(errors(&tried) <= self.errors)
+    }
+
+    /// Number of objects that there are now.
+    fn objects(&self) -> usize {
+        self.analysis.model.parts.objects.len()
+    }
+
+    /// Whether a number is a count: a tenth more or less is an error, one more or less is none.
+    pub fn is_count(&mut self, literal: &Literal) -> bool {
+        // A count that is none makes no objects; where there are many, one more makes few more.
+        let is_soon = OBJECT * self.objects() <= BYTES;
+        let mut is_right = |by: f64| {
+            let value = rounded(literal.value + by, 0.1);
+            self.is_right(literal, value, 0)
+        };
+        is_soon
+            && literal.is_whole()
+            && is_right(0.1) == Some(false)
+            && is_right(-0.1) == Some(false)
+            && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
+    }
+
+    /// The last number on the way to an end, by whole steps, that makes no error; the end if it
+    /// makes none itself, or nothing is known of it. `None` if the first step makes one.
+    ///
+    /// Of a way with several errors it is the last number before one of them.
+    pub fn last_right(&mut self, literal: &Literal, end: f64, step: f64) -> Option<f64> {
+        let objects = self.objects();
+        if end == literal.value || self.is_right(literal, end, objects) != Some(false) {
+            return Some(end);
+        }
+        let way = end - literal.value;
+        let at = |steps: u32| {
+            let aside = f64::from(steps) * step;
+            rounded(literal.value + aside.copysign(way), step)
+        };
+        let (mut right, mut wrong) = (0, (way.abs() / step).ceil() as u32);
+        while wrong - right > 1 {
+            let middle = right.midpoint(wrong);
+            match self.is_right(literal, at(middle), objects) {
+                Some(true) => right = middle,
+                Some(false) => wrong = middle,
+                None => return Some(if right == 0 { end } else { at(right) }),
+            }
+        }
+        (right > 0).then(|| at(right))
+    }
+}
+
+fn errors(analysis: &Analysis<'_>) -> usize {
+    let diagnostics = analysis.diagnostics().iter();
+    diagnostics.filter(|it| it.is_error()).count()
+}

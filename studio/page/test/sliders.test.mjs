@@ -1,0 +1,210 @@
+// Numbers that are turned: sliders of definitions and of numbers, playing, and what they do at errors.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { FIGURE, finished, hand, handle, host, launch, open, rested, tab, text, type } from "./helpers.mjs";
+
+const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
+
+/** The figure with a definition before it, and another field. */
+const scene = (definition, field, other) => `${definition}\n${FIGURE.replace(field, other)}`;
+
+/** The thumb of a slider on the page. */
+async function thumb(page, at = 0) {
+  return page.locator(".slider-row input").nth(at).evaluate(it => {
+    const { x, y, width, height } = it.getBoundingClientRect();
+    return [x + 8 + (width - 16) * (it.value - it.min) / (it.max - it.min), y + height / 2];
+  });
+}
+
+/** Waits until the first slider has an end. */
+async function until(page, end, value) {
+  await page.waitForFunction(([end, value]) => document.querySelector(".slider-row input")?.[end] === value, [end, value]);
+}
+
+test("definitions have sliders with their ranges, which one undo takes back, and which play to and fro", async t => {
+  const scene = `let r = 1.5 // [0.5:0.25:2]\nlet turn = 30deg\nlet n = 9\n${FIGURE.replace("radius 1", "radius r").replace("roll   0deg", "roll turn").replace("per_pixel 16", "per_pixel n")}`;
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForSelector(".slider-row");
+  const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => {
+    const { min, max, step } = row.querySelector("input");
+    return [row.firstChild.textContent, min, max, step, row.querySelector("output").textContent];
+  }));
+  assert.deepEqual(rows[0], ["r", "0.5", "2", "0.25", "1.5"]);
+  assert.equal(rows[1][4], "30deg");
+  assert.equal(rows[2][1], "1", "there is no less than one sample");
+  const { x, y, width, height } = await page.locator(".slider-row input").first().boundingBox();
+  await hand(page, [x + width * 2 / 3, y + height / 2], [width / 4, 0]);
+  await rested(page);
+  assert.ok(number(await text(page), "let r =") > 1.5, await text(page));
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+  await page.click('[aria-label="Play r"]');
+  const seen = new Set();
+  for (let i = 0; i < 60 && seen.size < 4; i++) {
+    seen.add(number(await text(page), "let r ="));
+    await page.waitForTimeout(100);
+  }
+  await page.click('[aria-label="Play r"][aria-pressed=true]');
+  await rested(page);
+  assert.ok(seen.size >= 4, [...seen].join());
+  for (const it of seen) assert.ok(it >= 0.5 && it <= 2 && it % 0.25 === 0, `${it}`);
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+});
+
+test("a number that is played rests as soon as something is dragged", async t => {
+  const scene = FIGURE.replace(/^/, "let r = 1  // [0.5:0.25:2]\n").replace("radius 1", "radius r");
+  const page = await open(await launch(t), await host(t, scene));
+  await page.waitForSelector("#sliders:not([hidden])");
+  await page.selectOption("#objects", { label: "Crate (box)" });
+  await rested(page);
+  await page.click('[aria-label="Play r"]');
+  await page.waitForFunction(() => /let r = (?!1 )/.test(document.querySelector(".cm-line").textContent));
+  await hand(page, await handle(page, "Crate: center"), [40, 0]);
+  await rested(page);
+  assert.equal(await page.locator("[aria-pressed=true].play").count(), 0);
+  assert.notEqual(/box.*/.exec(await text(page))[0], /box.*/.exec(scene)[0], "the drag has come to its place");
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(/box.*/.exec(await text(page))[0], /box.*/.exec(scene)[0]);
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(await text(page), scene);
+});
+
+test("a range has units, its ends may be exchanged, and one that is not understood is said to be none", async t => {
+  const lines = ["let a = 30deg // [0deg:5deg:90deg]", "let b = 2 // [5:1:0]", "let c = 1 // [1:x]", "let d = 3 // see below"];
+  const page = await open(await launch(t), await host(t, `${lines.join("\n")}\n${FIGURE}`));
+  await page.waitForSelector(".slider-row");
+  const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => {
+    const { min, max, step } = row.querySelector("input");
+    return [min, max, step, row.querySelector("p").textContent];
+  }));
+  assert.deepEqual(rows.slice(0, 2), [["0", "90", "5", ""], ["0", "5", "1", ""]]);
+  assert.match(rows[2][3], /`x` in the range is no number/);
+  assert.equal(rows[3][3], "");
+  for (const [at, written] of [[0, "let a = 90deg"], [1, "let b = 5"]]) {
+    const { x, y, width, height } = await page.locator(".slider-row input").nth(at).boundingBox();
+    const part = at === 0 ? 1 / 3 : 2 / 5;
+    await hand(page, [x + 8 + (width - 16) * part, y + height / 2], [width, 0]);
+    await rested(page);
+    assert.ok((await text(page)).includes(written), await text(page));
+  }
+});
+
+test("a slider stays under the hand where its value is an error, and after that, below the problem", async t => {
+  const browser = await launch(t);
+  const started = await host(t, scene("let r = 1 // [-1:0.1:3]", "radius 1", "radius r / 2"));
+  for (const [width, height] of [[1280, 800], [1280, 420], [390, 700]]) {
+    const page = await open(browser, started, { viewport: { width, height } });
+    await tab(page, "text");
+    await page.waitForSelector(".slider-row");
+    const [x, y] = await thumb(page);
+    await hand(page, [x, y], [-width, 0], { hold: true });
+    await page.waitForSelector("#problem-list:not([hidden])");
+    assert.equal(number(await text(page), "let r ="), -1);
+    assert.ok(await page.isVisible(".slider-row input"));
+    await page.mouse.move(x + 40, y, { steps: 5 });
+    await page.waitForSelector("#problem-list", { state: "hidden" });
+    assert.ok(number(await text(page), "let r =") > 1);
+    await page.mouse.move(0, y, { steps: 5 });
+    await page.mouse.up();
+    await page.waitForSelector("#problem-list:not([hidden])");
+    // It is shown whole, and the problem above it.
+    await page.waitForTimeout(400);
+    const [row, problem, footer] = await Promise.all([".slider-row", "#problem-list", "footer"].map(it => page.locator(it).boundingBox()));
+    assert.ok(problem.y + problem.height <= row.y + 1 && row.y + row.height <= footer.y + 1, `${width} × ${height}`);
+    await hand(page, await thumb(page), [width, 0]);
+    await page.waitForSelector("#problem-list", { state: "hidden" });
+    assert.equal(number(await text(page), "let r ="), 3);
+    await page.context().close();
+  }
+});
+
+test("no slider leads into errors by itself, and a count has whole steps", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1", "radius 1", "radius r / 2")));
+  await until(page, "min", "0.1");
+  await hand(page, await thumb(page), [-900, 0]);
+  await rested(page);
+  assert.equal(number(await text(page), "let r ="), 0.1);
+  assert.equal(await page.textContent("#problems"), "No problems");
+  // By a drag in the text, too.
+  await page.click("#undo");
+  const box = await page.locator(".cm-line").first().getByText("1", { exact: true }).boundingBox();
+  await page.keyboard.down("Alt");
+  await hand(page, [box.x + box.width / 2, box.y + box.height / 2], [-300, 0]);
+  await page.keyboard.up("Alt");
+  await rested(page);
+  assert.equal(number(await text(page), "let r ="), 0.1);
+  for (const count of ["Ball for i < n", "Ball for i < 2 * n"]) {
+    await type(page, scene("let n = 4", "Ball ", `${count} `));
+    await until(page, "value", "4");
+    await until(page, "step", "1");
+    await finished(page);
+    await page.focus(".slider-row input");
+    await page.keyboard.press("ArrowRight");
+    await rested(page);
+    assert.equal(number(await text(page), "let n ="), 5);
+    assert.doesNotMatch(await page.textContent("#problems"), /^\d+ problem/);
+    // The slider of the number in the text, and its keys.
+    await page.locator(".cm-line").first().getByText("5", { exact: true }).click();
+    await page.waitForSelector(".slider");
+    assert.equal(await page.getAttribute(".slider input", "step"), "1");
+    await page.click('.slider [aria-label="More"]');
+    await rested(page);
+    assert.equal(number(await text(page), "let n ="), 6);
+  }
+});
+
+test("what is played shows its button, and rests at an error, and by Escape", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1.4 // [0:0.1:4]", "radius 1", "radius 2 - r")));
+  await page.waitForSelector(".slider-row");
+  await page.click('[aria-label="Play r"]');
+  assert.ok(await page.isVisible('[aria-label="Play r"][aria-pressed=true]'));
+  await page.waitForSelector('[aria-label="Play r"]:not([aria-pressed])', { timeout: 20_000 });
+  await rested(page);
+  const last = number(await text(page), "let r =");
+  assert.ok(last > 1.4 && last < 2, `${last}`);
+  assert.equal(await page.textContent("#problems"), "No problems");
+  await page.click("#undo");
+  await rested(page);
+  assert.equal(number(await text(page), "let r ="), 1.4);
+  await page.click('[aria-label="Play r"]');
+  await page.waitForFunction(() => /let r = 1\.[5-9]/.test(document.querySelector(".cm-line").textContent));
+  await page.keyboard.press("Escape");
+  await page.waitForSelector('[aria-label="Play r"]:not([aria-pressed])', { timeout: 500 });
+  await rested(page);
+  assert.equal(await page.textContent("#problems"), "No problems");
+});
+
+test("a value has few digits, and is never over its button, whatever its name and its width are", async t => {
+  const lines = ["let tilt = 10deg // [0rad:0.1rad:1rad]", "let aNameThatIsLongerThanARowOfThePanelIsWide = 0.12345678901234567890123456789", "let far = 1 // [0:0.001:1e6]"];
+  const browser = await launch(t);
+  const started = await host(t, `${lines.join("\n")}\n${FIGURE}`);
+  for (const width of [1280, 760, 390]) {
+    const page = await open(browser, started, { viewport: { width, height: 800 } });
+    await tab(page, "text");
+    await until(page, "max", "57.2");
+    const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => [...row.querySelectorAll("span, input, output, button")].map(it => it.getBoundingClientRect()).concat(row.getBoundingClientRect()).map(({ left, right }) => [left, right])));
+    for (const [name, input, output, button, row] of rows) {
+      assert.ok(name[1] <= input[0] && input[1] <= output[0] && output[1] <= button[0] && button[1] <= row[1], `${width}: ${[name, input, output, button, row].join(" ")}`);
+      assert.ok(input[1] - input[0] > 60, `${width}: ${input.join()}`);
+    }
+    assert.equal(await page.locator(".slider-row input").nth(2).getAttribute("max"), "1000000");
+    await hand(page, await thumb(page), [60, 0]);
+    await rested(page);
+    assert.match(await text(page), /^let tilt = \d+(\.\d)?deg /);
+    await page.context().close();
+  }
+});
+
+test("a range behind what is no number is said to be none", async t => {
+  const page = await open(await launch(t), await host(t, scene("let r = 1 + 0 // [0:1:3]\nlet v = (1, 2, 3) // [1:2]", "radius 1", "radius r")));
+  await page.waitForSelector(".slider-row p");
+  const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => [row.innerText, row.querySelector("input").checkVisibility()]));
+  assert.equal(rows.length, 2);
+  for (const [said, has] of rows) assert.ok(!has && /^[rv]\s+a range is for a number/.test(said), said);
+});
