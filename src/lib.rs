@@ -42,6 +42,7 @@ pub mod math;
 pub mod numbers;
 pub mod source;
 pub mod suggest;
+#[cfg_attr(target_family = "wasm", path = "one_thread.rs")]
 pub mod threads;
 
 pub mod schema;
@@ -66,6 +67,8 @@ pub mod format;
 pub mod grading;
 pub mod inspect;
 pub mod probe;
+// Its trials are shared by threads, which a browser has not.
+#[cfg(not(target_family = "wasm"))]
 pub mod report;
 pub mod seen;
 

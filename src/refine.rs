@@ -6,16 +6,14 @@
 
 use std::sync::{PoisonError, atomic::Ordering};
 
-use glam::DVec2;
-use rayon::prelude::*;
-
 use crate::{
     area::Area,
     film::Film,
     render::{Control, RenderError},
-    threads,
+    threads::{self, prelude::*},
     tracer::World,
 };
+use glam::DVec2;
 
 /// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one before it, and all of them together less
 /// than a picture with one sample per pixel.

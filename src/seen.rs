@@ -6,17 +6,15 @@
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
-use glam::DVec2;
-use rayon::prelude::*;
-
 use crate::{
     area::Area,
     exact::Integrator,
     projection::Projection,
     scene::{Place, Scene, Sight, sphere_around},
-    threads,
+    threads::{self, prelude::*},
     tracer::{GRID, World, ray},
 };
+use glam::DVec2;
 
 /// Maximum work on a whole picture, in units of some 50 ns. Where a tile's part of it is spent,
 /// what the middle of a pixel shows counts for the pixel.

@@ -9,7 +9,10 @@ use std::{
     thread,
 };
 
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+/// Why there are no threads.
+pub use rayon::ThreadPoolBuildError as NoThreads;
+pub(crate) use rayon::prelude;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
 const MOST: usize = 1024;
@@ -49,7 +52,7 @@ impl Threads {
     /// # Errors
     ///
     /// If not even the calling thread can be had.
-    pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, ThreadPoolBuildError> {
+    pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
         let wanted = threads.map_or_else(available, |threads| threads.get().min(MOST));
         match rayon::current_thread_index() {
             Some(_) if rayon::current_num_threads() == wanted => Ok(Self::These),
@@ -57,11 +60,9 @@ impl Threads {
         }
     }
 
-    /// A pool, or, where it could not be built, as in a browser, those that this is done on: rayon takes a thread that is in no pool for one that is a
+    /// A pool, or, where it could not be built, as where too many threads are started, those that this is done on: rayon takes a thread that is in no pool for one that is a
     /// pool by itself, for good.
-    fn started(
-        built: Result<ThreadPool, ThreadPoolBuildError>,
-    ) -> Result<Self, ThreadPoolBuildError> {
+    fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
             Err(_) if rayon::current_thread_index().is_some() => Ok(Self::These),
@@ -89,7 +90,7 @@ impl Threads {
 pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,
-) -> Result<R, ThreadPoolBuildError> {
+) -> Result<R, NoThreads> {
     Ok(Threads::new(threads)?.install(work))
 }
 
@@ -97,9 +98,7 @@ pub(crate) fn install<R: Send>(
 mod tests {
     use std::io;
 
-    use rayon::prelude::*;
-
-    use super::*;
+    use super::{prelude::*, *};
 
     /// Twice, as the second time the calling thread is in a pool.
     #[test]

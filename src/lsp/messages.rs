@@ -1,6 +1,6 @@
 //! Messages as JSON.
 
-use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response};
+use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response, ResponseError};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -128,16 +128,43 @@ fn identifier(id: Option<Value>) -> Value {
 
 /// The text of a message.
 pub fn written(message: &Message) -> String {
-    #[derive(Serialize)]
+    #[derive(Default, Serialize)]
     struct Text<'a> {
         jsonrpc: &'static str,
-        #[serde(flatten)]
-        message: &'a Message,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        id: Option<&'a RequestId>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        method: Option<&'a str>,
+        #[serde(skip_serializing_if = "is_none_or_null")]
+        params: Option<&'a Value>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        result: Option<&'a Value>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        error: Option<&'a ResponseError>,
     }
-    let text = Text {
+    fn is_none_or_null(params: &Option<&Value>) -> bool {
+        params.is_none_or(Value::is_null)
+    }
+    let mut text = Text {
         jsonrpc: "2.0",
-        message,
+        ..Text::default()
     };
+    match message {
+        Message::Request(it) => {
+            text.id = Some(&it.id);
+            text.method = Some(&it.method);
+            text.params = Some(&it.params);
+        }
+        Message::Notification(it) => {
+            text.method = Some(&it.method);
+            text.params = Some(&it.params);
+        }
+        Message::Response(it) => {
+            text.id = Some(&it.id);
+            text.result = it.response_result.as_ref().ok();
+            text.error = it.response_result.as_ref().err();
+        }
+    }
     // Nothing in a message cannot be written: its keys are texts.
     serde_json::to_string(&text).unwrap_or_default()
 }

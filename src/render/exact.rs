@@ -4,14 +4,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
-
 use super::{Control, RenderError, finished, wanted};
 use crate::{
     area::Area,
     exact::{ExactPixel, Integrator},
     film::{self, Encoder, Film},
-    threads,
+    threads::{self, prelude::*},
     tracer::{GRID, World},
 };
 

@@ -30,6 +30,7 @@ use crate::{
     cancel::{self, Cancelled},
     film::{Film, Pixel, TooLarge},
     sampling::Sampling,
+    threads,
     tracer::World,
 };
 
@@ -68,7 +69,7 @@ pub enum RenderError {
     TooLarge(#[from] TooLarge),
     /// The system starts no threads.
     #[error("cannot start threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(#[from] threads::NoThreads),
     /// It was not wanted any more.
     #[error("interrupted")]
     Cancelled,

@@ -4,14 +4,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
-
 use super::{Control, RenderError, finished, renderer::Renderer, tally::Tally, wanted};
 use crate::{
     area::Area,
     film::{self, Encoder, Film},
     sampling::Sampling,
-    threads,
+    threads::{self, prelude::*},
     tracer::{GRID, Quartering, Scratch, World},
 };
 

@@ -4,14 +4,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glam::DVec2;
-use rayon::prelude::*;
-
 use super::precision::{Frame, Geometry, Numbers};
 use crate::{
     cancel,
     scene::{self, Scene},
-    threads::Threads,
+    threads::{Threads, prelude::*},
     tracer::{
         camera::Basis,
         object::Object,
@@ -19,6 +16,7 @@ use crate::{
         quadtree::{Grid, Item, Quadtree},
     },
 };
+use glam::DVec2;
 
 /// With fewer objects no threads are started: at 0.7 µs an object (benches/README.md) they take less than a millisecond.
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;

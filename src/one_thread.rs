@@ -1,0 +1,80 @@
+//! `threads.rs` where there are none, as in a browser: the calling thread does all of it, without rayon, which would make the
+//! engine larger and no faster.
+
+use std::num::NonZero;
+
+use thiserror::Error;
+
+/// Why there are no threads, which here is no reason to do nothing.
+#[derive(Debug, Error)]
+pub enum NoThreads {}
+
+/// Nothing is to be limited.
+pub fn limit(_: NonZero<usize>) {}
+
+pub(crate) fn available() -> usize {
+    1
+}
+
+/// The calling thread.
+pub(crate) struct Threads;
+
+impl Threads {
+    pub(crate) fn new(_: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
+        Ok(Self)
+    }
+
+    pub(crate) fn install<R>(&self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+}
+
+pub(crate) fn install<R>(
+    _: Option<NonZero<usize>>,
+    work: impl FnOnce() -> R,
+) -> Result<R, NoThreads> {
+    Ok(work())
+}
+
+/// What loops of rayon are here: one thing after the other.
+pub(crate) mod prelude {
+    use std::slice;
+
+    pub(crate) trait Loop: Iterator + Sized {
+        fn par_bridge(self) -> Self {
+            self
+        }
+
+        fn for_each_init<S>(self, state: impl FnOnce() -> S, act: impl Fn(&mut S, Self::Item)) {
+            let mut state = state();
+            self.for_each(|it| act(&mut state, it));
+        }
+
+        fn unzip_into_vecs<A, B>(self, a: &mut Vec<A>, b: &mut Vec<B>)
+        where
+            Self: Iterator<Item = (A, B)>,
+        {
+            (*a, *b) = self.unzip();
+        }
+    }
+
+    impl<I: Iterator> Loop for I {}
+
+    pub(crate) trait IntoLoop: IntoIterator + Sized {
+        fn into_par_iter(self) -> Self::IntoIter {
+            self.into_iter()
+        }
+    }
+
+    impl<I: IntoIterator> IntoLoop for I {}
+
+    pub(crate) trait SliceLoop<T> {
+        fn par_iter(&self) -> slice::Iter<'_, T>;
+    }
+
+    impl<T> SliceLoop<T> for [T] {
+        fn par_iter(&self) -> slice::Iter<'_, T> {
+            self.iter()
+        }
+    }
+}
