@@ -106,6 +106,15 @@ test("the static page keeps what is written in the browser, and offers it after 
   await page.waitForTimeout(900);
   await page.reload();
   await finished(page);
+  // Who has looked at both, and taken them back, still has both, until they are forgotten.
+  await page.waitForSelector("#draft-bar:not([hidden])");
+  for (let left = 2; left > 0; left--) {
+    assert.equal(await page.locator("#draft-choices li").count(), left);
+    await page.click("#draft-choices >> text=Forget");
+  }
+  await page.waitForTimeout(900);
+  await page.reload();
+  await finished(page);
   await page.waitForTimeout(900);
   assert.ok(await page.isHidden("#draft-bar"));
 });
