@@ -123,6 +123,24 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
+/// The part from 0 to 255 that stands for one from 0 to 1.
+pub fn in_bytes(part: f64) -> String {
+    (part * 255.0).round().to_string()
+}
+
+/// The parts of a colour from 0 to 255, of what may be written from 0 to 1.
+pub fn whole_parts(written: &str) -> String {
+    if !are_shares(&[written]) {
+        return written.to_owned();
+    }
+    let mut bytes = String::new();
+    for part in written.split(',') {
+        bytes += if bytes.is_empty() { "" } else { ", " };
+        bytes += &in_bytes(part.trim().parse().unwrap_or(0.0));
+    }
+    bytes
+}
+
 /// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be
 /// another colour from 0 to 255.
 pub fn are_shares(parts: &[&str]) -> bool {

@@ -31,6 +31,8 @@ type Entry = (Scene, String);
 
 /// Pixels between two cells, and around all of them.
 const GAP: u32 = 12;
+/// The colour of the line around a picture.
+const FRAME: [u8; 3] = [192; 3];
 /// The height of the letters, and that of their line.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 const LINE: u32 = 22;
@@ -216,6 +218,13 @@ fn sheet(
                 y,
                 ..Area::whole(scene.image.width, scene.image.height)
             };
+            // A white picture would have no edge.
+            let frame = Area {
+                x: place.x - 1,
+                y: place.y - 1,
+                ..Area::whole(place.width + 2, place.height + 2)
+            };
+            sheet.put(frame, &vec![FRAME; frame.pixels() as usize]);
             sheet.put(place, rendered(scene, cancel)?.pixels());
             write(
                 &mut sheet,

@@ -38,6 +38,11 @@ impl FromStr for Sweep {
         let (target, values) = text.split_once('=').ok_or_else(form)?;
         let (values, count) = values.rsplit_once('/').ok_or_else(form)?;
         let (from, to) = ends(values).ok_or_else(form)?;
+        if to.starts_with('.') {
+            return Err(format!(
+                "two points stand between FROM and TO, and a number such as `0{to}` has a digit before its own"
+            ));
+        }
         let [target, from, to, count] =
             [target, from, to, count].map(|part| part.trim().to_owned());
         if target.is_empty() || from.is_empty() || to.is_empty() {

@@ -249,7 +249,8 @@ impl Edit {
             return Self::new(Span::new(source, start, text.len() - rest.len()), "");
         }
         let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
-        let joins = outer.ends_with(is_word) && after.starts_with(is_word);
+        let is_begin = |c: char| is_word(c) || matches!(c, '"' | '\'');
+        let joins = outer.ends_with(is_word) && after.starts_with(is_begin);
         let length = text.len();
         let text = if joins { " " } else { "" };
         let end = match rest.starts_with([')', ']', ',']) {

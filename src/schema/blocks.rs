@@ -30,6 +30,7 @@ const BLOCK: Block = Block {
     choices: &[],
     together: &[],
     several: &[],
+    parted: &[],
     also_tried: "",
     elsewhere: &[],
 };
@@ -140,6 +141,7 @@ pub const BLOCKS: &[Block] = &[
             radius Number Value("1") "its radius" must(POSITIVE) also_tried("r") perhaps("size") doubled("diameter");
             color Color Value("olive") "its colour" also_tried(COLOR);
         },
+        parted: &[("x y z|cx cy cz", &["center"])],
         also_tried: "ball circle globe",
         ..BLOCK
     },
@@ -174,6 +176,10 @@ pub const BLOCKS: &[Block] = &[
             words: "vertices points corners vertex",
             fields: &["v0", "v1", "v2"],
         }],
+        parted: &[(
+            "v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3",
+            &["v0", "v1", "v2"],
+        )],
         together: &[
             "the sides form a triangle: each is shorter than the two others together",
             "v0, v1 and v2 do not lie on one line",
@@ -210,6 +216,18 @@ pub const BLOCKS: &[Block] = &[
                 why: "a box has one colour, or one for its faces across each axis",
             },
         ],
+        parted: &[
+            (
+                "corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b",
+                &["min", "max"],
+            ),
+            ("width height depth|w h d|size_x size_y size_z", &["size"]),
+            ("x y z|cx cy cz", &["center"]),
+            (
+                "color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z",
+                &["colors"],
+            ),
+        ],
         together: &["min < max on every axis"],
         also_tried: "cube cuboid block crate brick wall slab",
         elsewhere: &[
@@ -235,6 +253,10 @@ pub const BLOCKS: &[Block] = &[
             square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares");
             colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
         },
+        parted: &[(
+            "color1 color2|colour1 colour2|color_a color_b|even odd",
+            &["colors"],
+        )],
         also_tried: "plane floor ground checker chessboard board",
         elsewhere: &[(
             "size width depth length extent extents rows columns",

@@ -46,7 +46,7 @@ pub const COLOR_WITHOUT_NAME: Message = Message::new(["missing_field_name", "a v
 pub const MISSING_FIELD_NAME: Message = Message::new(["missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write the name of the field that `{0}` is for before it"]).safe();
 // Values.
 pub const TOO_DEEP: Message = Message::new(["too_deep", "this value nests more than {0} levels deep", "one level more", "give a part of it a name with `let`, and use the name here"]);
-pub const MISSING_OPERAND: Message = Message::new(["missing_operand", "nothing stands {0} this `{1}`", "a value is missing {0} this", "write a value {0} it, or take the `{1}` away"]).safe();
+pub const MISSING_OPERAND: Message = Message::new(["missing_operand", "nothing stands {0} this `{1}`", "a value is missing {0} this", "write a value {0} it, or take the `{1}` away"]);
 pub const MISSING_OPERATOR: Message = Message::new(["missing_operator", "an operator is missing between `{0}` and `{1}`", "what is to be done with this?", "write an operator between them, or take one of them away"]).safe();
 pub const UNKNOWN_OPERATOR: Message = Message::new(["unknown_operator", "there is no operator `{0}`", "not one of `+`, `-`, `*` and `/`", "{1}"]).safe();
 pub const PLUS_SIGN: Message = Message::new(["plus_sign", "no `+` stands before a value", "not needed", ""]).safe();

@@ -5,14 +5,14 @@ use super::{
     suggestion::{Meaning, Suggestion},
 };
 use crate::{
-    color::Color,
-    diagnostic::Applicability,
+    color::{Color, in_bytes},
+    diagnostic::{Applicability, Diagnostic},
     numbers,
     scene::{
         error::{error, warning},
         value,
     },
-    schema::{self, Function, Type, Value, predefined},
+    schema::{self, Function, Type, Value, css, predefined},
     source::Span,
     suggest,
     syntax::{
@@ -20,6 +20,22 @@ use crate::{
         tree::{self, Call, Element, Name, ValueKind},
     },
 };
+
+/// Functions of other languages, and what to write here.
+#[rustfmt::skip]
+const OTHER_FUNCTIONS: &[(&str, &str)] = &[
+    ("pow power sq square", "write a product, such as `x * x`"),
+    ("norm magnitude mag len", "write `length(v)`, or `normalize(v)` for the direction"),
+    ("radians to_radians deg2rad", "write the unit behind the number, as in `30deg`, or `x * 1deg`"),
+    ("degrees to_degrees rad2deg", "an angle divided by `1deg` is a number"),
+    ("mod fmod floor ceil round int", "nothing is rounded: count with indices, as in `for i < 8, j < 2`"),
+    ("hypot distance dist", "write `length(a - b)` of two points"),
+    ("clamp saturate", "write `max(0, min(1, x))`"),
+    ("lerp mix", "write `a + (b - a) * t`"),
+    ("cot", "write `1 / tan(a)`"),
+    ("hsl hsv hsla", "write the colour as `rgb(r, g, b)` or `#rrggbb`"),
+    ("exp log ln random rand noise", "write the number itself"),
+];
 
 impl<'s> Evaluator<'_, 's> {
     pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
@@ -90,10 +106,22 @@ impl<'s> Evaluator<'_, 's> {
             are_right && !is_value
         };
         let rows = schema::FUNCTIONS.iter().filter(fits);
+        let mut elsewhere = OTHER_FUNCTIONS.iter();
+        let elsewhere = elsewhere.find(|row| suggest::is_among(name, row.0));
         let near = suggest::nearest_name(name, rows.map(|row| row.name));
+        let near = near.filter(|_| elsewhere.is_none());
         let all_names = || schema::FUNCTIONS.iter().map(|row| row.name);
         let is_sure = near.is_some_and(|near| suggest::is_only_near(name, near, all_names()));
-        let all = format!("the functions are {}", suggest::list(all_names()));
+        let all = match elsewhere {
+            Some((_, instead)) => (*instead).to_owned(),
+            None => format!("the functions are {}", suggest::list(all_names())),
+        };
+        // The same list once.
+        let is_told = |it: &Diagnostic| it.help.as_ref() == Some(&all);
+        let all = match self.problems.iter().any(is_told) && elsewhere.is_none() {
+            true => "`pinhole explain functions` lists them".to_owned(),
+            false => all,
+        };
         if let Some(row) = near.and_then(schema::function) {
             self.names.suggestions.push(Suggestion {
                 name,
@@ -133,6 +161,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
+        // What is wrong with an argument may be wrong with their number.
+        if arguments.iter().any(|it| it.value.kind == ValueKind::Bad) {
+            return;
+        }
         let more = if row.more { " or more" } else { "" };
         let (takes, found) = (row.takes.len(), arguments.len());
         let plural = if takes == 1 && !row.more { "" } else { "s" };
@@ -141,8 +173,21 @@ impl<'s> Evaluator<'_, 's> {
             row.name
         );
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
+        let is_color = |name| css::color(name).is_some();
+        let is_rgb = row.gives == Type::Color;
         // What a vector is made of stands in parentheses of its own, and what numbers are does not.
         let meant = match (row.takes, arguments) {
+            // There is no transparency, and a colour stands by itself.
+            (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
+            (_, [only])
+                if is_rgb
+                    && match only.value.kind {
+                        ValueKind::Name(name) => is_color(name),
+                        ref kind => matches!(kind, ValueKind::ColorCode(_)),
+                    } =>
+            {
+                Some(text(only))
+            }
             ([Type::Vector], [x, y, z]) => {
                 let parts = [x, y, z].map(text).join(", ");
                 Some(format!("{}(({parts}))", row.name))
@@ -154,6 +199,10 @@ impl<'s> Evaluator<'_, 's> {
             _ => None,
         };
         let shown = meant.clone().unwrap_or_else(|| row.call());
+        let is_opaque = is_rgb && found == 4;
+        let is_safe = Applicability::safe_if(
+            !is_rgb || meant.as_ref().is_some_and(|it| it.contains('(')) && !is_opaque,
+        );
         self.problems.push(
             error("argument_count", message)
                 .at(span, format!("{found} given"))
@@ -163,9 +212,15 @@ impl<'s> Evaluator<'_, 's> {
                         shorten(&text(only)),
                         row.name
                     ),
+                    _ if is_opaque => {
+                        format!("write `{}`: there is no transparency", shorten(&shown))
+                    }
+                    _ if found > takes && meant.is_none() => {
+                        format!("give it {takes} value{plural} alone")
+                    }
                     _ => format!("write `{}`", shorten(&shown)),
                 })
-                .writing(span, Applicability::Safe, meant),
+                .writing(span, is_safe, meant),
         );
     }
 
@@ -305,9 +360,4 @@ fn operator_between(kinds: (Type, Type)) -> Option<char> {
         | (Type::Vector | Type::Angle, Type::Number) => Some('*'),
         _ => None,
     }
-}
-
-/// The part from 0 to 255 that stands for one from 0 to 1.
-pub fn in_bytes(part: f64) -> String {
-    (part * 255.0).round().to_string()
 }

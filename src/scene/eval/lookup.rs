@@ -102,6 +102,17 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
+    /// `light-blue` from its first word on, and the colour that it is in one word.
+    fn hyphenated(&self, span: Span) -> Option<(Span, String)> {
+        let text = self.sources.get(span.source).text().get(span.start..)?;
+        let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '-';
+        let end = text.find(is_other).unwrap_or(text.len());
+        let joined = text.get(..end)?.replace('-', "");
+        let is_one = end > joined.len() && css::color(&joined).is_some();
+        let end = span.start + end;
+        is_one.then_some((Span { end, ..span }, joined))
+    }
+
     fn used_before(&self, name: &str, span: Span, definition: Span) -> Diagnostic {
         let line = self.sources.get(definition.source).line(definition.start);
         let used = self.sources.get(span.source).line(span.start);
@@ -129,7 +140,12 @@ impl<'s> Evaluator<'_, 's> {
         wanted: Option<Type>,
     ) -> (Diagnostic, Option<Meaning>) {
         let is_color = matches!(wanted, Some(Type::Color | Type::Colors | Type::FaceColors));
-        let (near, applicability) = self.nearest(name, wanted, is_color).unzip();
+        let joined = self.hyphenated(span);
+        let place = joined.as_ref().map_or(span, |(whole, _)| *whole);
+        let (near, applicability) = match joined {
+            Some((_, joined)) => (Some(joined), Some(Applicability::Safe)),
+            None => self.nearest(name, wanted, is_color).unzip(),
+        };
         let problem = match is_color {
             true => error(
                 "unknown_color",
@@ -147,14 +163,24 @@ impl<'s> Evaluator<'_, 's> {
                 );
                 return (problem, None);
             }
+            _ if self.names.indices.contains(name) => {
+                let help = format!(
+                    "`{name}` is an index of another block, and known there alone: write `for {name} < …` in this head, too, or a `let`"
+                );
+                return (problem.help(help), None);
+            }
             Some(near) => format!("did you mean `{near}`?"),
             None => no_other(name, is_color),
         };
         let means = near
             .as_deref()
+            .filter(|_| place == span)
             .map(|near| Meaning::Value(self.meaning(near)));
         let applicability = applicability.unwrap_or(Applicability::Unsafe);
-        (problem.help(help).writing(span, applicability, near), means)
+        (
+            problem.help(help).writing(place, applicability, near),
+            means,
+        )
     }
 
     /// The value of a name that is suggested, or of a colour's code.
@@ -181,8 +207,9 @@ impl<'s> Evaluator<'_, 's> {
         if is_color && matches!(name.len(), 3 | 6) && is_digits {
             return Some((format!("#{name}"), Applicability::Safe));
         }
-        if name == "M_PI" {
-            return Some(("pi".to_owned(), Applicability::Unsafe));
+        if let "M_PI" | "tau" | "TAU" = name {
+            let pi = if name == "M_PI" { "pi" } else { "(2 * pi)" };
+            return Some((pi.to_owned(), Applicability::Unsafe));
         }
         // `olive green`: of two colours nobody knows which one.
         if name.contains(' ') && name.split(' ').all(|word| css::color(word).is_some()) {
@@ -204,10 +231,16 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
+        // `lightred` is no slip of `lightgrey`, nor `tau` one of the colour `tan`.
+        let is_of_colors = css::color(near).is_some();
+        if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
+            return None;
+        }
         let all = lets.chain(css::names().map(|name| name as &str));
         let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
         let is_only = suggest::is_only_near(name, near, all.chain(constants).filter(is_of_type));
-        Some((near.to_owned(), Applicability::safe_if(is_only)))
+        let is_sure = is_only && (is_color || !is_of_colors || near.eq_ignore_ascii_case(name));
+        Some((near.to_owned(), Applicability::safe_if(is_sure)))
     }
 
     /// What a value is, and where its name was defined if it is one.
@@ -231,6 +264,21 @@ impl<'s> Evaluator<'_, 's> {
             None => noun.to_owned(),
         }
     }
+}
+
+/// Whether a name is made of a colour and a word such as `light` that stands before others, too: it
+/// is no slip of another name.
+fn is_of_tone(name: &str) -> bool {
+    let name = name.to_ascii_lowercase().replace('_', "");
+    css::names().any(|hue| {
+        let tone = name.strip_suffix(hue).unwrap_or_default();
+        let is_tone = |other: &str| {
+            other
+                .strip_prefix(tone)
+                .is_some_and(|it| css::color(it).is_some())
+        };
+        tone == "bright" || (!tone.is_empty() && css::names().any(is_tone))
+    })
 }
 
 /// What to do about a name if no other one was meant.

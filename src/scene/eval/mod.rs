@@ -14,7 +14,6 @@ mod operators;
 mod origin;
 mod suggestion;
 
-pub use calls::in_bytes;
 pub use evaluator::{Evaluator, literal, suits};
 pub use names::Names;
 pub use suggestion::Suggestion;

@@ -33,6 +33,8 @@ pub struct Names<'s> {
     definitions: HashMap<&'s str, Span>,
     /// The names of the file's objects, which are no values.
     pub(super) objects: HashSet<&'s str>,
+    /// The indices of all its blocks.
+    pub(super) indices: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
     budget: Budget,
     /// What was reported of names, apart from the other problems, some of which are dropped again.
@@ -75,7 +77,11 @@ impl<'s> Names<'s> {
                         names.definitions.entry(name.text).or_insert(name.span);
                     }
                 }
-                Item::Block(block) => names.objects.extend(block.name.map(|name| name.text)),
+                Item::Block(block) => {
+                    names.objects.extend(block.name.map(|name| name.text));
+                    let indices = block.repetition.iter().flat_map(|it| &it.indices);
+                    names.indices.extend(indices.map(|index| index.name.text));
+                }
                 Item::Bad(_) => {}
             }
         }

@@ -9,7 +9,7 @@ use crate::{
     source::Span,
     syntax::{
         shorten,
-        tree::{self, Operator, Step, ValueKind},
+        tree::{self, Operator, Step, Unit, ValueKind},
     },
 };
 
@@ -145,9 +145,18 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        let with_unit = |tree: &tree::Value<'s>, value: Value| match value {
-            Value::Number(number) if self.set_in(tree).is_none() => {
-                self.units(tree, number).map(|(_, fix)| fix).into()
+        // The unit of the other side first.
+        let with_unit = |tree: &tree::Value<'s>, value: Value, other: Value| match (value, other) {
+            (Value::Number(number), Value::Angle(angle)) if self.set_in(tree).is_none() => {
+                let mut units = self.units(tree, number);
+                let is_first = match units[0].0 {
+                    Unit::Degrees => angle.degrees != 0.0,
+                    Unit::Radians => angle.radians != 0.0,
+                };
+                if !is_first {
+                    units.reverse();
+                }
+                units.map(|(_, fix)| fix).into()
             }
             _ => Vec::new(),
         };
@@ -155,9 +164,9 @@ impl<'s> Evaluator<'_, 's> {
         let fixes = match (left, right) {
             (Vector, Number) if fits(Vector) => vector(right_span, right_text),
             (Number, Vector) if fits(Vector) => vector(left_span, left_text),
-            (Angle, Number) if fits(Angle) => with_unit(&step.operand, values.1),
+            (Angle, Number) if fits(Angle) => with_unit(&step.operand, values.1, values.0),
             (Number, Angle) if fits(Angle) => {
-                let fixes = left_tree.map(|tree| with_unit(tree, values.0));
+                let fixes = left_tree.map(|tree| with_unit(tree, values.0, values.1));
                 fixes.unwrap_or_default()
             }
             _ => Vec::new(),

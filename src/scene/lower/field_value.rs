@@ -4,13 +4,11 @@ use glam::DVec3;
 
 use super::lowering::Lowering;
 use crate::{
+    color::in_bytes,
     diagnostic::{Applicability, Diagnostic},
     math::Angle,
     numbers,
-    scene::{
-        error::error,
-        eval::{Evaluator, in_bytes},
-    },
+    scene::{error::error, eval::Evaluator},
     schema::{self, Condition, Field, Preset, Type, Value},
     suggest,
     syntax::{

@@ -145,12 +145,27 @@ impl<'s> Lowering<'s> {
                 self.names.know_words(text);
             }
         }
-        let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
-        for field in block.fields.iter().filter(is_known) {
+        let parted = self.parted(&block.fields, &mut lowered);
+        let is_left = |field: &&tree::Field<'s>| !parted.contains(&field.name.span);
+        let left = block.fields.iter().filter(is_left);
+        let (known, unknown): (Vec<_>, Vec<_>) =
+            left.partition(|field| row.field(field.name.text).is_some());
+        for field in known {
             self.field(field, &mut lowered);
         }
+        // Of two words for one field nobody knows which one it is.
+        let mut tried: Vec<&str> = Vec::new();
+        for field in unknown
+            .iter()
+            .filter_map(|it| row.field_tried(it.name.text))
+        {
+            if tried.contains(&field.name) {
+                lowered.meant.push(field.name);
+            }
+            tried.push(field.name);
+        }
         // What else there is tells what they can have meant.
-        for field in block.fields.iter().filter(|field| !is_known(field)) {
+        for field in unknown {
             self.unknown_field(field, &mut lowered);
         }
         self.conflicts(&lowered);
@@ -184,6 +199,12 @@ impl<'s> Lowering<'s> {
         let kinds = suggest::list(schema::block_names());
         let help = match near {
             Some(near) => format!("did you mean `{}`? The kinds are {kinds}.", near.name),
+            None if block.repetition.is_some() || block.name.is_some_and(|it| it.text == "for") => {
+                format!(
+                    "write the kind first, as in `sphere {} for i < 8 {{`",
+                    kind.text
+                )
+            }
             None if OTHER_SHAPES.split(' ').any(|shape| shape == kind.text) => {
                 format!("the kinds are {kinds}; other shapes are made of triangles")
             }
@@ -294,6 +315,10 @@ impl<'s> Lowering<'s> {
                 continue;
             };
             let message = format!("`{}` and `{}` exclude each other", second.name, first.name);
+            let (help, fix) = match self.other_corner(block) {
+                Some(fix) => (fix.title.clone(), Some(fix)),
+                None => (format!("remove one of them: {}", choice.why), None),
+            };
             self.problems.push(
                 error("conflicting_fields", message)
                     .at(
@@ -310,10 +335,28 @@ impl<'s> Lowering<'s> {
                             _ => "this says it already",
                         },
                     )
-                    .help(format!("remove one of them: {}", choice.why))
+                    .help(help)
+                    .fixes(fix)
                     .fixes(self.one_of(block, choice, [first.name, second.name])),
             );
         }
+    }
+
+    /// What to write for a `size` beside one corner of a box: the other corner.
+    fn other_corner(&self, block: &Block<'s>) -> Option<Fix> {
+        let given = |name| block.given(name);
+        let size = given("size").filter(|_| given("center").is_none())?;
+        let (corner, other, sign) = match (given("min"), given("max")) {
+            (Some(corner), None) => (corner, "max", "+"),
+            (None, Some(corner)) => (corner, "min", "-"),
+            _ => return None,
+        };
+        let texts = [corner, size].map(|it| self.sources.text(it.span));
+        let written = format!("{} {sign} {}", texts[0], texts[1]);
+        // A sum would lose its parentheses.
+        let is_sum = sign == "-" && size.value.is_some() && !texts[1].starts_with('(');
+        let is_sum = is_sum && texts[1].contains(['+', '-']);
+        (!is_sum).then(|| Fix::write(size.field(), format!("{other} {written}")))
     }
 
     /// A field without a value. A sign of other languages behind its name goes.

@@ -12,7 +12,7 @@ use crate::{
     syntax::{
         NESTING_LIMIT, shorten,
         tokens::has_name,
-        tree::{Block, Index, Name, Repetition},
+        tree::{self, Block, Index, Name, Repetition, ValueKind},
     },
 };
 
@@ -44,8 +44,12 @@ impl<'s> Lowering<'s> {
         });
         if repetition.indices.len() > NESTING_LIMIT {
             self.too_many(repetition, &format!("more than {NESTING_LIMIT} indices"));
-        } else if are_right && let Some(combinations) = self.combinations(block, repetition) {
-            self.objects_of(row, block, repetition, combinations);
+        } else if are_right {
+            match self.combinations(block, repetition) {
+                Some(combinations) => self.objects_of(row, block, repetition, combinations),
+                // What is wrong in the block is told, whatever is wrong with its head.
+                None => self.unbuilt_at_all(row, block, repetition),
+            }
         }
         for index in &repetition.indices {
             self.names.forget_index(index.name);
@@ -60,6 +64,9 @@ impl<'s> Lowering<'s> {
     /// a product that is too large is reported whatever the order of its factors.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
+        if !self.are_counted_before(repetition) {
+            return None;
+        }
         let mut counts = Vec::new();
         for index in &repetition.indices {
             counts.push(match self.depends(index.count.span, repetition) {
@@ -125,11 +132,7 @@ impl<'s> Lowering<'s> {
         let changing: Vec<_> = fields.collect();
         if combinations.is_empty() {
             let told = self.problems.len();
-            // What is wrong in it is told, whatever its indices would be.
-            for index in &repetition.indices {
-                self.names.set_index(index.name, None);
-            }
-            self.unbuilt(row, block);
+            self.unbuilt_at_all(row, block, repetition);
             if self.problems.len() == told {
                 let span = repetition.span();
                 let written = shorten(self.sources.text(span));
@@ -181,6 +184,19 @@ impl<'s> Lowering<'s> {
         self.is_odd = None;
     }
 
+    /// What is wrong in a block is told, whatever its indices would be.
+    fn unbuilt_at_all(
+        &mut self,
+        row: &'static schema::Block,
+        block: &Block<'s>,
+        repetition: &Repetition<'s>,
+    ) {
+        for index in &repetition.indices {
+            self.names.set_index(index.name, None);
+        }
+        self.unbuilt(row, block);
+    }
+
     fn set_indices(&mut self, repetition: &Repetition<'s>, values: &[u32]) {
         for (index, &value) in repetition.indices.iter().zip(values) {
             let value = Value::Number(f64::from(value));
@@ -193,6 +209,32 @@ impl<'s> Lowering<'s> {
         let text = self.sources.text(value);
         let mut indices = repetition.indices.iter();
         indices.any(|index| has_name(text, index.name.text))
+    }
+
+    /// Whether each count does without its own index and those behind it; reports it otherwise.
+    fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
+        for (at, index) in repetition.indices.iter().enumerate() {
+            let mut later = repetition.indices.iter().skip(at);
+            let used = later.find_map(|later| Some((later, use_of(&index.count, later.name)?)));
+            let Some((other, place)) = used else { continue };
+            let name = other.name.text;
+            let whole = self.sources.text(other.name.span.to(other.count.span));
+            let (message, help) = match other.name.span == index.name.span {
+                true => (
+                    format!("`{name}` is used in its own count"),
+                    "write a number, or a `let` or an index before it".to_owned(),
+                ),
+                false => (
+                    format!("`{name}` counts behind what it is used in"),
+                    format!("write `{}` first", shorten(whole)),
+                ),
+            };
+            let problem = error("used_before_definition", message).at(place, "used here");
+            self.problems
+                .push(problem.at(other.name.span, "the index").help(help));
+            return false;
+        }
+        true
     }
 
     /// Whether an index can have its name; reports it otherwise.
@@ -249,6 +291,14 @@ impl<'s> Lowering<'s> {
         let problem = error("bad_count", message).at(tree.span, "how many there are");
         let written = shorten(self.sources.text(tree.span));
         let help = match value {
+            Value::Number(number)
+                if number < 0.0 && matches!(tree.kind, ValueKind::Negation { .. }) =>
+            {
+                format!(
+                    "write how many there are, such as `{name} < {}`",
+                    (-number).ceil()
+                )
+            }
             Value::Number(number) if number < 0.0 => {
                 format!("write `{name} < max(0, {written})`, if there is none then")
             }
@@ -314,6 +364,12 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
+            // Rows of triangles that meet in a point.
+            if problem.is("on_one_line")
+                && let Some(help) = &mut problem.help
+            {
+                *help += "; if only those at an end of a row shrink to a line, let the index count to one less, as in `j < m - 1`";
+            }
             let place = problem.labels.first().map(|label| label.span);
             let depends =
                 |it: &Span| place.is_some_and(|at| it.source == at.source && it.to(at) == *it);
@@ -332,5 +388,16 @@ impl<'s> Lowering<'s> {
         let problem = error("bad_repetition", format!("{} is not repeated", row.noun));
         self.problems
             .push(problem.at(span, "not here").help(help).fixes([fix]));
+    }
+}
+
+/// Where a name is used in a value.
+fn use_of(value: &tree::Value<'_>, name: Name<'_>) -> Option<Span> {
+    match value.kind {
+        ValueKind::Name(used) => (used == name.text).then_some(value.span),
+        _ => value
+            .parts()
+            .into_iter()
+            .find_map(|part| use_of(part, name)),
     }
 }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     color::Color,
-    diagnostic::{Applicability, Diagnostic, Fix},
+    diagnostic::{Applicability, Diagnostic, Edit, Fix},
     scene::{error::error, eval::literal, examples::example_beside, model::Image},
     schema::{self, Field, Kind, Type, Value, css},
     source::{SourceId, Span},
@@ -51,6 +51,88 @@ impl<'s> Lowering<'s> {
                 block.meant.push(field);
             }
         }
+    }
+
+    /// Reports words that stand for the parts of a field, or for all fields of a way, as `p1`, `p2`
+    /// and `p3` do, once for all; answers where they stand.
+    pub(super) fn parted(
+        &mut self,
+        fields: &[tree::Field<'s>],
+        block: &mut Block<'s>,
+    ) -> Vec<Span> {
+        let (row, mut taken) = (block.row, Vec::new());
+        let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
+        // Most blocks have no such field.
+        if !fields.iter().any(is_unknown) {
+            return taken;
+        }
+        for &(rows, names) in row.parted {
+            for words in rows.split('|') {
+                let mut found: Vec<&tree::Field<'s>> = Vec::new();
+                for word in words.split(' ') {
+                    let mut fields = fields.iter();
+                    found.extend(fields.find(|it| suggest::is_among(it.name.text, word)));
+                }
+                let unknown = found.iter().find(|it| is_unknown(it));
+                let is_all = found.len() == words.split(' ').count();
+                let (Some(unknown), true, [first, ..]) = (unknown, is_all, names) else {
+                    continue;
+                };
+                let is_given = |it: &tree::Field<'_>| {
+                    let is_found = found.iter().any(|of| of.name.span == it.name.span);
+                    !is_found && names.contains(&it.name.text)
+                };
+                let is_set = unknown.value.span.source != SourceId::File;
+                let is_taken = found.iter().any(|it| taken.contains(&it.name.span));
+                if is_set || is_taken || fields.iter().any(is_given) {
+                    continue;
+                }
+                self.part(row, names, first, &found, unknown.name);
+                taken.extend(found.iter().map(|it| it.name.span));
+                block.meant.extend(names);
+            }
+        }
+        taken
+    }
+
+    fn part(
+        &mut self,
+        row: &schema::Block,
+        names: &[&str],
+        first: &str,
+        found: &[&tree::Field<'s>],
+        unknown: Name<'s>,
+    ) {
+        let only = row.field(first).filter(|_| names.len() == 1);
+        let part = only.and_then(|only| only.takes.parts());
+        let part = part.map_or(Type::Vector, |(part, _)| part);
+        let (mut are_right, mut list) = (true, String::new());
+        for it in found {
+            let value = self.tried(&it.value, Some(part));
+            are_right &= value.is_some_and(|value| value.kind() == part);
+            list += if list.is_empty() { "" } else { ", " };
+            list += self.sources.text(it.value.span);
+        }
+        let written = format!("{first} ({list})");
+        let mut edits = Vec::new();
+        for (at, it) in found.iter().enumerate() {
+            edits.push(match (names.get(at), only) {
+                (Some(_), Some(_)) => Edit::new(it.span, written.clone()),
+                (Some(name), None) => Edit::new(it.name.span, *name),
+                (None, _) => Edit::remove(it.span, self.sources),
+            });
+        }
+        let shown = match only {
+            Some(_) => format!("`{written}`"),
+            None => quoted(names),
+        };
+        let is_safe = Applicability::safe_if(row.kind == Kind::Triangle);
+        let fix = Fix::new(format!("write {shown}"), edits).being(is_safe);
+        let noun = row.noun;
+        let message = format!("{noun} has no field `{}`", unknown.text);
+        let problem = error("unknown_field", message).help(fix.title.clone());
+        let problem = problem.at(unknown.span, format!("not a field of {noun}"));
+        self.problems.push(problem.fixes(are_right.then_some(fix)));
     }
 
     /// Reports it, also of a `--set` argument, and tells what was probably meant.
@@ -222,7 +304,7 @@ impl<'s> Lowering<'s> {
         value: &tree::Value<'s>,
     ) -> Option<(String, Applicability)> {
         let found = self.tried(value, Some(row.takes));
-        if !block.has_place(row) {
+        if !block.has_place(row) || block.meant.contains(&row.name) {
             return None;
         }
         let text = self.sources.text(value.span);

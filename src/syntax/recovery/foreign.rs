@@ -45,6 +45,11 @@ const OF_BOOKS: &[(&str, [&str; 2])] = &[
     ("½", ["write `0.5`", "write `+ 0.5`"]),
     ("¼", ["write `0.25`", "write `+ 0.25`"]),
     ("¾", ["write `0.75`", "write `+ 0.75`"]),
+    ("|", ["write `abs(x)` for the size of x, or `length(v)`"; 2]),
+    (
+        "\\",
+        ["write formulas as in `1 / 2` and `2 * pi`, without `\\`"; 2],
+    ),
     (
         "?",
         ["there are no conditions: `pinhole explain condition` says what to write instead"; 2],
@@ -180,7 +185,7 @@ impl<'s> Recovery<'_, 's> {
                 false => line,
             };
             let end = start + kept.len().max(1);
-            let sign = if line.starts_with('#') { 1 } else { 2 };
+            let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
             // A comment with the right sign would take the brace, too.
             if kept.len() < line.len() {
@@ -202,6 +207,10 @@ impl<'s> Recovery<'_, 's> {
                 Place::Value => digits.is_empty() && !self.is_on_new_line(1) && self.is_remark(),
             };
         }
+        if matches!(word, ";" | "%") {
+            let is_place = place == Place::Start || (word == "%" && place == Place::Operator);
+            return is_place && self.is_prose();
+        }
         // `1 -- big`, but a difference in `1 --b` and `1 -- b`.
         let name = self.word(2);
         let is_remark = self.is_name(2)
@@ -213,6 +222,22 @@ impl<'s> Recovery<'_, 's> {
             && self.is(1, "-")
             && self.is_adjacent(1)
             && (place == Place::Start || (place == Place::Operator && is_remark))
+    }
+
+    /// Whether words that mean nothing here follow a sign in its line: `; a comment`.
+    fn is_prose(&mut self) -> bool {
+        let mut is_word = |at| {
+            let word = self.word(at);
+            let is_known = self.words.is_value(word) || self.is_field_name(word);
+            self.is_name(at) && !is_known && !self.is_kind(at)
+        };
+        let are_words = [is_word(1), is_word(2)];
+        let is_end = self.is_on_new_line(2) && (self.is_name(2) || !self.starts_value(2));
+        let is_double = self.is(0, ";") && self.is(1, ";") && self.is_adjacent(1);
+        is_double
+            || (are_words[0] && (are_words[1] || is_end))
+                && !self.is_adjacent(1)
+                && !self.is_on_new_line(1)
     }
 
     /// Whether words follow a `#` that stands in place of a value, rather than the digits or the

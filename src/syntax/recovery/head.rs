@@ -30,34 +30,41 @@ const EITHER: &str = "write `for {I} < {N}`, or `for {I} < {N+1}` if {N} is one 
 const TO: &str = "write `for {I} < {N-M+1}`, and `{I} + {M}` for `{I}` in the values";
 const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the values";
 const LACKS_COUNT: &str =
-    "write `for {I} < 8` with the number of its values, or `for i < {I}` if `{I}` is that";
+    "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
+const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
 /// Stands in place of the name of the object.
 const NAME_FIRST: &str = "^";
 
 /// An index with its count.
 #[rustfmt::skip]
-const INDICES: [Row; 23] = [
+const INDICES: [Row; 29] = [
     ["I < N", "", "{I} < {N}", ""],
     ["« 0 <= » I < N", FROM_ZERO, "{I} < {N}", ""],
     ["« 0 < » I < N", FROM_ZERO, "", "write `for {I} < {N} - 1`, and `{I} + 1` for `{I}` in the values"],
     ["« M <= » I < N", FROM_ZERO, "", UP_TO],
-    ["I « <= » N", "an index ends before its count, and is never equal to it", "{I} < {N+1}", ""],
+    ["I « <=|≤ » N", "an index ends before its count, and is never equal to it", "{I} < {N+1}", ""],
     ["I « in|=|:=|from range ( N ) »", NO_RANGE, "{I} < {N}", ""],
     ["I « in|=|:=|from range ( 0 , N ) »", NO_RANGE, "{I} < {N}", ""],
     ["I « in|=|:=|from range ( M , N ) »", NO_RANGE, "", UP_TO],
+    ["I « in|=|:=|from range ( 0 , N , M ) »", NO_RANGE, "", STEP],
+    ["I « in|=|:=|from 0 ..<|.. N step|by M »", NO_RANGE, "", STEP],
     ["I « in|=|:=|from 0 ..=|...|to|: N »", NO_RANGE, "", EITHER],
     ["I « in|=|:=|from 0 ..<|.. N »", NO_RANGE, "{I} < {N}", ""],
     ["I « in|=|:=|from [|( 0 ..|to|:|, N ]|) »", NO_RANGE, "", EITHER],
     ["I « in|=|:=|from M ..=|...|to|: N »", NO_RANGE, "", TO],
     ["I « in|=|:=|from M ..<|..|until N »", NO_RANGE, "", UP_TO],
     ["I « in|=|:=|from [|( M ..|to|:|, N ]|) »", NO_RANGE, "", TO],
-    ["« O I = 0 ; » I < N", FROM_ZERO, "{I} < {N}", ""],
-    ["« O I = 0 ; » I <= N", FROM_ZERO, "{I} < {N+1}", ""],
-    ["« O I = M ; » I < N", FROM_ZERO, "", UP_TO],
-    ["« O I = M ; » I <= N", FROM_ZERO, "", TO],
+    ["« O I = 0 ;|, » I < N", FROM_ZERO, "{I} < {N}", ""],
+    ["« O I = 0 ;|, » I <=|≤ N", FROM_ZERO, "{I} < {N+1}", ""],
+    ["« O I = M ;|, » I < N", FROM_ZERO, "", UP_TO],
+    ["« O I = M ;|, » I <=|≤ N", FROM_ZERO, "", TO],
+    ["« I = 0 » , W < N", "an index lacks its count", "", LACKS_COUNT],
+    ["I « = 0 , N , M »", NO_RANGE, "", STEP],
+    ["I « = 0 , N »", NO_RANGE, "", EITHER],
     ["« W » I < N", "an index is a name alone", "{I} < {N}", ""],
     ["I « in|==|=|:=|:|to|until » N", "`<` stands between an index and its count", "", "write `for {I} < {N}`"],
     ["« I » $", "an index lacks its count", "", LACKS_COUNT],
+    ["« W » , I < N", "each index has its own count", "", "write `for {W} < {N}, {I} < {N}`, if both count to {N}"],
     ["« I » ,", "an index lacks its count", "", LACKS_COUNT],
     ["« N » $", "an index lacks its name", "", "write `for i < {N}`, and use `i` in the values"],
 ];
@@ -73,7 +80,7 @@ const BEHIND: [Row; 9] = [
     ["« ; ++ I »", "an index counts by 1 by itself", "", ""],
     ["« ; I += 1 »", "an index counts by 1 by itself", "", ""],
     ["« ;|and|&&|&|for|x|× »", COMMA, ", ", ""],
-    ["« step|by M »", "an index counts by 1", "", "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values"],
+    ["« step|by M »", "an index counts by 1", "", STEP],
     ["« :|do|then|=>|, » $", "nothing stands between a count and the `{`", "", ""],
     ["« W » $", "the name of an object stands before the `for`", NAME_FIRST, ""],
 ];
@@ -152,7 +159,7 @@ struct Found<'t> {
 impl<'t> Found<'t> {
     /// Reads what a row says; answers where it ends, and where the slip is.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
-        let (mut at, mut under) = (from, from..from);
+        let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {
             let rest = text.get(at..)?.trim_start();
             let start = text.len() - rest.len();
@@ -196,6 +203,11 @@ impl<'t> Found<'t> {
             }
             if let Some(slot) = slot {
                 *slot = rest.get(..length)?;
+                // An index that is mentioned twice is the same one.
+                if item == "I" && !index.is_empty() && index != *slot {
+                    return None;
+                }
+                index = if item == "I" { *slot } else { index };
             }
             at = start + length;
         }

@@ -18,6 +18,9 @@ use crate::{
 const OTHER_LETS: &str =
     "var const def define set val auto local int float double number vec3 vector";
 
+/// Words before a kind that are no name of an object.
+const NO_NAMES: &str = "a an the my new add create draw make object";
+
 /// As far as this a line is searched for what tells what it is.
 const FAR: usize = 24;
 
@@ -67,6 +70,9 @@ impl<'s> Recovery<'_, 's> {
             return self.named_block(keyword, name);
         }
         definition.equals = matches!(self.word(0), "=" | ":" | ":=").then(|| self.bump());
+        if self.is(0, "=") && self.is_adjacent(0) {
+            definition.equals = definition.equals.map(|first| first.to(self.bump()));
+        }
         definition.value = self.value_of_definition(definition.name, definition.equals);
         self.settle(told);
         definition.span = keyword.to(definition.value.span);
@@ -241,12 +247,17 @@ impl<'s> Recovery<'_, 's> {
     /// A `{` with more than a kind and a name before it.
     fn odd_head(&mut self, count: usize) {
         let first = self.name();
-        if self.is(0, "=") && self.is_name(1) && count == 3 {
+        if matches!(self.word(0), "=" | ":" | ":=") && self.is_name(1) && count == 3 {
             self.bump();
             return self.named_block(first.span, first);
         }
         if !self.words.is_kind(first.text) && self.starts_block() {
             let kind = self.word(0);
+            let is_object = schema::block(kind).is_some_and(|row| row.is_object);
+            let is_noise = NO_NAMES.split(' ').any(|word| word == first.text);
+            if is_object && self.is(1, "{") && !is_noise {
+                return self.named_block(first.span, first);
+            }
             let before = Span::new(self.id, first.span.start, self.here().start);
             let title = format!("take `{}` away", shorten(first.text));
             let fix = Fix::new(title, [Edit::new(before, "")]);
@@ -259,7 +270,8 @@ impl<'s> Recovery<'_, 's> {
         }
         let rest = rest.to(self.behind());
         let (kind, written) = (shorten(first.text), self.written(rest));
-        let words = unquoted(written).split([' ', '-', '.', '\t']);
+        let name = written.trim_end_matches([':', '=', ',', ' ', '\t']);
+        let words = unquoted(name).split([' ', '-', '.', '\t']);
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
         let name = words.join("_");
         let fix = if is_name(&name) {
@@ -283,7 +295,7 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// `let Ball = sphere {`, `Ball = sphere {` and `sphere = Ball {`, from behind the `=` on.
+    /// `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, from behind the `=` on.
     fn named_block(&mut self, start: Span, name: Name<'s>) {
         let (mut name, mut kind) = (name, self.name());
         let whole = start.to(kind.span);
@@ -293,7 +305,10 @@ impl<'s> Recovery<'_, 's> {
         let right = format!("{} {}", kind.text, name.text);
         let title = format!("write `{} {{`", shorten(&right));
         let fix = Fix::new(title, [Edit::new(whole, right)]);
-        self.report(&say::BAD_HEAD, whole, &[kind.text], fix);
+        // `red sphere {`
+        let fix = Some(fix).filter(|_| !self.words.is_color(name.text));
+        let said = say::BAD_HEAD.safe_if(self.written(whole).contains(['=', ':']));
+        self.report(&said, whole, &[kind.text], fix);
         self.open_block(Block::new(whole, Some(kind), Some(name)));
     }
 

@@ -3,7 +3,7 @@
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
-    color::are_shares,
+    color::{are_shares, whole_parts},
     diagnostic::{Edit, Fix},
     schema::{self, Type},
     source::Span,
@@ -55,7 +55,8 @@ impl<'s> Recovery<'_, 's> {
                 if numbers && commas > 0 && self.comma_in_number(span) => {}
             (Some(Type::Color), 3) if numbers => {
                 let said = say::MISSING_PARENTHESES.safe_if(!are_shares(&[whole]));
-                let fix = replace(span, format!("rgb{right}"));
+                let parts = whole_parts(&self.list_of(&values));
+                let fix = replace(span, format!("rgb({parts})"));
                 self.report(&said, span, &[example(takes)], fix);
             }
             // `6 371 000`
@@ -130,21 +131,6 @@ impl<'s> Recovery<'_, 's> {
             && self.is_named_factor(left, right);
         let is_product =
             is_scaled || are_numbers && matches!(self.within.takes, None | Some(Type::Number));
-        if let ValueKind::Name(name) = left.kind
-            && schema::function(name).is_some()
-        {
-            // `cos a`
-            let title = format!("write `{l}({r})`");
-            let open = Edit::new(sign, "(");
-            let close = Edit::insert(self.id, right.span.end, ")");
-            let fix = Fix::new(title, [open, close]);
-            return self.report(
-                &say::MISSING_PARENTHESES.safe_if(false),
-                left.span.to(right.span),
-                &[""],
-                fix,
-            );
-        }
         let title = format!("write `{l} * {r}`");
         let fix = is_product.then(|| Fix::new(title, [Edit::new(sign, " * ")]));
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
@@ -244,9 +230,19 @@ impl<'s> Recovery<'_, 's> {
         } else {
             return false;
         };
+        // Of three digits nobody writes all behind a point.
+        let is_whole_number = are_thousands && rest.len() == 1 && *head != "0";
+        let (message, right) = match is_whole_number {
+            true => ("no commas stand in a number", parts.join("_")),
+            false => (message, right),
+        };
         let comma = span.start + head.len();
         let comma = Span::new(self.id, comma, comma + 1);
-        self.report(&say::DECIMAL_COMMA, comma, &[message], replace(span, right));
+        let mut fix = replace(span, right);
+        if is_whole_number {
+            fix.title += ", or a `.` if the comma is a decimal point";
+        }
+        self.report(&say::DECIMAL_COMMA, comma, &[message], fix);
         true
     }
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::{Recovery, example, foreign::Place, is_plain_number};
 use crate::{
-    color::are_shares,
+    color::{are_shares, whole_parts},
     diagnostic::{Edit, Fix},
     schema::{self, Type},
     source::Span,
@@ -57,7 +57,7 @@ impl<'s> Recovery<'_, 's> {
         };
         let span = list.span;
         if !list.is_round && self.problems.len() == told {
-            return self.brackets(list);
+            return self.brackets(list, None);
         }
         let Some(elements) = self.checked(list, &count) else {
             return bad(span);
@@ -80,6 +80,15 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_foreign_function(function.text) && self.problems.len() == told {
             return self.foreign_function(function, list);
         }
+        // `rgb(100%, 0%, 0%)`, and what another function of colours takes
+        let is_known = schema::function(function.text).is_some();
+        if self.problems.len() > told + 1 && self.written(parentheses).contains('%') {
+            self.problems.truncate(told);
+            if is_known {
+                let help = ["%", "write `255` for `100%`"];
+                self.report(&say::UNKNOWN_OPERATOR, parentheses, &help, None);
+            }
+        }
         match self.checked(list, &count) {
             Some(elements) => call(function, elements, parentheses),
             None => bad(function.span.to(parentheses)),
@@ -96,15 +105,19 @@ impl<'s> Recovery<'_, 's> {
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
         let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
-        let (function, takes) = match name.text {
-            "rgba" | "color" | "Color" => ("rgb", Type::Color),
+        let (function, takes) = match (name.text, self.within.takes) {
+            ("rgba" | "color" | "Color", _) | (_, Some(Type::Color)) => ("rgb", Type::Color),
             _ => ("", Type::Vector),
         };
         if takes == Type::Color && values.len() == 4 {
             values.truncate(3);
         }
         let fits = values.len() == 3 && self.within.takes.is_none_or(|t| t == takes);
-        let right = format!("{function}({})", self.list_of(&values));
+        let mut list = self.list_of(&values);
+        if takes == Type::Color {
+            list = whole_parts(&list);
+        }
+        let right = format!("{function}({list})");
         let fix = fits.then(|| replace(span, right));
         let words = [name.text, example(Some(takes))];
         self.report(&say::FOREIGN_FUNCTION, name.span, &words, fix);
@@ -163,6 +176,21 @@ impl<'s> Recovery<'_, 's> {
                 self.names_of_parts(&labels, is_plain);
                 let last = list.elements.last().and_then(|last| last.comma);
                 list.needless = list.needless.or(last);
+                return Some(list);
+            }
+            // Of `(0, 1, 0} radius 1 )` two signs were exchanged.
+            let next = self.word(1);
+            let goes_on = self.within.is_block && self.is_name(1) && !self.is_on_new_line(1);
+            if (word, close) == ("}", ")") && goes_on && self.is_field_name(next) && self.lists == 1
+            {
+                let brace = self.bump();
+                self.report(
+                    &say::UNCLOSED_PARENTHESIS,
+                    open,
+                    &[],
+                    Fix::write(brace, ")"),
+                );
+                list.span = open.to(brace);
                 return Some(list);
             }
             if word == "," || (word == ";" && !is_value_next) {
@@ -296,19 +324,54 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(elements)
     }
 
-    /// A list in other brackets.
-    fn brackets(&mut self, list: List<'s>) -> Value<'s> {
-        let (span, takes) = (list.span, self.within.takes);
+    /// `rgb [255, 0, 0]`, `normalize <1, 2, 3>`
+    pub(super) fn call_in_brackets(
+        &mut self,
+        name: Name<'s>,
+        row: &schema::Function,
+        close: &'static str,
+    ) -> Value<'s> {
+        let takes = match row.gives {
+            Type::Color => Type::Color,
+            _ => Type::Vector,
+        };
+        let told = self.problems.len();
+        if let Some(list) = self.list(close, None, &(3..=3))
+            && self.problems.len() == told
+        {
+            let outside = self.within.takes.replace(takes);
+            self.brackets(list, Some((name, row)));
+            self.within.takes = outside;
+        }
+        bad(name.span.to(self.behind()))
+    }
+
+    /// A list in other brackets, perhaps behind the function that takes it.
+    fn brackets(
+        &mut self,
+        list: List<'s>,
+        behind: Option<(Name<'s>, &schema::Function)>,
+    ) -> Value<'s> {
+        let takes = self.within.takes;
+        let span = behind.map_or(list.span, |(name, _)| name.span.to(list.span));
         let (what, function, count) = match takes {
             Some(Type::Color) => ("a colour", "rgb", 3),
             Some(Type::Colors) => ("a pair of colours", "", 2),
             Some(Type::FaceColors) => ("a list of colours", "", 3),
             _ => ("a vector", "", 3),
         };
-        let fits = list.elements.len() == count && list.needless.is_none();
+        let fits = list.elements.len() == count
+            && list.needless.is_none()
+            && behind
+                .is_none_or(|(_, row)| row.takes == [Type::Vector] || row.gives == Type::Color);
         let parts = list.elements.iter().map(|e| self.written(e.value.span));
         let parts = parts.collect::<Vec<_>>().join(", ");
-        let fix = fits.then(|| replace(span, format!("{function}({parts})")));
+        let right = match (function, behind) {
+            ("", Some((name, _))) => format!("{}(({parts}))", name.text),
+            ("", None) => format!("({parts})"),
+            _ => format!("{function}({})", whole_parts(&parts)),
+        };
+        let fix = fits.then(|| replace(span, right));
         let said = say::BRACKETS.safe_if(function.is_empty() || !are_shares(&[&parts]));
         self.report(&said, span, &[what, example(takes)], fix);
         let kind = match fits && function.is_empty() {

@@ -28,7 +28,7 @@ use numbers::unit_of;
 
 use super::{
     Parsed, messages as say,
-    problem::{Message, shorten, tell_signs_once, times},
+    problem::{Message, replace, shorten, tell_signs_once, times},
     scan::Scan,
     tokens::{Lexer, Token, TokenKind},
     tree::{Item, Name, Tree, Value, ValueKind, bad},
@@ -388,7 +388,13 @@ impl<'w, 's> Recovery<'w, 's> {
             self.lists > 0 && before.ends_with(|c: char| c.is_alphanumeric() || c == ')');
         let of_books = foreign::of_books(&written, expected != "a value" || is_behind_part);
         let help = of_books.unwrap_or(help);
-        self.report(&say::UNEXPECTED, span, &[expected, &written, help], None);
+        // `½` and `π` by themselves.
+        let text = of_books.filter(|_| expected == "a value" && written.chars().count() == 1);
+        let text = text.and_then(|help| help.strip_prefix("write `")?.strip_suffix('`'));
+        let fix = text
+            .filter(|it| !it.contains('`'))
+            .map(|text| replace(span, text));
+        self.report(&say::UNEXPECTED, span, &[expected, &written, help], fix);
     }
 
     fn remove(&self, title: impl Into<String>, span: Span) -> Fix {
@@ -451,10 +457,10 @@ impl<'w, 's> Recovery<'w, 's> {
                     return Edit::remove_in(place, self.text);
                 }
                 let rest = self.text.get(place.start..).unwrap_or_default();
-                let signs = rest.len() - rest.trim_start_matches(['#', '-']).len();
+                let signs = rest.len() - rest.trim_start_matches(['#', '-', ';', '%']).len();
                 Edit::new(Span::new(self.id, place.start, place.start + signs), "//")
             });
-            let words = [sign, &times(places.len() - 1), between];
+            let words = [sign.trim(), &times(places.len() - 1), between];
             let mut found = message.at(at, &words, Fix::new(title, edits));
             if is_doubtful && found.is_needless {
                 found.fixes.clear();

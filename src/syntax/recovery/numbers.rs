@@ -7,7 +7,7 @@ use crate::{
     syntax::{
         messages as say,
         problem::{replace, shorten},
-        tokens::{is_color_code, numeric_part},
+        tokens::{has_name, is_color_code, numeric_part},
         tree::{Unit, Value, ValueKind, bad, number},
     },
 };
@@ -18,7 +18,7 @@ const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
     ("grad grads gon", 0.9, "deg"),
-    ("m metre metres meter meters px pixel pixels", 1.0, ""),
+    ("m metre metres meter meters px pixel pixels f", 1.0, ""),
     ("cm", 0.01, ""),
     ("mm", 0.001, ""),
     ("km", 1000.0, ""),
@@ -40,6 +40,18 @@ fn scaled(number: &str, factor: f64) -> Option<String> {
     let value = number.replace('_', "").parse::<f64>().ok()? * factor;
     let rounded: f64 = format!("{value:.11e}").parse().ok()?;
     Some(format!("{rounded}"))
+}
+
+/// `0x10`, `0b11` and `0o17`
+fn in_other_base(written: &str) -> Option<u32> {
+    let (base, digits) = written.strip_prefix('0')?.split_at_checked(1)?;
+    let base = match base {
+        "x" | "X" => 16,
+        "b" | "B" => 2,
+        "o" | "O" => 8,
+        _ => return None,
+    };
+    u32::from_str_radix(digits, base).ok()
 }
 
 impl<'s> Recovery<'_, 's> {
@@ -85,6 +97,9 @@ impl<'s> Recovery<'_, 's> {
         let fits = self.within.takes.is_none_or(|takes| takes == wanted);
         let label = match wanted {
             _ if !fits => "only angles have a unit, such as `30deg`",
+            Type::Number if unit.to_ascii_lowercase().starts_with(['p', 'f']) => {
+                "no unit stands behind a plain number"
+            }
             Type::Number => "all lengths are in metres",
             _ => "the units are `deg` and `rad`",
         };
@@ -122,7 +137,10 @@ impl<'s> Recovery<'_, 's> {
         } else if is_color_code(hex) && takes == Some(Type::Color) {
             let label = "the digits of a colour stand behind a `#`";
             (label, Some(format!("#{hex}")), span)
-        } else if let Some(sizes) = self.sizes(written) {
+        } else if let Some(value) = in_other_base(written) {
+            let right = (takes != Some(Type::Color)).then(|| value.to_string());
+            ("a number has decimal digits", right, span)
+        } else if let Some(sizes) = self.sizes(written, span) {
             ("`x` is no operator", Some(sizes), span)
         } else {
             let place = if unit.starts_with('.') { span } else { behind };
@@ -137,7 +155,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// `0.5x1.5x2` and `4x4`
-    fn sizes(&self, written: &str) -> Option<String> {
+    fn sizes(&self, written: &str, span: Span) -> Option<String> {
         let parts: Vec<&str> = written.split(['x', 'X']).collect();
         let is_number = |part: &&str| !part.is_empty() && numeric_part(part) == *part;
         if !parts.iter().all(is_number) {
@@ -145,6 +163,13 @@ impl<'s> Recovery<'_, 's> {
         }
         match (parts.as_slice(), self.within.takes) {
             ([_, _, _], None | Some(Type::Vector)) => Some(format!("({})", parts.join(", "))),
+            // `width 640x480`
+            ([a, b], Some(Type::Number)) if self.within.field == "width" => {
+                let before = self.text.get(..span.start)?.rsplit('{').next()?;
+                let behind = self.text.get(span.end..)?.split('}').next()?;
+                let is_free = !has_name(before, "height") && !has_name(behind, "height");
+                is_free.then(|| format!("{a}  height {b}"))
+            }
             ([a, b], Some(Type::Number)) => {
                 Some((a.parse::<f64>().ok()? * b.parse::<f64>().ok()?).to_string())
             }

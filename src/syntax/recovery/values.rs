@@ -239,12 +239,7 @@ impl<'s> Recovery<'_, 's> {
         if written == "%" {
             self.unknown_operator(written, sign, false, None);
         } else {
-            // Without a factor the value would be of another type, and before another sign a value
-            // may be missing.
-            let is_sum = SUM.contains(&written);
-            let is_sure = is_sum && !matches!(self.word(0), "," | ";" | "=" | "{");
-            let fix = is_sure.then(|| self.remove(format!("remove this `{written}`"), sign));
-            self.report(&say::MISSING_OPERAND, sign, &["after", written], fix);
+            self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
         }
         bad(left.span.to(sign))
     }
@@ -330,7 +325,15 @@ impl<'s> Recovery<'_, 's> {
             _ => {
                 let start = self.behind();
                 self.unexpected("a value", example(self.within.takes));
-                if self.lists == 0 {
+                // `\frac{1}{2}` is one mistake.
+                if word == "\\" {
+                    self.bump();
+                    self.bump();
+                    while self.is(0, "{") && self.is_adjacent(0) {
+                        self.bump();
+                        self.skip_block();
+                    }
+                } else if self.lists == 0 {
                     self.resync();
                 } else if !self.ends_value() {
                     self.bump();
@@ -404,21 +407,44 @@ impl<'s> Recovery<'_, 's> {
             self.report(&say::NOT_IN_LANGUAGE, span, &words, None);
             return bad(span);
         }
-        let number = usize::from(self.is(0, "-"));
-        let is_argument = self.kind(number) == TokenKind::Number && !self.is_on_new_line(0);
-        if is_argument && schema::function(name.text).is_some() {
-            return self.call_without_parentheses(name);
+        match schema::function(name.text) {
+            Some(row) if self.is_argument(0) => self.call_without_parentheses(name, row),
+            _ => Value::new(ValueKind::Name(name.text), name.span),
         }
-        Value::new(ValueKind::Name(name.text), name.span)
     }
 
-    /// `sin 30deg`, `rgb 255 0 0`
-    fn call_without_parentheses(&mut self, name: Name<'s>) -> Value<'s> {
+    /// Whether the argument of a function that lacks its parentheses starts at a token ahead.
+    fn is_argument(&mut self, ahead: usize) -> bool {
+        let (word, kind) = (self.word(ahead), self.kind(ahead));
+        let is_sign = matches!(word, "[" | "<") || (word == "{" && self.is_flat_list());
+        let is_negative = word == "-" && self.kind(ahead + 1) == TokenKind::Number;
+        let is_name = kind == TokenKind::Name
+            && (self.words.is_let(word) || word == "pi")
+            && !self.is(ahead + 1, "(");
+        !self.is_on_new_line(ahead)
+            && (kind == TokenKind::Number || is_negative || is_name || (is_sign && ahead == 0))
+    }
+
+    /// `sin 30deg`, `rgb 255 0 0`, `length v - 1`: as many operands as the function takes.
+    fn call_without_parentheses(&mut self, name: Name<'s>, row: &schema::Function) -> Value<'s> {
+        let close = match self.word(0) {
+            "[" => "]",
+            "<" => ">",
+            "{" => "}",
+            _ => "",
+        };
+        if !close.is_empty() {
+            return self.call_in_brackets(name, row, close);
+        }
+        let most = match (row.more, self.lists) {
+            (true, 0) => usize::MAX,
+            _ => row.takes.len(),
+        };
         let told = self.problems.len();
         let mut arguments = vec![self.signed()];
-        loop {
+        while arguments.len() < most {
             let comma = usize::from(self.is(0, ","));
-            if self.kind(comma) != TokenKind::Number {
+            if !self.is_argument(comma) {
                 break;
             }
             if comma == 1 {
@@ -427,12 +453,24 @@ impl<'s> Recovery<'_, 's> {
             arguments.push(self.signed());
         }
         let span = name.span.to(self.behind());
-        if self.problems.len() == told {
-            let right = format!("{}({})", name.text, self.list_of(&arguments));
-            let is_whole = !self.goes_on(&arguments);
-            self.missing_parentheses(span, is_whole.then(|| replace(span, right)));
+        if self.problems.len() > told {
+            return bad(span);
         }
-        bad(span)
+        let (list, end) = (self.list_of(&arguments), self.last_end);
+        let is_whole = row.accepts(arguments.len())
+            && (!row.more || self.lists == 0)
+            && !self.goes_on(&arguments);
+        // What is computed with the result may have been meant for the argument.
+        let whole = self.operations(bad(span)).span;
+        let is_all = self.last_end == end;
+        let mut fix = replace(span, format!("{}({list})", name.text));
+        if !is_all {
+            fix.title += ", or put more of what follows between the parentheses";
+        }
+        let said = say::MISSING_PARENTHESES.safe_if(is_all);
+        let help = [example(self.within.takes)];
+        self.report(&said, span, &help, Some(fix).filter(|_| is_whole));
+        bad(whole)
     }
 
     fn color(&mut self) -> Value<'s> {
@@ -465,7 +503,8 @@ impl<'s> Recovery<'_, 's> {
     fn quoted(&mut self) -> Value<'s> {
         let span = self.bump();
         let inner = unquoted(self.written(span));
-        let fix = is_name(inner).then(|| replace(span, inner));
+        let is_code = inner.strip_prefix('#').is_some_and(is_color_code);
+        let fix = (is_name(inner) || is_code).then(|| replace(span, inner));
         self.report(&say::QUOTED, span, &[&shorten(inner)], fix);
         bad(span)
     }

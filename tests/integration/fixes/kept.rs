@@ -17,7 +17,7 @@ const UNITS: [(&str, f64); 9] = [
     ("km", 1000.0),
     ("ft feet foot", 0.3048),
     ("in inch inches", 0.0254),
-    ("m metre metres meter meters px pixel pixels", 1.0),
+    ("m metre metres meter meters px pixel pixels f", 1.0),
     ("deg degs degree degrees °", 1.0),
     ("rad rads radian radians", 1.0),
     ("grad grads gon", 0.9),

@@ -51,7 +51,8 @@ fn the_advice_is_the_way_out() {
         sphere for k < 3 { center (cos(k * n), 1, 0) } -> write `k * n * 1deg` (or `k * n * 1rad`); or write the unit where `n` is defined, as in `let n = 3deg`
         cylinder Column { center ball height 3 } -> the kinds are image, camera, sampler, sphere, triangle, box and checkerboard; other shapes are made of triangles
         box for k < 3 { min (0, 0, -k) max (1, 1, -k - 1) } -> make `max` greater than `min` on every axis
-        ball sphere { center (0, 1, 0) } -> take `ball` away
+        new sphere { center (0, 1, 0) } -> take `new` away
+        ball sphere { center (0, 1, 0) } -> write `sphere ball {`
         sphere for k < 3 { let x = k center (x, 1, 0) } -> write its value where it is used: an index is known within its block alone
         sphere for k < 3 { let x = n center (k, x, 0) } -> write it before the block
         sphere { for k < 3 center (k, 1, 0) } -> write them before the `{`, as in `sphere for i < 8 {`
