@@ -102,11 +102,12 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
 
 /// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
 pub fn is_among(written: &str, words: &str) -> bool {
-    let letters = |word: &str| word.replace('_', "").to_ascii_lowercase();
-    let written = letters(written);
-    words
-        .split_whitespace()
-        .any(|word| letters(word) == written)
+    fn letters(word: &str) -> impl Iterator<Item = u8> {
+        let letters = word.bytes().filter(|byte| *byte != b'_');
+        letters.map(|byte| byte.to_ascii_lowercase())
+    }
+    let mut words = words.split_whitespace();
+    words.any(|word| letters(word).eq(letters(written)))
 }
 
 /// The words that a name is made of: `near_clip` and `nearClip` are near and clip.

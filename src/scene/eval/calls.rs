@@ -37,6 +37,9 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
+/// So many of the problems before are looked at: of ten thousand all would be slow.
+const LOOKED_BACK: usize = 8;
+
 impl<'s> Evaluator<'_, 's> {
     pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
         let Call {
@@ -116,9 +119,10 @@ impl<'s> Evaluator<'_, 's> {
             Some((_, instead)) => (*instead).to_owned(),
             None => format!("the functions are {}", suggest::list(all_names())),
         };
-        // The same list once.
+        // The same list once, as far as one looks back.
         let is_told = |it: &Diagnostic| it.help.as_ref() == Some(&all);
-        let all = match self.problems.iter().any(is_told) && elsewhere.is_none() {
+        let mut last = self.problems.iter().rev().take(LOOKED_BACK);
+        let all = match last.any(is_told) && elsewhere.is_none() {
             true => "`pinhole explain functions` lists them".to_owned(),
             false => all,
         };

@@ -147,12 +147,12 @@ impl<'s> Lowering<'s> {
         }
         let parted = self.parted(&block.fields, &mut lowered);
         let is_left = |field: &&tree::Field<'s>| !parted.contains(&field.name.span);
-        let left = block.fields.iter().filter(is_left);
-        let (known, unknown): (Vec<_>, Vec<_>) =
-            left.partition(|field| row.field(field.name.text).is_some());
-        for field in known {
+        let is_known = |field: &&tree::Field<'s>| row.field(field.name.text).is_some();
+        let left = || block.fields.iter().filter(is_left);
+        for field in left().filter(is_known) {
             self.field(field, &mut lowered);
         }
+        let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
         // Of two words for one field nobody knows which one it is.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
