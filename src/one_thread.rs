@@ -1,5 +1,5 @@
-//! `threads.rs` where there are none, as in a browser: the calling thread does all of it, without rayon, which would make the
-//! engine larger and no faster.
+//! `threads.rs` where there are none, as in a browser: the calling thread does all of it, without
+//! rayon, which would make the engine larger and no faster.
 
 use std::num::NonZero;
 

@@ -58,8 +58,8 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// The message that a value is, if it is one. lsp-server would copy each text in it, and take a request with an odd identifier
-/// for a notification.
+/// The message that a value is, if it is one. lsp-server would copy each text in it, and take a
+/// request with an odd identifier for a notification.
 fn message(mut value: Value) -> Option<Message> {
     let mut take = |name: &str| value.get_mut(name).map(Value::take);
     let id = match take("id") {

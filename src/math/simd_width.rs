@@ -15,6 +15,6 @@ pub enum SimdWidth {
     Baseline,
 }
 
-/// Whether loops are compiled for wider vectors, too. Elsewhere a second copy of them would only make
-/// the program larger.
+/// Whether loops are compiled for wider vectors, too. Elsewhere a second copy of them would only
+/// make the program larger.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

@@ -18,6 +18,7 @@ mod head;
 mod items;
 mod joined;
 mod lists;
+mod names;
 mod numbers;
 mod repetition;
 mod values;
