@@ -61,7 +61,8 @@ impl Threads {
     }
 
     /// A pool, or, where it could not be built, as where too many threads are started, those that
-    /// this is done on: rayon takes a thread that is in no pool for one that is a pool by itself, for good.
+    /// this is done on: rayon takes a thread that is in no pool for one that is a pool by itself,
+    /// for good.
     fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),

@@ -50,8 +50,8 @@ pub struct Block {
     pub together: &'static [&'static str],
     /// Other words that people try for several of its fields.
     pub several: &'static [Several],
-    /// Words that people try together, several rows of them with `|` between, with the field that is
-    /// made of such parts, or the field for each.
+    /// Words that people try together, several rows of them with `|` between, with the field that
+    /// is made of such parts, or the field for each.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Other words that people try for it.
     pub also_tried: &'static str,

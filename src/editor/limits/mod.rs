@@ -155,7 +155,8 @@ fn within(
 /// The limits of a number whose slider reaches as far as the number itself, and some steps, to both
 /// sides. An end is drawn in to where the text has no more errors than now.
 fn about(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
-    if trials.is_count(literal) {
+    let is_count = trials.is_count(literal);
+    if is_count {
         // A formula may be right again below zero, as that of a square is.
         let least = (literal.value >= 0.0).then_some(0.0);
         (bounds.is_whole, bounds.least) = (true, bounds.least.or(least));
@@ -174,7 +175,7 @@ fn about(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let middle = bounded(literal.value);
     let span = middle.abs().max(steps * step);
     let ends = [middle - span, middle + span].map(|end| bounded(rounded(end, step)));
-    let drawn = ends.map(|end| trials.last_right(literal, end, step));
+    let drawn = ends.map(|end| trials.last_right(literal, end, step, is_count));
     let (ends, [is_low, is_high]) = match drawn {
         // A number that nothing near is right for is turned as if nothing was known.
         [None, None] => (ends, [false; 2]),

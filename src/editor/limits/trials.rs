@@ -36,7 +36,8 @@ impl<'a, 's> Trials<'a, 's> {
     /// if that takes too long to find out, where it makes so many objects.
     fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
         let read = self.analysis.text().len();
-        if read + OBJECT * objects > self.left || !value.is_finite() {
+        let takes = read.saturating_add(OBJECT.saturating_mul(objects));
+        if takes > self.left || !value.is_finite() {
             return None;
         }
         let text = literal.replaced(self.analysis.source(), value);
@@ -52,16 +53,26 @@ impl<'a, 's> Trials<'a, 's> {
         self.analysis.model.parts.objects.len()
     }
 
+    /// Number of objects that there may be with another number in a count's place: every index of a
+    /// block may count to it.
+    fn objects_with(&self, count: &Literal, value: f64) -> usize {
+        let repetitions = self
+            .analysis
+            .blocks()
+            .filter_map(|it| it.repetition.as_ref());
+        let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
+        let growth = (value.abs() / count.value.abs().max(1.0)).max(1.0);
+        let objects = (0..indices).fold(self.objects().max(1) as f64, |all, _| all * growth);
+        objects as usize
+    }
+
     /// Whether a number is a count: a tenth more or less is an error, one more or less is none.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
-        // A count that is none makes no objects; where there are many, one more makes few more.
-        let is_soon = OBJECT * self.objects() <= BYTES;
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
-            self.is_right(literal, value, 0)
+            self.is_right(literal, value, self.objects_with(literal, value))
         };
-        is_soon
-            && literal.is_whole()
+        literal.is_whole()
             && is_right(0.1) == Some(false)
             && is_right(-0.1) == Some(false)
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
@@ -71,8 +82,17 @@ impl<'a, 's> Trials<'a, 's> {
     /// makes none itself, or nothing is known of it. `None` if the first step makes one.
     ///
     /// Of a way with several errors it is the last number before one of them.
-    pub fn last_right(&mut self, literal: &Literal, end: f64, step: f64) -> Option<f64> {
-        let objects = self.objects();
+    pub fn last_right(
+        &mut self,
+        literal: &Literal,
+        end: f64,
+        step: f64,
+        is_count: bool,
+    ) -> Option<f64> {
+        let objects = match is_count {
+            true => self.objects_with(literal, end),
+            false => self.objects(),
+        };
         if end == literal.value || self.is_right(literal, end, objects) != Some(false) {
             return Some(end);
         }
@@ -97,4 +117,28 @@ impl<'a, 's> Trials<'a, 's> {
 fn errors(analysis: &Analysis<'_>) -> usize {
     let diagnostics = analysis.diagnostics().iter();
     diagnostics.filter(|it| it.is_error()).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five indices that count to 14 would make half a million objects.
+    #[test]
+    fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
+        let heads = [
+            ("a < n", true),
+            ("a < n, b < n, c < n, d < n, e < n", false),
+        ];
+        for (head, is_read) in heads {
+            let text = format!("let n = 4\nsphere for {head} {{ center (a, 0, 0) }}\n");
+            let sources = Sources::new(Source::from_text("", text));
+            let analysis = Analysis::new(&sources);
+            let definition = analysis.model.definitions().next().unwrap();
+            let count = Literal::of(&definition.value).unwrap();
+            let mut trials = Trials::new(&analysis);
+            assert_eq!(trials.last_right(&count, 14.0, 1.0, true), Some(14.0));
+            assert_eq!(trials.left < BYTES, is_read, "{head}");
+        }
+    }
 }

@@ -122,8 +122,8 @@ fn along(change: &mut Change, axis: usize) -> Option<&mut f64> {
 }
 
 impl Rounding {
-    /// Returns the rounded sum of a number and an amount: the number itself if the amount is rounded
-    /// to 0.
+    /// Returns the rounded sum of a number and an amount: the number itself if the amount is
+    /// rounded to 0.
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {

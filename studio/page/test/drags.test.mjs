@@ -243,7 +243,7 @@ test("a hand that is quicker than the answers moves things, too", async t => {
 });
 
 test("at every size what is selected moves neither the page nor the picture, and things go where the hand goes", async t => {
-  // Wide scenes have lines far below the first ones, so that the selected one has to be scrolled to.
+  // The lines of the objects are far below the first ones, and have to be scrolled to.
   const started = await host(t, `${"// a line\n".repeat(60)}${FIGURE}`);
   const browser = await launch(t);
   const first = await open(browser, started, { viewport: { width: 1280, height: 720 } });

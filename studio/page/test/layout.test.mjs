@@ -1,4 +1,5 @@
-// The page as a stranger meets it: scenes from the menu, objects that are added, the first problem, a second window.
+// The page as a stranger meets it: scenes from the menu, objects that are added, the first problem,
+// a second window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";

@@ -1,4 +1,5 @@
-// Numbers that are turned: sliders of definitions and of numbers, playing, and what they do at errors.
+// Numbers that are turned: sliders of definitions and of numbers, playing, and what they do at
+// errors.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -129,7 +129,7 @@ fn a_slider_does_not_lead_into_errors() {
             "sphere { center (0, asin(a) / 1rad, 0) }",
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
-        // Errors that are there already do not count, and where all near is wrong, nothing is known.
+        // Errors that are there already do not count; where all near is wrong, nothing is known.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",
