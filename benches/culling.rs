@@ -135,8 +135,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Triangles that are two hundred times as long as they are wide, in all directions over each other: of each part of the picture very many may be
-/// seen, however small it is. Culling may be up to three times as slow there as tracing one by one.
+/// Triangles that are two hundred times as long as they are wide, in all directions over each
+/// other: of each part of the picture very many may be seen, however small it is. Culling may be up
+/// to three times as slow there as tracing one by one.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -199,8 +200,9 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// What certain decisions cost: rays a CPU second by the formulas of a textbook, which are right but for the hard cases, and as the plain way
-/// and `render` take them, in turns. Samples are placed in all of them.
+/// What certain decisions cost: rays a CPU second by the formulas of a textbook, which are right
+/// but for the hard cases, and as the plain way and `render` take them, in turns. Samples are
+/// placed in all of them.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -254,7 +256,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
     }
 }
 
-/// What the exact picture of figure 9.9 costs beside few samples a pixel one by one, in turns, for each way to end what is seen.
+/// What the exact picture of figure 9.9 costs beside few samples a pixel one by one, in turns, for
+/// each way to end what is seen.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -299,8 +302,9 @@ fn exact() {
     }
 }
 
-/// Renders figure 9.9 on one thread and ends, for those who measure processes: a way, a method, the picture's width, samples per pixel, and how
-/// many times. The way `None` prepares everything and renders nothing. What it prints is the CPU time of the pictures alone.
+/// Renders figure 9.9 on one thread and ends, for those who measure processes: a way, a method, the
+/// picture's width, samples per pixel, and how many times. The way `None` prepares everything and
+/// renders nothing. What it prints is the CPU time of the pictures alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");

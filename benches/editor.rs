@@ -1,6 +1,7 @@
 //! How long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
 //!
-//! The server runs as it does for an editor, and time is taken from before a message is written until its answer is read.
+//! The server runs as it does for an editor, and time is taken from before a message is written
+//! until its answer is read.
 
 use std::{
     env,
@@ -98,8 +99,9 @@ fn main() {
     tokens_in_one_line();
 }
 
-/// Formatting a text of a block a line, and what is said of the text when the editor has done it: its edits are sent back as the
-/// changes that they are, against the order of the text, so that none moves the place of another.
+/// Formatting a text of a block a line, and what is said of the text when the editor has done it:
+/// its edits are sent back as the changes that they are, against the order of the text, so that
+/// none moves the place of another.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);

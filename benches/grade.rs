@@ -1,7 +1,9 @@
-//! How well `diff` names mistakes: the corpus of `tests/integration/grade`, by the program that is built.
+//! How well `diff` names mistakes: the corpus of `tests/integration/grade`, by the program that is
+//! built.
 //!
-//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` those of every size and way of sampling. `-- --write FOLDER`
-//! writes the pictures, their scenes and `truth.json` in place of judging them. `--program FILE` asks another program.
+//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` those of every size
+//! and way of sampling. `-- --write FOLDER` writes the pictures, their scenes and `truth.json` in
+//! place of judging them. `--program FILE` asks another program.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -99,8 +101,8 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// The pictures with so many mistakes, of a size and a way of sampling, in which each mistake is seen: the picture without it differs by more than the step that
-/// rounding may cost.
+/// The pictures with so many mistakes, of a size and a way of sampling, in which each mistake is
+/// seen: the picture without it differs by more than the step that rounding may cost.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],

@@ -1,7 +1,9 @@
-//! Many objects: how preparing and rendering them grows with their number: `cargo bench --bench many`. See README.md beside this file.
+//! Many objects: how preparing and rendering them grows with their number: `cargo bench --bench
+//! many`. See README.md beside this file.
 //!
-//! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `-- --phases COUNT…` prints the CPU seconds
-//! of each phase once, and the memory that the world takes; with `--cube` the spheres are in a cube, not all over the picture.
+//! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `--
+//! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes;
+//! with `--cube` the spheres are in a cube, not all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"

@@ -1,5 +1,5 @@
-//! What placing points, threads and files take of what the plain path takes, method by method: `cargo bench --bench render`. See README.md
-//! beside this file.
+//! What placing points, threads and files take of what the plain path takes, method by method:
+//! `cargo bench --bench render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 

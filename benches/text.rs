@@ -1,6 +1,8 @@
-//! From a text to what the tracer starts with, stage by stage: `cargo bench --bench text`. See README.md beside this file.
+//! From a text to what the tracer starts with, stage by stage: `cargo bench --bench text`. See
+//! README.md beside this file.
 //!
-//! `cargo bench --bench text -- --write COUNT blocks|lines` writes a scene of many spheres to standard output instead.
+//! `cargo bench --bench text -- --write COUNT blocks|lines` writes a scene of many spheres to
+//! standard output instead.
 
 use std::{
     env,
@@ -90,7 +92,8 @@ fn chunks(text: &str) -> usize {
     items
 }
 
-/// How long each stage takes as a multiple of the first, in turns, so that a busy moment meets all of them.
+/// How long each stage takes as a multiple of the first, in turns, so that a busy moment meets all
+/// of them.
 fn ratios(layout: Layout, stages: &[(&str, &dyn Fn())]) {
     let mut best = vec![Duration::MAX; stages.len()];
     for _ in 0..ROUNDS {

@@ -76,7 +76,8 @@ impl Area {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Its parts: squares of this side from the top left corner on, cut off where it ends; row by row.
+    /// Its parts: squares of this side from the top left corner on, cut off where it ends; row by
+    /// row.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -89,7 +90,8 @@ impl Area {
         })
     }
 
-    /// The squares of this side, counted from the picture's top left corner, that it meets; row by row.
+    /// The squares of this side, counted from the picture's top left corner, that it meets; row by
+    /// row.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)
@@ -127,7 +129,8 @@ impl Area {
         }
     }
 
-    /// Its four parts of nearly the same size; two, if it has but one row or column, and itself, if it is a pixel.
+    /// Its four parts of nearly the same size; two, if it has but one row or column, and itself, if
+    /// it is a pixel.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
         let halves = |length: u32| [(0, length / 2), (length / 2, length - length / 2)];
         let (columns, rows) = (halves(self.width), halves(self.height));

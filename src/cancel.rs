@@ -1,7 +1,8 @@
 //! Work that is given up when nobody wants its result any more.
 //!
-//! A flag says so, which stays set until the work has ended. What takes long looks at it in between and, once it is set, leaves out
-//! the rest; what was made then is of no use, and whoever was asked for it says [`Cancelled`] in its place.
+//! A flag says so, which stays set until the work has ended. What takes long looks at it in between
+//! and, once it is set, leaves out the rest; what was made then is of no use, and whoever was asked
+//! for it says [`Cancelled`] in its place.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,7 +1,8 @@
 //! The list of problems, and its two forms: for people and for programs.
 //!
-//! In: [`Diagnostic`]s, which the stages make where a problem arises, with the edits that may help. Out: the same in the order of the text, as a terminal shows
-//! them or as lines of JSON. Where to print them, and in which style, is the caller's decision.
+//! In: [`Diagnostic`]s, which the stages make where a problem arises, with the edits that may help.
+//! Out: the same in the order of the text, as a terminal shows them or as lines of JSON. Where to
+//! print them, and in which style, is the caller's decision.
 
 mod fix;
 mod problems;
@@ -55,7 +56,8 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// The ways out that are edits, the likeliest first.
     pub fixes: Vec<Fix>,
-    /// Whether what stands at the place to jump to could be left out without any change of meaning.
+    /// Whether what stands at the place to jump to could be left out without any change of
+    /// meaning.
     pub is_needless: bool,
     /// Whether the text cannot be taken apart, whatever its names mean.
     pub is_of_syntax: bool,
@@ -77,7 +79,8 @@ impl Diagnostic {
     }
 }
 
-/// Puts diagnostics in the order of the text by the place to jump to, the file's before the arguments'.
+/// Puts diagnostics in the order of the text by the place to jump to, the file's before the
+/// arguments'.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();
@@ -143,7 +146,8 @@ fn place(span: Span, source: &Source) -> Value {
     }
 }
 
-/// A span that lies in its source, between characters: whatever a stage says, no printer reaches past the text.
+/// A span that lies in its source, between characters: whatever a stage says, no printer reaches
+/// past the text.
 fn clamp(span: Span, source: &Source) -> Span {
     let start = source.floor_char_boundary(span.start);
     let end = source.floor_char_boundary(span.end.max(start));

@@ -1,8 +1,10 @@
-//! What every diagnostic code means: a page for each, with a wrong scene, the right one, and why the language has the rule.
+//! What every diagnostic code means: a page for each, with a wrong scene, the right one, and why
+//! the language has the rule.
 //!
-//! The pages are the files in `grammar/codes`, in Markdown of a fixed form: a title, what the mistake is, and the sections
-//! *Wrong*, *Right* and *Why*. The tests hold the codes of the stages and the pages together, and read the scenes: a wrong one has
-//! that mistake and no other, a right one none. How a page is shown (terminal, editor) is for others to say.
+//! The pages are the files in `grammar/codes`, in Markdown of a fixed form: a title, what the
+//! mistake is, and the sections *Wrong*, *Right* and *Why*. The tests hold the codes of the stages
+//! and the pages together, and read the scenes: a wrong one has that mistake and no other, a right
+//! one none. How a page is shown (terminal, editor) is for others to say.
 
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
@@ -168,7 +170,8 @@ pub struct Page {
     pub text: &'static str,
 }
 
-/// The page of a code, which may be written as a report does, or without what stands around it there.
+/// The page of a code, which may be written as a report does, or without what stands around it
+/// there.
 pub fn page(code: &str) -> Option<&'static Page> {
     let code = short(code);
     pages().find(|page| page.code == code)
@@ -179,7 +182,8 @@ pub fn pages() -> impl Iterator<Item = &'static Page> {
     GROUPS.iter().flat_map(|group| group.pages)
 }
 
-/// The code without what stands around it in a report: `error[pinhole::bare_angle]` is `bare_angle`.
+/// The code without what stands around it in a report: `error[pinhole::bare_angle]` is
+/// `bare_angle`.
 pub fn short(code: &str) -> &str {
     let inner = code.trim().trim_end_matches(':').strip_suffix(']');
     let inner = inner.and_then(|head| head.split_once('[').map(|(_, inner)| inner));

@@ -1,4 +1,5 @@
-//! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the objects.
+//! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the
+//! objects.
 
 mod json;
 
@@ -15,7 +16,8 @@ use crate::{
 };
 use glam::DVec3;
 
-/// What `pinhole inspect` shows. Every number is the rounding of what real arithmetic makes of the scene.
+/// What `pinhole inspect` shows. Every number is the rounding of what real arithmetic makes of the
+/// scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inspection {
     /// Width and height in pixels.
@@ -30,8 +32,8 @@ pub struct Inspection {
     pub total: u64,
     /// The seed.
     pub seed: u64,
-    /// For each of the world's axes where its parallels meet, in pixels from the picture's top left corner; `None` if the
-    /// axis is parallel to the view plane.
+    /// For each of the world's axes where its parallels meet, in pixels from the picture's top
+    /// left corner; `None` if the axis is parallel to the view plane.
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// The objects in file order.
     pub objects: Vec<ObjectFacts>,
@@ -131,7 +133,8 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
     }
 }
 
-/// A camera by itself, and where the parallels of each axis meet: what [`inspect`] says of a whole scene.
+/// A camera by itself, and where the parallels of each axis meet: what [`inspect`] says of a whole
+/// scene.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
@@ -164,8 +167,8 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
     }
 }
 
-/// Where the lines parallel to an axis meet. The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's
-/// axes, and meets the view plane where that is scaled to depth 1.
+/// Where the lines parallel to an axis meet. The ray along the axis a has the direction (a·u, a·v,
+/// −a·w) in the camera's axes, and meets the view plane where that is scaled to depth 1.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
     // w is −f/|f|, so this is zero exactly where the axis is parallel to the view plane.
     if basis.w[axis].is_zero() {

@@ -1,7 +1,8 @@
-//! Pinhole reads a small declarative scene language and renders what it describes through a virtual pinhole camera.
+//! Pinhole reads a small declarative scene language and renders what it describes through a virtual
+//! pinhole camera.
 //!
-//! The modules below stand in the order in which a scene becomes a picture; each imports those before it, none those after
-//! it. This is the whole way:
+//! The modules below stand in the order in which a scene becomes a picture; each imports those
+//! before it, none those after it. This is the whole way:
 //!
 //! ```
 //! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
@@ -16,20 +17,26 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the terminal, JSON and editors show
-//!   alike. [`explain`] has a page for each kind of mistake.
-//! - The facts of the language, its blocks, fields and names: [`schema`]. [`syntax`] makes a tree of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data, everything
-//!   resolved.
-//! - [`textbook`] has the formulas that everybody writes, in `f64`. [`tracer`] knows what is seen at a point of the picture, without a wrong
-//!   decision; its documentation says how. [`projection`] leads to points of the picture and back in rounded numbers.
-//!   [`sampling`] says where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse pictures until it has.
-//! - Who has no more use for a result sets a flag, and all of these are given up soon after it: [`cancel`].
-//! - [`film`] makes bytes of the means and files of the bytes; [`files`] opens files, and sees to it that they are written whole or not at all.
+//! - A text and its places: [`source`]. What is wrong with it: [`diagnostic`], a list that the
+//!   terminal, JSON and editors show alike. [`explain`] has a page for each kind of mistake.
+//! - The facts of the language, its blocks, fields and names: [`schema`]. [`syntax`] makes a tree
+//!   of the text, and cannot fail. [`scene`] makes of the tree what it means: plain data,
+//!   everything resolved.
+//! - [`textbook`] has the formulas that everybody writes, in `f64`. [`tracer`] knows what is seen
+//!   at a point of the picture, without a wrong decision; its documentation says how.
+//!   [`projection`] leads to points of the picture and back in rounded numbers. [`sampling`] says
+//!   where a pixel's points lie. [`render`] counts what they see, and [`refine`] shows coarse
+//!   pictures until it has.
+//! - Who has no more use for a result sets a flag, and all of these are given up soon after it:
+//!   [`cancel`].
+//! - [`film`] makes bytes of the means and files of the bytes; [`files`] opens files, and sees to
+//!   it that they are written whole or not at all.
 //! - [`mod@format`] lays a text out in the one canonical way.
-//! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of it: what went wrong; and [`report`]
-//!   about Pinhole itself: how right and how fast it is.
-//! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where a name is used. `lsp` says that
-//!   to editors in the Language Server Protocol, `preview` tells when a file has changed, and `studio` serves a page that edits one.
+//! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] one about a picture of
+//!   it: what went wrong; and [`report`] about Pinhole itself: how right and how fast it is.
+//! - [`editor`] answers one who is writing a scene: what could stand here, what a word means, where
+//!   a name is used. `lsp` says that to editors in the Language Server Protocol, `preview` tells
+//!   when a file has changed, and `studio` serves a page that edits one.
 //! - The command line, `cli`, reads, calls all of these and prints; the binary does nothing else.
 
 pub mod area;

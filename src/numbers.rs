@@ -14,7 +14,8 @@ pub fn short(x: f64) -> String {
         };
         return format!("{}e{exponent}", trimmed(digits));
     }
-    // Six significant digits are 5 − ⌊log10 |x|⌋ decimals; a number of more than six digits keeps them all.
+    // Six significant digits are 5 − ⌊log10 |x|⌋ decimals; a number of more than six digits keeps
+    // them all.
     let mut decimals = 5;
     let mut bound = 10.0;
     while x.abs() >= bound && decimals > 0 {
@@ -42,7 +43,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // One more in the last digit: a sum of two numbers of a digit after the point rounds to what it is.
+        // One more in the last digit: a sum of two numbers of a digit after the point rounds to
+        // what it is.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);

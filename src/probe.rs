@@ -12,8 +12,8 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// What `pinhole probe` shows: the ray through a point of the picture, and all surfaces on it. Every number is the rounding
-/// of what real arithmetic makes of the scene and the point.
+/// What `pinhole probe` shows: the ray through a point of the picture, and all surfaces on it.
+/// Every number is the rounding of what real arithmetic makes of the scene and the point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.

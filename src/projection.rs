@@ -82,7 +82,8 @@ impl Projection {
         across / (self.depth(point) * self.pitch) + self.size / 2.0
     }
 
-    /// The direction of the ray through a point of the picture, as long as it takes to a depth of 1.
+    /// The direction of the ray through a point of the picture, as long as it takes to a depth of
+    /// 1.
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let across = (point - self.size / 2.0) * self.pitch;
         self.ahead + self.right * across.x - self.top * across.y
@@ -93,7 +94,8 @@ impl Projection {
         self.eye + self.ray(point) * depth
     }
 
-    /// Where the ray through a point of the picture meets the plane through a point of the world; none if that is not in front of the eye.
+    /// Where the ray through a point of the picture meets the plane through a point of the world;
+    /// none if that is not in front of the eye.
     pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
         let ray = self.ray(at);
         let depth = (through - self.eye).dot(normal) / ray.dot(normal);

@@ -1,7 +1,8 @@
 //! A picture that comes in steps, for whoever is waiting for it.
 //!
-//! In: the prepared scene. Out: pictures in coarse blocks, one after the other. A block shows what is seen at its centre, so that nothing is
-//! shown that is not there. What a preview does with them, when it begins with the picture itself (`render`), and when it gives up on a scene
+//! In: the prepared scene. Out: pictures in coarse blocks, one after the other. A block shows what
+//! is seen at its centre, so that nothing is shown that is not there. What a preview does with
+//! them, when it begins with the picture itself (`render`), and when it gives up on a scene
 //! that has changed, is its own business.
 
 use std::sync::{PoisonError, atomic::Ordering};
@@ -15,8 +16,8 @@ use crate::{
 };
 use glam::DVec2;
 
-/// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one before it, and all of them together less
-/// than a picture with one sample per pixel.
+/// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one
+/// before it, and all of them together less than a picture with one sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in blocks.
@@ -24,12 +25,13 @@ pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 pub struct Coarse {
     /// The side of a block, in pixels.
     pub side: u32,
-    /// A pixel for each block. The last column and the last row may stand for blocks that are cut off.
+    /// A pixel for each block. The last column and the last row may stand for blocks that are cut
+    /// off.
     pub film: Film,
 }
 
-/// Shows a part of the picture, which lies in it, in blocks that become finer down to a side of 1 pixel or more. Cancelled, it ends
-/// within a row of blocks, and shows no more.
+/// Shows a part of the picture, which lies in it, in blocks that become finer down to a side of 1
+/// pixel or more. Cancelled, it ends within a row of blocks, and shows no more.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,
@@ -44,7 +46,8 @@ pub fn coarse_to_fine(
     Ok(())
 }
 
-/// A part of the picture in blocks of a side of 1 pixel or more, from the part's top left corner on.
+/// A part of the picture in blocks of a side of 1 pixel or more, from the part's top left corner
+/// on.
 pub fn coarse(
     world: &World,
     part: Area,

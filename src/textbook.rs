@@ -1,8 +1,10 @@
-//! The formulas of a textbook in `f64`, as they are written down and typed in everywhere: a camera's axes, a triangle's vertices, and where a ray meets a shape.
+//! The formulas of a textbook in `f64`, as they are written down and typed in everywhere: a
+//! camera's axes, a triangle's vertices, and where a ray meets a shape.
 //!
-//! The basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals (Kay and Kajiya 1986), the triangle that of Möller and
-//! Trumbore (1997). All of it is right on paper, and nothing of it is how the tracer computes it: `report` compares its decisions with the tracer's, and `grading` makes with it
-//! what a class would make.
+//! The basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals (Kay
+//! and Kajiya 1986), the triangle that of Möller and Trumbore (1997). All of it is right on paper,
+//! and nothing of it is how the tracer computes it: `report` compares its decisions with the
+//! tracer's, and `grading` makes with it what a class would make.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -13,7 +15,8 @@ use crate::{
     },
 };
 
-/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, and the roll; along up, u is that of the language's level direction.
+/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, and the roll; along up, u
+/// is that of the language's level direction.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let backward = match camera.view {
         View::Lookat(at) => camera.eye - at,
@@ -87,8 +90,8 @@ pub fn by_vertices(shape: Shape) -> Shape {
     }
 }
 
-/// Where a line through the eye, eye + t d, meets a shape: the lesser t first, twice the same where it meets a plane. Of a triangle, determinants of less than
-/// `epsilon` are taken for zero.
+/// Where a line through the eye, eye + t d, meets a shape: the lesser t first, twice the same where
+/// it meets a plane. Of a triangle, determinants of less than `epsilon` are taken for zero.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {

@@ -1,4 +1,5 @@
-//! How many threads work is done on, and whether they are started for it: what is a part of other work is done on the threads of that.
+//! How many threads work is done on, and whether they are started for it: what is a part of other
+//! work is done on the threads of that.
 
 use std::{
     num::NonZero,
@@ -14,23 +15,26 @@ pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// More threads than this are not started, whatever is asked for: no machine has as many processors for one picture.
+/// More threads than this are not started, whatever is asked for: no machine has as many processors
+/// for one picture.
 const MOST: usize = 1024;
 
-/// What the process was limited to; 0 where it was not. This and the number of processors are all that is kept for a whole process; they change how long
-/// things take and nothing else.
+/// What the process was limited to; 0 where it was not. This and the number of processors are all
+/// that is kept for a whole process; they change how long things take and nothing else.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
 /// As many as the process has: to ask the system takes longer than a small picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
-/// From now on this process starts no more threads at once than this, unless it is told otherwise for something.
+/// From now on this process starts no more threads at once than this, unless it is told otherwise
+/// for something.
 pub fn limit(threads: NonZero<usize>) {
     LIMIT.store(threads.get().min(MOST), Ordering::Relaxed);
 }
 
-/// One thread for each processor, or as many as the process is limited to, whatever variables of the environment say.
+/// One thread for each processor, or as many as the process is limited to, whatever variables of
+/// the environment say.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
         0 => *PROCESSORS,
@@ -42,12 +46,14 @@ pub(crate) fn available() -> usize {
 pub(crate) enum Threads {
     /// Started for it.
     Started(ThreadPool),
-    /// Those that do what it is a part of: what makes hundreds of pictures has them all made by the same threads.
+    /// Those that do what it is a part of: what makes hundreds of pictures has them all made by the
+    /// same threads.
     These,
 }
 
 impl Threads {
-    /// So many, or as many as are available; those that this is already done on, if they are as many, or if the system starts none.
+    /// So many, or as many as are available; those that this is already done on, if they are as
+    /// many, or if the system starts none.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! The processors' time, which other work on the machine changes less than it changes the time on the wall.
+//! The processors' time, which other work on the machine changes less than it changes the time on
+//! the wall.
 
 #[cfg(unix)]
 use rustix::time::{ClockId, clock_gettime};

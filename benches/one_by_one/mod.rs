@@ -1,4 +1,5 @@
-//! A picture sample by sample, as plainly as it can be: what culling is compared with, by tests and by benchmarks.
+//! A picture sample by sample, as plainly as it can be: what culling is compared with, by tests and
+//! by benchmarks.
 
 use pinhole::{
     area::Area,

@@ -26,7 +26,8 @@ const COLORS: [&str; 8] = [
     "steelblue",
 ];
 
-/// A scene of so many spheres as somebody might write it, with names, comments, `let`s and expressions here and there: 80 bytes each.
+/// A scene of so many spheres as somebody might write it, with names, comments, `let`s and
+/// expressions here and there: 80 bytes each.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn spheres(count: usize, layout: Layout) -> String {
     let (open, between, close) = match layout {
@@ -79,8 +80,9 @@ pub fn spheres(count: usize, layout: Layout) -> String {
     text
 }
 
-/// A scene of so many spheres that together would cover the picture one and a half times, at distances from 5 to 50: of whatever number
-/// they are, some are seen, some are hidden, and a good fifth of the picture stays empty.
+/// A scene of so many spheres that together would cover the picture one and a half times, at
+/// distances from 5 to 50: of whatever number they are, some are seen, some are hidden, and a good
+/// fifth of the picture stays empty.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -107,7 +109,8 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
-/// A scene of so many spheres in a cube that stands upright in the picture: together they would cover it one and a half times.
+/// A scene of so many spheres in a cube that stands upright in the picture: together they would
+/// cover it one and a half times.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;

@@ -32,8 +32,8 @@ const START: u64 = 1 << 16;
 
 /// What a scene is read from.
 pub struct Input {
-    /// The scene's text and the overrides, those that a picture carries before those of the command
-    /// line.
+    /// The scene's text and the overrides, those that a picture carries before those of the
+    /// command line.
     pub sources: Sources,
     /// Whether it is a picture that carries the scene.
     pub is_picture: bool,

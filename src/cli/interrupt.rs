@@ -13,8 +13,8 @@ use super::{Status, Trouble};
 
 /// Whether the user has pressed Ctrl-C (or the system wants the process to end).
 ///
-/// Ends the process at once unless something has to be put away first; then it says so to whoever does. Pressed again after that has
-/// had its time, it ends the process in any case.
+/// Ends the process at once unless something has to be put away first; then it says so to whoever
+/// does. Pressed again after that has had its time, it ends the process in any case.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 

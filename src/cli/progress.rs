@@ -19,7 +19,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// How often the bar moves.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Does `work`, which counts up what is done to `total`, and shows on a terminal how far it is and how long it will take.
+/// Does `work`, which counts up what is done to `total`, and shows on a terminal how far it is and
+/// how long it will take.
 pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     let done = AtomicU64::new(0);
     if !output::is_watched() {

@@ -1,7 +1,7 @@
 //! A picture in the terminal, above what was said of it.
 //!
-//! Each cell shows two pixels, one above the other: a half block in the colour of the upper one on the colour of the lower one. That is
-//! coarse, but every terminal with colours can do it.
+//! Each cell shows two pixels, one above the other: a half block in the colour of the upper one on
+//! the colour of the lower one. That is coarse, but every terminal with colours can do it.
 
 use std::{
     env,
@@ -73,7 +73,8 @@ impl Screen {
         output::to_people(text);
     }
 
-    /// The side in pixels of blocks about as coarse as the screen is for a picture of this size; `None` if pictures are not shown.
+    /// The side in pixels of blocks about as coarse as the screen is for a picture of this size;
+    /// `None` if pictures are not shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -215,7 +216,8 @@ fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usiz
     sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
 }
 
-/// The nearest of the colours 16 to 255 of a terminal: a cube of six levels a channel, and 24 greys.
+/// The nearest of the colours 16 to 255 of a terminal: a cube of six levels a channel, and 24
+/// greys.
 fn nearest_of_256(color: [u8; 3]) -> u8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     let distance = |other: [u8; 3]| -> u32 {

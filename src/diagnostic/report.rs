@@ -28,8 +28,8 @@ pub struct Style {
     pub color: bool,
     /// The terminal's width in columns; help is wrapped to it.
     pub width: usize,
-    /// A terminal's columns for an excerpt: its lines are cut to them, and its labels and the title
-    /// are wrapped. Without a terminal only very long lines are cut.
+    /// A terminal's columns for an excerpt: its lines are cut to them, and its labels and the
+    /// title are wrapped. Without a terminal only very long lines are cut.
     pub excerpt: Option<usize>,
 }
 

@@ -1,7 +1,8 @@
 //! The colours that stand in a text, and how another one is written in their place.
 //!
-//! A colour is written back as what was there: a name as a name if the new colour has one, a code as a code, `rgb(…)` as numbers. A call
-//! that is more than three numbers is left alone: another colour would take the expressions and the comments in it away.
+//! A colour is written back as what was there: a name as a name if the new colour has one, a code
+//! as a code, `rgb(…)` as numbers. A call that is more than three numbers is left alone: another
+//! colour would take the expressions and the comments in it away.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -74,8 +75,8 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// How a colour could be written in the place of another, the spelling of that first; nothing in the place of a call that is no
-/// swatch.
+/// How a colour could be written in the place of another, the spelling of that first; nothing in
+/// the place of a call that is no swatch.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {

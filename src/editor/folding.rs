@@ -39,7 +39,8 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     folds
 }
 
-/// Comments that stand in lines of their own, one line after the other; and those behind code, each by itself.
+/// Comments that stand in lines of their own, one line after the other; and those behind code, each
+/// by itself.
 fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
     let mut behind_code = Vec::new();

@@ -182,8 +182,8 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Which of the values around a place there is something to say of: the smallest one; or what a number, a list or a sign is an operand or an
-/// argument of.
+/// Which of the values around a place there is something to say of: the smallest one; or what a
+/// number, a list or a sign is an operand or an argument of.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;

@@ -1,9 +1,9 @@
 //! The language's answers to one who is writing a scene.
 //!
-//! In: a text, and a place in it. Out: what could stand there, what a word means, where a name is used, and so on, as plain
-//! data with byte spans. A file per answer. They know no editor and no protocol: the language server converts them, and a
-//! page in a browser could as well. Everything reads the one table of facts and the one lowering, which fill in what they
-//! can of a broken text.
+//! In: a text, and a place in it. Out: what could stand there, what a word means, where a name is
+//! used, and so on, as plain data with byte spans. A file per answer. They know no editor and no
+//! protocol: the language server converts them, and a page in a browser could as well. Everything
+//! reads the one table of facts and the one lowering, which fill in what they can of a broken text.
 
 mod actions;
 mod analysis;

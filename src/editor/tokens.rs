@@ -1,7 +1,7 @@
 //! The words and signs of a text, each with what it is.
 //!
-//! In: a text and its tree. Out: the lexer's tokens in order. What a word is, the tree says; one that the tree does not hold is nothing of
-//! the language.
+//! In: a text and its tree. Out: the lexer's tokens in order. What a word is, the tree says; one
+//! that the tree does not hold is nothing of the language.
 
 use crate::{
     scene::SemanticModel,

@@ -1,8 +1,9 @@
 //! Pixels whose boundaries are all straight: the arrangement of their lines.
 //!
-//! In: the lines that pass through a sub-pixel, at most as many as `mod` allows. Out: the sub-pixel's convex cells, which are told to [`Regions`] with a point in each. Each
-//! line cuts the cells that the lines before it left. The bound adds how far each line may be from the true one, times its length, and cells too
-//! small to be asked for their colour.
+//! In: the lines that pass through a sub-pixel, at most as many as `mod` allows. Out: the
+//! sub-pixel's convex cells, which are told to [`Regions`] with a point in each. Each line cuts the
+//! cells that the lines before it left. The bound adds how far each line may be from the true one,
+//! times its length, and cells too small to be asked for their colour.
 
 use std::mem;
 
@@ -15,15 +16,19 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie in it. Nor is it cut: slivers
-/// that are made of roundings would double with each line. 2⁻⁴⁶ square pixels are a polygon whose sides are some 10⁹ roundings long.
+/// A polygon of less area than this is not asked for its colour: the point to ask at might not lie
+/// in it. Nor is it cut: slivers that are made of roundings would double with each line. 2⁻⁴⁶
+/// square pixels are a polygon whose sides are some 10⁹ roundings long.
 const SPECK: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// If h is the mean of a line's form over the n vertices of a polygon that the line does not cut, the polygon has no more area than this times n·|h|: each value
-/// is at most n·|h|, so each vertex is at most 2n·|h| from the line, as the greater slope is at least 1/2; and the polygon is no longer than √2.
+/// If h is the mean of a line's form over the n vertices of a polygon that the line does not cut,
+/// the polygon has no more area than this times n·|h|: each value is at most n·|h|, so each vertex
+/// is at most 2n·|h| from the line, as the greater slope is at least 1/2; and the polygon is no
+/// longer than √2.
 const WIDE: f64 = 3.0;
 
-/// How far the roundings of a vertex may move it across its line: the form's value has four, of terms that are 2 at most, and its greater slope is about 1.
+/// How far the roundings of a vertex may move it across its line: the form's value has four, of
+/// terms that are 2 at most, and its greater slope is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some lines.
@@ -33,8 +38,9 @@ pub fn shares(lines: &[Line], mut regions: Regions) -> Shares {
     for line in lines {
         let rad = line.rad + ROUNDING;
         worst = worst.max(rad);
-        // The true line is within 2 rad of the computed one, the greater of whose slopes is at least 1/2, over a length of
-        // at most √2; and on both sides of it vertices are rounded.
+        // The true line is within 2 rad of the computed one, the greater of whose slopes is at
+        // least 1/2, over a length of at most √2; and on both sides of it vertices are
+        // rounded.
         regions.doubt(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.is_given_up() {

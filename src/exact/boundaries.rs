@@ -1,7 +1,9 @@
 //! The boundaries of what is seen in a pixel, or in a part of one.
 //!
-//! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it: outlines, where surfaces cross each other, and where the
-//! near and the far plane cut them. They are computed in double-double, and again in the last precision where that leaves too much in doubt.
+//! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it:
+//! outlines, where surfaces cross each other, and where the near and the far plane cut them. They
+//! are computed in double-double, and again in the last precision where that leaves too much in
+//! doubt.
 
 use std::{cell::OnceCell, ops::ControlFlow};
 
@@ -15,7 +17,8 @@ use crate::{
 
 use super::budget::Budget;
 
-/// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight roundings of a mean in `f64`.
+/// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight
+/// roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
 /// Units of work: of a pair of objects whose depths are compared, of an object or a pair that is
@@ -67,7 +70,8 @@ pub fn curves(
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // Loose: whose curves are not known well enough in double-double. Lacking: pairs that have no curve there, which only the last precision tells for certain.
+    // Loose: whose curves are not known well enough in double-double. Lacking: pairs that have no
+    // curve there, which only the last precision tells for certain.
     let (mut loose, mut lacking) = (Vec::new(), Vec::new());
     let mut of_lacking = Vec::new();
     let mut room = most;
@@ -92,7 +96,8 @@ pub fn curves(
             false => ControlFlow::Continue(()),
         }
     };
-    // Outlines come first: of a heap there are too many of them, long before all pairs have been looked at.
+    // Outlines come first: of a heap there are too many of them, long before all pairs have been
+    // looked at.
     let outlines = boundaries.outlines(&mut take);
     let are_few = outlines.is_continue() && boundaries.pairs(&mut take).is_continue();
     if !are_few {
@@ -113,7 +118,8 @@ pub fn curves(
     out.len() <= most
 }
 
-/// Leaves one of the curves whose forms are equal, as they are of objects that share planes or edges. What it is off is as much as any of them was.
+/// Leaves one of the curves whose forms are equal, as they are of objects that share planes or
+/// edges. What it is off is as much as any of them was.
 fn leave_one_of_each(curves: &mut Vec<Curve>) {
     curves.sort_by_cached_key(Curve::key);
     curves.dedup_by(|again, curve| {
@@ -183,8 +189,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Adds an origin's curves that may pass through the sub-pixel. Says whether all surfaces of it that are seen there cross each other somewhere, as all
-    /// do that are not equal.
+    /// Adds an origin's curves that may pass through the sub-pixel. Says whether all surfaces of it
+    /// that are seen there cross each other somewhere, as all do that are not equal.
     fn push(&self, origin: Origin, out: &mut Vec<Curve>) -> bool {
         let mut push = |curve: Curve| {
             if curve.may_pass() {

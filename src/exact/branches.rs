@@ -1,7 +1,9 @@
-//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a conic that of two.
+//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a
+//! conic that of two.
 //!
-//! In: lines and conics of a sub-pixel. Out: over a range of x each branch as a chord with an arc between its tangents, and how far the branch may be from that. Where the
-//! roundings of `f64` leave too much of an arc in doubt, its ends and tangents are taken in double-double.
+//! In: lines and conics of a sub-pixel. Out: over a range of x each branch as a chord with an arc
+//! between its tangents, and how far the branch may be from that. Where the roundings of `f64`
+//! leave too much of an arc in doubt, its ends and tangents are taken in double-double.
 
 use glam::DVec2;
 
@@ -12,13 +14,16 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// In f64 the area of an arc is good enough if it is off by no more than this for each part of its width: 4e-15 for a pixel, far below what is asked for.
+/// In f64 the area of an arc is good enough if it is off by no more than this for each part of its
+/// width: 4e-15 for a pixel, far below what is asked for.
 const GOOD: f64 = 32.0 * f64::UNIT;
 
-/// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less than eight roundings of x.
+/// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less
+/// than eight roundings of x.
 const STEEP: f64 = (1u64 << 50) as f64;
 
-/// A branch is outside of the pixel if it is so far from it by the size of its values: millions of times the roundings that these have.
+/// A branch is outside of the pixel if it is so far from it by the size of its values: millions of
+/// times the roundings that these have.
 const OUTSIDE: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve followed from left to right.
@@ -42,8 +47,8 @@ pub enum Track<'a> {
     },
 }
 
-/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as functions: y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − Cg and
-/// g = Ax² + 2Dx + F.
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as functions: y = (−b ± √Δ)/C with b = Bx + E, Δ =
+/// b² − Cg and g = Ax² + 2Dx + F.
 #[derive(Clone, Copy, Debug)]
 pub struct Graph {
     factors: [Double; 6],
@@ -160,15 +165,16 @@ impl Graph {
 }
 
 impl<'a> Span<'a> {
-    /// One of the two functions as a track and its section, where it is a number at all and may be seen in the pixel; that is none
-    /// if it turns too much to be followed at once.
+    /// One of the two functions as a track and its section, where it is a number at all and may be
+    /// seen in the pixel; that is none if it turns too much to be followed at once.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // A function that bends one way only is nowhere farther from its chord than twice as far as in the middle.
+        // A function that bends one way only is nowhere farther from its chord than twice as far as
+        // in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE * size;
@@ -191,7 +197,8 @@ impl<'a> Span<'a> {
                     ..straight
                 })
             }
-            // Too flat for its tangents to be told apart: each y has six operations, and its middle two.
+            // Too flat for its tangents to be told apart: each y has six operations, and its middle
+            // two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -203,8 +210,8 @@ impl<'a> Span<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// The arc from its first point to its last, if the two tangents meet between them; and by how much the area between it and its chord may
-    /// be off.
+    /// The arc from its first point to its last, if the two tangents meet between them; and by how
+    /// much the area between it and its chord may be off.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
@@ -214,7 +221,8 @@ impl<'a> Span<'a> {
             root: side * root,
         });
         let mut tangents = Tangents::new(&factors, &rounded);
-        // Of a conic that is next to nothing but a line hardly more than roundings is left of the gradient.
+        // Of a conic that is next to nothing but a line hardly more than roundings is left of the
+        // gradient.
         let is_good = tangents.off <= GOOD * (end.x - start.x);
         if !is_good {
             let ends = ends.map(|at| graph.end_in_double(at.x, side));
@@ -227,7 +235,8 @@ impl<'a> Span<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Arcs whose tangents turn by more than 120° are cut: the weight is the cosine of half of that.
+        // Arcs whose tangents turn by more than 120° are cut: the weight is the cosine of half of
+        // that.
         const TURN: f64 = 0.5;
         let turns_little = arc.weight > TURN && arc.weight < 1.0 / TURN;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
@@ -253,12 +262,15 @@ struct Tangents {
 impl Tangents {
     /// Of the conic that has such factors.
     ///
-    /// Its gradient is off by a few roundings of its terms, κ times as many of itself, and so are both tangents' directions by as much of a
-    /// radian. By an angle at its base a triangle's area grows by half the square of the leg there. What the control is off along its tangent
-    /// changes the triangle and the weight, one up and the other down, by no more than that. The conic's quadratic part Q is off by as
-    /// many of its own terms, and by what the vectors are, which are off by roundings of coordinates and by what the directions are; the
-    /// weight's square is the quotient of two of it, and what lies between arc and chord grows no faster than the weight. The root is that of
-    /// another conic as near as this one is known itself, which moves points and tangents together.
+    /// Its gradient is off by a few roundings of its terms, κ times as many of itself, and so are
+    /// both tangents' directions by as much of a radian. By an angle at its base a triangle's
+    /// area grows by half the square of the leg there. What the control is off along its tangent
+    /// changes the triangle and the weight, one up and the other down, by no more than that. The
+    /// conic's quadratic part Q is off by as many of its own terms, and by what the vectors
+    /// are, which are off by roundings of coordinates and by what the directions are; the
+    /// weight's square is the quotient of two of it, and what lies between arc and chord grows no
+    /// faster than the weight. The root is that of another conic as near as this one is known
+    /// itself, which moves points and tangents together.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[End<T>; 2]) -> Self {
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
@@ -290,7 +302,8 @@ impl Tangents {
         let [[x, y], [far_x, far_y]] = ends.each_ref().map(|end| &end.at);
         let chord = [far_x.minus(x), far_y.minus(y)];
         let [here, there] = &gradients;
-        // From the start the control is along the tangent there, and from the end along the other one.
+        // From the start the control is along the tangent there, and from the end along the other
+        // one.
         let along = [here[1].negated(), here[0].clone()];
         let way = product(there, &chord).over(&product(there, &along));
         let control = along.map(|x| x.times(&way));
@@ -346,7 +359,8 @@ impl Section {
         }
     }
 
-    /// The greatest y it may have at three places: left, where its tangents meet (or anywhere, if it is straight), right.
+    /// The greatest y it may have at three places: left, where its tangents meet (or anywhere, if
+    /// it is straight), right.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -383,13 +397,16 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// By how much it may rise above another one over the same range of x, and how far they may be apart, where both are arcs that are nearly
-    /// parallel, however close: point by point of their parameter, with the first one's chord level.
+    /// By how much it may rise above another one over the same range of x, and how far they may be
+    /// apart, where both are arcs that are nearly parallel, however close: point by point of
+    /// their parameter, with the first one's chord level.
     ///
-    /// Of the same weights an arc's point is the same mean of its three control points as the other's of its own. An error in x counts by the
-    /// steepest tangent; and a different weight moves a point by at most its distance from the control point. Of narrow arcs that place is
-    /// uncertain along them, where little depends on it. A point is off by less than eight times what the area is by the width; and by what x is rounded,
-    /// which moves no more area than roundings of it by the arc's height.
+    /// Of the same weights an arc's point is the same mean of its three control points as the
+    /// other's of its own. An error in x counts by the steepest tangent; and a different weight
+    /// moves a point by at most its distance from the control point. Of narrow arcs that place is
+    /// uncertain along them, where little depends on it. A point is off by less than eight times
+    /// what the area is by the width; and by what x is rounded, which moves no more area than
+    /// roundings of it by the arc's height.
     fn between(&self, other: &Self) -> Option<[f64; 2]> {
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
@@ -406,7 +423,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // Some twenty operations on coordinates of both arcs, and what those are off themselves; the slack counts on both sides, for three points and the chord.
+        // Some twenty operations on coordinates of both arcs, and what those are off themselves;
+        // the slack counts on both sides, for three points and the chord.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest

@@ -1,7 +1,9 @@
 //! Convex polygons cut by lines: the one clipper of `exact`, but for the lanes of `strips_simd`.
 //!
-//! In: a convex polygon and a form that is linear in the picture. Out: the parts on both sides of the form's zero line (Sutherland and Hodgman, "Reentrant
-//! polygon clipping", 1974, one half-plane at a time). A crossing is off by a few roundings along its side; whoever cuts adds that to its bound.
+//! In: a convex polygon and a form that is linear in the picture. Out: the parts on both sides of
+//! the form's zero line (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane
+//! at a time). A crossing is off by a few roundings along its side; whoever cuts adds that to its
+//! bound.
 
 use glam::DVec2;
 
@@ -16,8 +18,8 @@ pub(super) const PIXEL: [DVec2; 4] = [
 /// The part of a polygon that lies on its cutting line.
 pub(super) type Chord = Option<[DVec2; 2]>;
 
-/// Appends the parts where a form is negative and where it is positive; points at which it is 0 belong to both. Returns the chord between them, if the
-/// line meets the polygon.
+/// Appends the parts where a form is negative and where it is positive; points at which it is 0
+/// belong to both. Returns the chord between them, if the line meets the polygon.
 pub(super) fn split(
     polygon: &[DVec2],
     form: impl Fn(DVec2) -> f64,

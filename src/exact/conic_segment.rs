@@ -1,8 +1,11 @@
-//! The segment of a conic between an arc and its chord: its area, and what it shows of a checkerboard.
+//! The segment of a conic between an arc and its chord: its area, and what it shows of a
+//! checkerboard.
 //!
-//! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the integral of the board's sign over it, for which the arc is cut
-//! where it crosses the board's lines, so that each piece has its segment in one square and the chords bound a convex polygon. The bound adds what roundings
-//! displace and the area of what is left out: of pieces that are small enough, so that toward the horizon there are not too many.
+//! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the
+//! integral of the board's sign over it, for which the arc is cut where it crosses the board's
+//! lines, so that each piece has its segment in one square and the chords bound a convex polygon.
+//! The bound adds what roundings displace and the area of what is left out: of pieces that are
+//! small enough, so that toward the horizon there are not too many.
 
 use glam::DVec2;
 
@@ -11,18 +14,21 @@ use super::{
     checker::{Homography, Sum, UNIT, form, square_wave},
 };
 
-/// Half the width in which the area's series is used, in 1 − w²: of its 34 terms the first that is left out is at most 0.36³⁴ = 8e-16.
+/// Half the width in which the area's series is used, in 1 − w²: of its 34 terms the first that is
+/// left out is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// An arc that may cross more lines than this is halved. (Measured: with 48 boards of small squares behind spheres take up to half as long again.)
+/// An arc that may cross more lines than this is halved. (Measured: with 48 boards of small squares
+/// behind spheres take up to half as long again.)
 const LINES: f64 = 12.0;
-/// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for half an ellipse, less for a hyperbola; this is twice the most.
+/// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for
+/// half an ellipse, less for a hyperbola; this is twice the most.
 const LEFT: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve of the weights 1, w and 1.
 ///
-/// Its tangents at the ends meet at `control`; it is of an ellipse for w < 1, of a parabola for w = 1 and of a hyperbola for
-/// w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
+/// Its tangents at the ends meet at `control`; it is of an ellipse for w < 1, of a parabola for w =
+/// 1 and of a hyperbola for w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
     pub start: DVec2,
@@ -35,8 +41,9 @@ pub(crate) struct Arc {
 impl Arc {
     /// The area between the arc and its chord, never negative.
     ///
-    /// Of the triangle start, control, end it is the part w·(θ − sin θ cos θ)/sin³θ with cos θ = w: what a circle's segment
-    /// of half-angle θ is of its triangle, for an affine map takes every ellipse to a circle. For w > 1 θ is imaginary.
+    /// Of the triangle start, control, end it is the part w·(θ − sin θ cos θ)/sin³θ with cos θ = w:
+    /// what a circle's segment of half-angle θ is of its triangle, for an affine map takes
+    /// every ellipse to a circle. For w > 1 θ is imaginary.
     pub(crate) fn area(&self) -> f64 {
         let triangle = 0.5
             * (self.control - self.start)
@@ -88,7 +95,8 @@ fn part(w: f64) -> f64 {
     (w / s) * (w / s - libm::log(w + s) / s / s)
 }
 
-/// (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral of 2x²/√(1 − x²).
+/// (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral of 2x²/√(1
+/// − x²).
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -112,8 +120,9 @@ fn series(z: f64) -> f64 {
 impl Homography {
     /// The integral of s(a)·s(b) over the region between an arc and its chord, in square pixels.
     ///
-    /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one square, and what is left
-    /// is a convex polygon. Chords take the place of pieces so short that their slivers may be neglected: of an area A those of n pieces have A/n³ each and A/n²
+    /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one
+    /// square, and what is left is a convex polygon. Chords take the place of pieces so short
+    /// that their slivers may be neglected: of an area A those of n pieces have A/n³ each and A/n²
     /// together, which is the tolerance t if one has t^(3/2)/√A.
     pub(super) fn sliver(&self, arc: &Arc, budget: &Budget) -> Sum {
         let area = arc.area();
@@ -196,7 +205,8 @@ impl Homography {
         }
     }
 
-    /// The sliver of an arc within a square between whose lines it was cut, wherever those are to within roundings.
+    /// The sliver of an arc within a square between whose lines it was cut, wherever those are to
+    /// within roundings.
     fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
         let mut sum = within_a_square(arc.area(), sign);
         sum.bound += self.displaced(&[arc.start, arc.control, arc.end]);
@@ -216,7 +226,8 @@ impl Homography {
         Some(sign)
     }
 
-    /// The first and the last line of a family, a = i or b = i, that may cross an arc; unless it nears the horizon.
+    /// The first and the last line of a family, a = i or b = i, that may cross an arc; unless it
+    /// nears the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -236,7 +247,8 @@ impl Homography {
 fn within_a_square(area: f64, sign: f64) -> Sum {
     Sum {
         value: sign * area,
-        // A triangle's area has five operations. Its part has up to ten, of terms of which the difference is a quarter where the series ends.
+        // A triangle's area has five operations. Its part has up to ten, of terms of which the
+        // difference is a quarter where the series ends.
         bound: 48.0 * UNIT * area,
     }
 }
@@ -258,7 +270,8 @@ fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
     if discriminant < 0.0 {
         return [None, None];
     }
-    // In r = t/(1 − t): f2·r² + f1·r + f0, and t = r/(1 + r), neither of the roots by a difference of like numbers.
+    // In r = t/(1 − t): f2·r² + f1·r + f0, and t = r/(1 + r), neither of the roots by a difference
+    // of like numbers.
     let q = -0.5 * (f1 + discriminant.sqrt().copysign(f1));
     [(q, f2), (f0, q)].map(|(above, below)| {
         let t = above / (above + below);

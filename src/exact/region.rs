@@ -1,8 +1,9 @@
 //! The regions of a sub-pixel, and what is seen in each.
 //!
-//! In: regions between boundaries, with a point in each. Out: how much of the sub-pixel each colour has, with a bound. One ray through the point says what is
-//! seen; a checkerboard is divided further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in doubt, and by how much the
-//! regions together are not the whole sub-pixel.
+//! In: regions between boundaries, with a point in each. Out: how much of the sub-pixel each colour
+//! has, with a bound. One ray through the point says what is seen; a checkerboard is divided
+//! further by `checker` and `conic_segment`. The bound adds what those say, what was said to be in
+//! doubt, and by how much the regions together are not the whole sub-pixel.
 
 use glam::DVec2;
 
@@ -115,7 +116,8 @@ impl<'a> Regions<'a> {
             sum.bound += sliver.bound;
         }
         let half = if checkered.odd { -0.5 } else { 0.5 } * sum.value;
-        // The board's own bound is for forms with a rounding in each factor. Whatever they are, no share is greater than the area.
+        // The board's own bound is for forms with a rounding in each factor. Whatever they are, no
+        // share is greater than the area.
         let bound = 0.5 * sum.bound * (1.0 + checkered.doubt / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -123,8 +125,8 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// The object that is seen in a region. Where double-double leaves it in doubt, so that the point may lie next to a boundary, all of the region counts as
-    /// doubtful.
+    /// The object that is seen in a region. Where double-double leaves it in doubt, so that the
+    /// point may lie next to a boundary, all of the region counts as doubtful.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         let (seen, is_sure) = seen(
             self.world,

@@ -1,10 +1,13 @@
-//! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above the other.
+//! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above
+//! the other.
 //!
-//! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring branches in each slab, which are told to [`Regions`].
+//! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring
+//! branches in each slab, which are told to [`Regions`].
 //!
-//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if by that two neighbours
-//! might cross within a slab, the slab is cut, where they cross if that can be seen, else in the middle. What cannot be told
-//! apart when slabs have become too narrow is added to the bound as doubtful area.
+//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if
+//! by that two neighbours might cross within a slab, the slab is cut, where they cross if that can
+//! be seen, else in the middle. What cannot be told apart when slabs have become too narrow is
+//! added to the bound as doubtful area.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -22,19 +25,22 @@ use super::{
 /// Curves may be out of order by so much: two y of at most 1, good to eight roundings each.
 const TIE: f64 = 16.0 * f64::UNIT;
 
-/// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand roundings of a coordinate, and 10⁻¹³ of area.
+/// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand
+/// roundings of a coordinate, and 10⁻¹³ of area.
 const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// Slabs narrower than this, in pixels, are not cut, nor any once `MANY` have been added to the first ones, counting those still queued: what is left in doubt
-/// then is in the bound. (Measured: a quarter and four times as much of either change bounds by a fiftieth and times by about a tenth at most.)
+/// Slabs narrower than this, in pixels, are not cut, nor any once `MANY` have been added to the
+/// first ones, counting those still queued: what is left in doubt then is in the bound. (Measured:
+/// a quarter and four times as much of either change bounds by a fiftieth and times by about a
+/// tenth at most.)
 const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
 const MANY: usize = 4096;
 
 /// Steps of the false position: halving alone gets from a pixel to a rounding in 53.
 const STEPS: usize = 60;
 
-/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at most 1/2, good to
-/// eight roundings each, and as much for products and sums.
+/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at
+/// most 1/2, good to eight roundings each, and as much for products and sums.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some curves.
@@ -44,7 +50,8 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Curve::Line(line) => {
-                // As in `arrangement`, but that here it is y that is rounded, which `ROUNDING` counts.
+                // As in `arrangement`, but that here it is y that is rounded, which `ROUNDING`
+                // counts.
                 regions.doubt(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -69,7 +76,8 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // As many slabs as may be added leave no more in doubt together than what is asked for, if each leaves one pair.
+    // As many slabs as may be added leave no more in doubt together than what is asked for, if each
+    // leaves one pair.
     let crumb = regions.tolerance() / MANY as f64;
     let mut all = Slabs {
         lines,
@@ -98,12 +106,14 @@ struct Slabs<'a> {
     graphs: Vec<Graph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// So much area, in square pixels, may be doubtful between two neighbours before their slab is cut.
+    /// So much area, in square pixels, may be doubtful between two neighbours before their slab is
+    /// cut.
     crumb: f64,
 }
 
 impl Slabs<'_> {
-    /// Adds a slab's regions, or returns where to cut it. A slab that is too narrow, or beyond the limit, is never cut.
+    /// Adds a slab's regions, or returns where to cut it. A slab that is too narrow, or beyond the
+    /// limit, is never cut.
     fn slab(&mut self, left: f64, right: f64, may_be: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let is_last = width < NARROW || self.slabs >= may_be;
@@ -127,7 +137,8 @@ impl Slabs<'_> {
         sections.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
         let place = |y: f64| sections.partition_point(|(_, section)| section.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
-        // The pixel's sides in order with what lies outside of them, and neighbours inside with each other.
+        // The pixel's sides in order with what lies outside of them, and neighbours inside with
+        // each other.
         let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::level(y)));
         let below = sections[..first].iter().map(|below| (below, &bottom));
         let above = sections[end..].iter().map(|above| (&top, above));
@@ -187,7 +198,8 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     });
 }
 
-/// Where to cut a slab in which two tracks may cross: at their crossing, if the order at one end is not that in the middle.
+/// Where to cut a slab in which two tracks may cross: at their crossing, if the order at one end is
+/// not that in the middle.
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);

@@ -1,8 +1,8 @@
 //! How far two pictures are apart, and where.
 //!
-//! In: two films. Out: the root mean square of their differences in linear light, in which means are taken; the largest difference
-//! and the number of pixels beyond a tolerance in steps of 8-bit sRGB, in which differences are seen. A step is 1/255 of the way from
-//! black to white.
+//! In: two films. Out: the root mean square of their differences in linear light, in which means
+//! are taken; the largest difference and the number of pixels beyond a tolerance in steps of 8-bit
+//! sRGB, in which differences are seen. A step is 1/255 of the way from black to white.
 
 use thiserror::Error;
 
@@ -12,8 +12,8 @@ use crate::color::linear_to_srgb;
 /// Steps between black and white.
 const STEPS: f64 = 255.0;
 
-/// What decoding and encoding may cost, in steps: a few roundings of numbers up to 255, and the curve's two pieces, which meet within
-/// 3e-8 of the whole.
+/// What decoding and encoding may cost, in steps: a few roundings of numbers up to 255, and the
+/// curve's two pieces, which meet within 3e-8 of the whole.
 const SLACK: f64 = 1e-5;
 
 /// The steps of a unit of light where the curve is steepest, in the dark.
@@ -27,7 +27,8 @@ pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 pub struct Tolerance<'a> {
     /// In steps of 8-bit sRGB, for every channel.
     pub steps: f64,
-    /// How far each pixel of a picture may be from its true mean, in linear light, if that is known; comes on top.
+    /// How far each pixel of a picture may be from its true mean, in linear light, if that is
+    /// known; comes on top.
     pub bounds: Option<&'a [f32]>,
 }
 
@@ -46,7 +47,8 @@ pub struct Comparison {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// The root of the mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
+    /// The root of the mean square of the differences of all channels of all pixels, in linear
+    /// light, 0 to 1.
     pub rmse: f64,
     /// The largest difference; the first one, row by row, of equal ones.
     pub largest: Largest,
@@ -151,8 +153,9 @@ pub fn rmse(a: &Film, b: &Film) -> f64 {
     (sum / (3.0 * a.pixels().len() as f64)).sqrt()
 }
 
-/// A picture of the differences of two pictures of one size: a pixel's is that of its channel that differs most. What lies within the tolerance is black; from there
-/// on the colour goes through red and yellow to white at 255 steps, linearly in what can be seen: noise stays dark.
+/// A picture of the differences of two pictures of one size: a pixel's is that of its channel that
+/// differs most. What lies within the tolerance is black; from there on the colour goes through red
+/// and yellow to white at 255 steps, linearly in what can be seen: noise stays dark.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
     let mut map = Film::new(a.width(), a.height())?;
     let pairs = a.pixels().iter().zip(b.pixels());

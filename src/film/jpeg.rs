@@ -23,7 +23,8 @@ pub struct Jpeg {
     pub shared: [u8; 2],
 }
 
-/// A table of steps, to whose multiples a block's coefficients are rounded; the first is that of its mean.
+/// A table of steps, to whose multiples a block's coefficients are rounded; the first is that of
+/// its mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Table {
     /// The square of the first step.

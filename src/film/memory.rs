@@ -39,7 +39,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Refuses a picture also where the system does not hand out as much; what is taken to find that out is given back at once.
+/// Refuses a picture also where the system does not hand out as much; what is taken to find that
+/// out is given back at once.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
@@ -54,9 +55,10 @@ pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooL
     }
 }
 
-/// How many bytes this process may still take: what the machine has available and what is left of its control group's limit, the
-/// smaller one. A system that hands out memory which it does not have would otherwise end the process halfway. Nothing on systems
-/// other than Linux, where the reservation itself has to fail.
+/// How many bytes this process may still take: what the machine has available and what is left of
+/// its control group's limit, the smaller one. A system that hands out memory which it does not
+/// have would otherwise end the process halfway. Nothing on systems other than Linux, where the
+/// reservation itself has to fail.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }

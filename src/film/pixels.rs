@@ -165,7 +165,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// How many pixels of a film have bytes that are certain to be the rounding of the true mean's, given how far each may be from it.
+/// How many pixels of a film have bytes that are certain to be the rounding of the true mean's,
+/// given how far each may be from it.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

@@ -1,8 +1,9 @@
 //! Portable Network Graphics: 8 bits of sRGB a channel, and the scene that the picture shows.
 //!
-//! The text goes into compressed iTXt chunks before the pixels: `Software`, which PNG itself knows, `pinhole:scene`, one `pinhole:set`
-//! for each override in their order, and `pinhole:crop` as `X,Y,W,H`. There is no date and nothing of the machine, so that the same
-//! scene makes the same file.
+//! The text goes into compressed iTXt chunks before the pixels: `Software`, which PNG itself knows,
+//! `pinhole:scene`, one `pinhole:set` for each override in their order, and `pinhole:crop` as
+//! `X,Y,W,H`. There is no date and nothing of the machine, so that the same scene makes the same
+//! file.
 
 use std::io::{self, Write};
 
@@ -94,8 +95,9 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // Rows of flat colours repeat as they are: differences of neighbours, which the format's filters store, are packed less well. Of such
-    // pictures a higher level makes files smaller by a few hundredths, and takes three times as long.
+    // Rows of flat colours repeat as they are: differences of neighbours, which the format's
+    // filters store, are packed less well. Of such pictures a higher level makes files smaller
+    // by a few hundredths, and takes three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
@@ -121,7 +123,8 @@ pub fn write_png<P: AsBytes>(
     Ok(())
 }
 
-/// Reads what a picture was made from. Only what precedes the pixels is looked at, and no more than [`TEXT_LIMIT`] is unpacked.
+/// Reads what a picture was made from. Only what precedes the pixels is looked at, and no more than
+/// [`TEXT_LIMIT`] is unpacked.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
     let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
@@ -159,7 +162,8 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     })
 }
 
-/// A chunk's kind and content, and what follows it; nothing if it is cut off or its checksum is wrong.
+/// A chunk's kind and content, and what follows it; nothing if it is cut off or its checksum is
+/// wrong.
 fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;

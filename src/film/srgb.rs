@@ -1,8 +1,9 @@
 //! Linear light as bytes of sRGB.
 //!
-//! Encoding and rounding are one comparison with thresholds: byte k stands for what lies from the light of k − 1/2 to that of k + 1/2.
-//! The thresholds are exact, so every light gets the byte that is the nearest; and a colour of the scene that nothing else is mixed into
-//! comes out as [`Color::to_bytes`](crate::color::Color::to_bytes) has it, ties included.
+//! Encoding and rounding are one comparison with thresholds: byte k stands for what lies from the
+//! light of k − 1/2 to that of k + 1/2. The thresholds are exact, so every light gets the byte that
+//! is the nearest; and a colour of the scene that nothing else is mixed into comes out as
+//! [`Color::to_bytes`](crate::color::Color::to_bytes) has it, ties included.
 
 use std::array;
 

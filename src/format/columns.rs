@@ -150,7 +150,8 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Class) -> Vec<Vec<usize>
     runs
 }
 
-/// The longest parts of a list whose widths differ by no more than the slack. What has no width belongs to any.
+/// The longest parts of a list whose widths differ by no more than the slack. What has no width
+/// belongs to any.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -221,8 +222,8 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the field behind the one with an index in objects of which the fields up to that one are aligned, as far as the
-/// objects are of one kind and the fields have one name.
+/// Aligns the field behind the one with an index in objects of which the fields up to that one are
+/// aligned, as far as the objects are of one kind and the fields have one name.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));

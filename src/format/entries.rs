@@ -21,10 +21,11 @@ pub struct Entry<'s> {
     pub what: What<'s>,
     /// The comments at its end.
     pub trailing: Vec<&'s str>,
-    /// The column that the second part is aligned to, counted from the entry's start: the `=`, the `{`, the value. 0 where it
-    /// follows right behind the first.
+    /// The column that the second part is aligned to, counted from the entry's start: the `=`, the
+    /// `{`, the value. 0 where it follows right behind the first.
     pub column: usize,
-    /// Of a field on its block's line, the column of the field behind it, counted from its own start; or 0.
+    /// Of a field on its block's line, the column of the field behind it, counted from its own
+    /// start; or 0.
     pub next: usize,
 }
 
@@ -233,8 +234,9 @@ fn entry(what: What<'_>) -> Entry<'_> {
 /// Comments of one line, and whether a blank line stands before them.
 type Line<'s> = (bool, Vec<&'s str>);
 
-/// Gives the comments of a gap to the lines that they stand on: those on the line of what came before to its end, the others
-/// lines of their own. The last of these is left, as it may be the start of what follows.
+/// Gives the comments of a gap to the lines that they stand on: those on the line of what came
+/// before to its end, the others lines of their own. The last of these is left, as it may be the
+/// start of what follows.
 fn comments<'s>(
     gap: Gap<'s>,
     place: In,

@@ -1,12 +1,13 @@
 //! The one canonical layout of a scene's text.
 //!
-//! In: a text without mistakes of syntax. Out: the same tokens and comments in the same order, with the white space between
-//! them that `grammar/language.md` describes under "Layout". What the names mean does not matter, so that a scene with other
-//! mistakes can be laid out.
+//! In: a text without mistakes of syntax. Out: the same tokens and comments in the same order, with
+//! the white space between them that `grammar/language.md` describes under "Layout". What the names
+//! mean does not matter, so that a scene with other mistakes can be laid out.
 //!
-//! Of the white space that was there, only the ends of lines tell something: whether a block stands on one line, where blank
-//! lines separate groups, and which line a comment belongs to. Blanks tell nothing, so that two texts that differ in them
-//! alone are laid out alike. On the way, `token_stream` reads tokens and comments from tree and text, `entries` makes lines of
+//! Of the white space that was there, only the ends of lines tell something: whether a block stands
+//! on one line, where blank lines separate groups, and which line a comment belongs to. Blanks tell
+//! nothing, so that two texts that differ in them alone are laid out alike. On the way,
+//! `token_stream` reads tokens and comments from tree and text, `entries` makes lines of
 //! them, `columns` decides what stands under what, and `page` writes it all.
 
 mod columns;
@@ -80,7 +81,8 @@ fn laid_out(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     formatted
 }
 
-/// Whether every item was understood, and every field has a value: where it is missing, nothing was reported yet.
+/// Whether every item was understood, and every field has a value: where it is missing, nothing was
+/// reported yet.
 fn is_whole(tree: &Tree<'_>) -> bool {
     tree.items.iter().all(|item| match item {
         Item::Definition(_) => true,
@@ -92,8 +94,8 @@ fn is_whole(tree: &Tree<'_>) -> bool {
     })
 }
 
-/// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what a field without a value is
-/// called. What else is wrong with the scene is left out.
+/// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what
+/// a field without a value is called. What else is wrong with the scene is left out.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -102,7 +104,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // A field that its block does not know is mistake enough for `check`, however its value is written.
+    // A field that its block does not know is mistake enough for `check`, however its value is
+    // written.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);
@@ -112,8 +115,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// What was written with the byte order mark and the line ends of the text: CRLF if all of them are, or else LF. No line ends with
-/// blanks, in comments neither.
+/// What was written with the byte order mark and the line ends of the text: CRLF if all of them
+/// are, or else LF. No line ends with blanks, in comments neither.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();

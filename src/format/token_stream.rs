@@ -23,8 +23,8 @@ pub enum Before {
     Nothing,
     /// A blank.
     Space,
-    /// A blank, or a line's end if the line would be too long; the lowest number breaks first. It grows with the
-    /// parentheses around the word, and with the tightness of the operator.
+    /// A blank, or a line's end if the line would be too long; the lowest number breaks first. It
+    /// grows with the parentheses around the word, and with the tightness of the operator.
     Fold(usize),
     /// The end of a line, which goes on here.
     Line,
@@ -116,8 +116,8 @@ impl<'a, 's> Reader<'a, 's> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// Adds the comments before a token; a comment that started a line does so still. Answers what has to stand before the
-    /// token.
+    /// Adds the comments before a token; a comment that started a line does so still. Answers what
+    /// has to stand before the token.
     pub fn comments(&mut self, to: usize, before: Before, words: &mut Vec<Word<'s>>) -> Before {
         let gap = self.gap(to);
         for comment in &gap.comments {
@@ -214,8 +214,8 @@ impl<'a, 's> Reader<'a, 's> {
     }
 }
 
-/// A line gets no longer than this, as far as there are places to break it. What stands in columns is measured before it is
-/// aligned, and comments at the end of a line do not count.
+/// A line gets no longer than this, as far as there are places to break it. What stands in columns
+/// is measured before it is aligned, and comments at the end of a line do not count.
 pub const WIDTH: usize = 100;
 
 /// How wide words are on one line; of a comment with several lines, the last one counts.

@@ -6,7 +6,8 @@ use super::{
     token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
-/// By how much a block's fields stand further to the right than itself, and the other lines of a value than its first.
+/// By how much a block's fields stand further to the right than itself, and the other lines of a
+/// value than its first.
 const INDENT: usize = 2;
 
 /// The text of a file.
@@ -93,7 +94,8 @@ impl Writer {
         self.waiting.push((line, comments));
     }
 
-    /// Writes words, with new lines where they have to be and where the line would be too long; the last one goes on.
+    /// Writes words, with new lines where they have to be and where the line would be too long; the
+    /// last one goes on.
     fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
         let last = self.lines(line, words, margin);
         push_flat(line, last);
@@ -226,8 +228,8 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
     }
 }
 
-/// The words that start a line, by their indices. A line that is too long is broken where it is least nested, and there as
-/// late as may be.
+/// The words that start a line, by their indices. A line that is too long is broken where it is
+/// least nested, and there as late as may be.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

@@ -54,7 +54,8 @@ impl Document {
         }
     }
 
-    /// Changes the text; each change counts on those before it. If one of them is none, the text stays as it is.
+    /// Changes the text; each change counts on those before it. If one of them is none, the text
+    /// stays as it is.
     ///
     /// # Errors
     ///
@@ -87,8 +88,8 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// The offset of a place. What lies behind a line's end counts as its end, what lies within a character as its start, and what lies below the text as
-    /// its end.
+    /// The offset of a place. What lies behind a line's end counts as its end, what lies within a
+    /// character as its start, and what lies below the text as its end.
     pub fn offset(&self, place: Place) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
@@ -107,7 +108,8 @@ impl Document {
     }
 }
 
-/// The offset of a place in a text that has these lines; none below the text. The line behind the last one is the text's end.
+/// The offset of a place in a text that has these lines; none below the text. The line behind the
+/// last one is the text's end.
 fn offset(text: &str, lines: &LineIndex, encoding: Encoding, (line, col): Place) -> Option<usize> {
     let Some(range) = lines.line(line) else {
         let last = lines.try_line_col(lines.len())?;

@@ -108,8 +108,9 @@ fn most_values(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request that is no JSON as far as its parameters go, so that whoever asked gets an answer.
-/// Browsers write half of a surrogate pair, which stands for no character, as an escape that no text can be made of.
+/// Returns the identifier of a request that is no JSON as far as its parameters go, so that whoever
+/// asked gets an answer. Browsers write half of a surrogate pair, which stands for no character, as
+/// an escape that no text can be made of.
 fn asked(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {

@@ -1,5 +1,5 @@
-//! The types of the protocol that are read, or that several answers have. What is written besides is an object of JSON where it is made: a crate of all
-//! types took nine seconds to compile.
+//! The types of the protocol that are read, or that several answers have. What is written besides
+//! is an object of JSON where it is made: a crate of all types took nine seconds to compile.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,9 +1,11 @@
 //! The server as a value: messages in, messages out.
 //!
-//! What a client tells is taken in at once, and what it asks is put into a queue, of which [`Server::advance`] answers a slice; so a host can
-//! see what has come in the meantime, as a request's cancelling. Each answer is about the text as it was when it was asked for: before a text changes, what waits
-//! about it is answered. Diagnostics are computed for a text's last version alone. A frame, which takes longer than all else, is made in slices when nothing else is to
-//! be done, and given up where its text changes, unless it was asked for by `last`.
+//! What a client tells is taken in at once, and what it asks is put into a queue, of which
+//! [`Server::advance`] answers a slice; so a host can see what has come in the meantime, as a
+//! request's cancelling. Each answer is about the text as it was when it was asked for: before a
+//! text changes, what waits about it is answered. Diagnostics are computed for a text's last
+//! version alone. A frame, which takes longer than all else, is made in slices when nothing else is
+//! to be done, and given up where its text changes, unless it was asked for by `last`.
 
 use std::{
     cell::LazyCell,
@@ -48,7 +50,8 @@ pub struct Server {
     waiting: VecDeque<Request>,
     /// The documents whose diagnostics are to be told.
     changed: BTreeSet<String>,
-    /// What the pictures of documents are made from, where one was asked for; none where a text has errors.
+    /// What the pictures of documents are made from, where one was asked for; none where a text
+    /// has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
     /// Of each text that has changed, the last version without errors before that.
     last: HashMap<Uri, Option<SceneVersion>>,
@@ -71,7 +74,8 @@ impl Server {
         }
     }
 
-    /// Whether the conversation has ended properly, by `exit` after `shutdown`; none while it goes on.
+    /// Whether the conversation has ended properly, by `exit` after `shutdown`; none while it goes
+    /// on.
     pub fn ended(&self) -> Option<bool> {
         match self.phase {
             Phase::Ended { properly } => Some(properly),
@@ -103,8 +107,9 @@ impl Server {
         !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
-    /// Does a piece of the work that is left, and returns what is to be said of it. A piece is one text: everything that was asked about it, and what is wrong
-    /// with it; or, where nothing else is left, a slice of a frame.
+    /// Does a piece of the work that is left, and returns what is to be said of it. A piece is one
+    /// text: everything that was asked about it, and what is wrong with it; or, where nothing
+    /// else is left, a slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -125,7 +130,8 @@ impl Server {
         said
     }
 
-    /// Answers what waits about a text, or about none, and tells what is wrong with it if it has changed.
+    /// Answers what waits about a text, or about none, and tells what is wrong with it if it has
+    /// changed.
     fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
@@ -360,7 +366,8 @@ fn uri(request: &Request) -> Option<Uri> {
     Some(Uri(uri.to_owned()))
 }
 
-/// An answer, or the refusal if giving it failed: the next request may fare better, and no text is touched by an answer.
+/// An answer, or the refusal if giving it failed: the next request may fare better, and no text is
+/// touched by an answer.
 pub(crate) fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();

@@ -1,8 +1,9 @@
 //! The server on standard input and output, as editors start it.
 //!
-//! A thread of its own does nothing but read, so that all that has come is taken in before the next piece of work: what was cancelled in the meantime is not
-//! computed, and of several states of a text only the last is judged. Messages are read here rather than by lsp-server, which takes any length that is announced and
-//! ends at the first message that is none.
+//! A thread of its own does nothing but read, so that all that has come is taken in before the next
+//! piece of work: what was cancelled in the meantime is not computed, and of several states of a
+//! text only the last is judged. Messages are read here rather than by lsp-server, which takes any
+//! length that is announced and ends at the first message that is none.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -21,7 +22,8 @@ use super::{
 /// A message, or the response to something that came in its place.
 type Incoming = Result<Message, Value>;
 
-/// Has a server talk to a client until it ends. Says whether it ended properly: by `exit` after `shutdown`.
+/// Has a server talk to a client until it ends. Says whether it ended properly: by `exit` after
+/// `shutdown`.
 ///
 /// # Errors
 ///
@@ -54,7 +56,8 @@ pub fn serve(
     Ok(false)
 }
 
-/// The next message, as soon as there is one; the server works while it waits. None if no more will come, and all is done.
+/// The next message, as soon as there is one; the server works while it waits. None if no more will
+/// come, and all is done.
 fn next_message(
     messages: &Receiver<Incoming>,
     server: &mut Server,
@@ -97,7 +100,8 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// The longest message, in bytes. What announces more has lost its way, and what would follow it is anybody's guess.
+/// The longest message, in bytes. What announces more has lost its way, and what would follow it is
+/// anybody's guess.
 const LONGEST: u64 = 1 << 30;
 
 /// The longest line of a header; those that are known take some thirty bytes.

@@ -1,4 +1,5 @@
-//! A request about a document, and its answer: the parameters read, the editor asked, the answer converted.
+//! A request about a document, and its answer: the parameters read, the editor asked, the answer
+//! converted.
 
 use lsp_server::Request;
 use serde_json::{Value, json};
@@ -83,8 +84,8 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             list(labels.map(|label| converter.presentation(span, label)))
         }
         "codeAction" => code_actions(converter, analysis, &params),
-        // Nothing for a text with mistakes of syntax: they are told already, and an editor that formats on every save must not
-        // complain each time.
+        // Nothing for a text with mistakes of syntax: they are told already, and an editor that
+        // formats on every save must not complain each time.
         "formatting" => {
             let edits = editor::formatting(analysis);
             Ok(edits.map(|edits| converter.text_edits(edits)).into())

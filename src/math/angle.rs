@@ -4,7 +4,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An angle: a part in degrees and a part in radians, whose sum it is.
 ///
-/// Keeping the two apart keeps degrees exact: a multiple of 90° has a sine and a cosine of exactly 0 or ±1, however large.
+/// Keeping the two apart keeps degrees exact: a multiple of 90° has a sine and a cosine of exactly
+/// 0 or ±1, however large.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Angle {
     /// The part in degrees.

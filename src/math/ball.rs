@@ -10,8 +10,8 @@ pub struct Doubt;
 
 /// A real number known to lie within `rad` of `mid`.
 ///
-/// Every operation bounds what its operands' radii and its own rounding contribute. A radius that is infinite or NaN, as after an overflow, holds every
-/// number.
+/// Every operation bounds what its operands' radii and its own rounding contribute. A radius that
+/// is infinite or NaN, as after an overflow, holds every number.
 #[derive(Clone, Debug)]
 pub struct Ball<T: Real> {
     /// The computed number.
@@ -20,11 +20,13 @@ pub struct Ball<T: Real> {
     pub rad: T::Radius,
 }
 
-/// A factor that rounds a radius up: it was computed in `f64`, by fewer than 2^12 roundings of 2^−53 each, which 2^−40 is more than.
+/// A factor that rounds a radius up: it was computed in `f64`, by fewer than 2^12 roundings of
+/// 2^−53 each, which 2^−40 is more than.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// What a rounding counts, in [`UNIT`](Real::UNIT)s of the computed number. It is off by one unit of the true number, and that is less than two of the
-/// computed one; twice as much costs nothing but an occasional question to the next precision.
+/// What a rounding counts, in [`UNIT`](Real::UNIT)s of the computed number. It is off by one unit
+/// of the true number, and that is less than two of the computed one; twice as much costs nothing
+/// but an occasional question to the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -64,8 +66,9 @@ impl<T: Real> Ball<T> {
         self.mid.magnitude()
     }
 
-    /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would add nothing to it but the
-    /// last decisions of [`Double`](super::Double), which allow for it.
+    /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would
+    /// add nothing to it but the last decisions of [`Double`](super::Double), which allow for
+    /// it.
     pub fn is_precise(&self) -> bool {
         /// A relative error: 27 bits below the 53 of an `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
@@ -77,7 +80,8 @@ impl<T: Real> Ball<T> {
         self.size() > self.rad * UP
     }
 
-    /// Less than, equal to or greater than zero. What the last precision cannot tell from zero is zero.
+    /// Less than, equal to or greater than zero. What the last precision cannot tell from zero is
+    /// zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -136,8 +140,8 @@ impl<T: Real> Ball<T> {
         Self::rounded(root, inherited)
     }
 
-    /// The greatest integer that is not greater, and whether it is odd. What the last precision cannot tell from an
-    /// integer is that integer.
+    /// The greatest integer that is not greater, and whether it is odd. What the last precision
+    /// cannot tell from an integer is that integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));

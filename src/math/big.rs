@@ -11,14 +11,17 @@ use super::Angle;
 #[derive(Clone, Debug)]
 pub struct Big(pub(super) Float);
 
-/// A float whose precision is that of its operands; 0 stands for unlimited, exact as long as nothing is divided.
+/// A float whose precision is that of its operands; 0 stands for unlimited, exact as long as
+/// nothing is divided.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer than about 2^−90, and one closer than
-/// that counts as a tie anyway; what remains is far more than the intermediate steps of any formula here lose.
+/// Bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer than about
+/// 2^−90, and one closer than that counts as a tie anyway; what remains is far more than the
+/// intermediate steps of any formula here lose.
 pub(super) const PRECISION: usize = 320;
 
-/// Further bits for the few steps that cancel: as many as a result has, so that these are left where as many cancel.
+/// Further bits for the few steps that cancel: as many as a result has, so that these are left
+/// where as many cancel.
 const GUARD: usize = 320;
 
 impl Big {
@@ -64,8 +67,9 @@ impl Big {
     }
 }
 
-/// How an angle compares with so many half turns. Degrees are compared as they are; where radians are added to them, π is,
-/// which is irrational: what is left is never zero, and has more digits than would have to cancel.
+/// How an angle compares with so many half turns. Degrees are compared as they are; where radians
+/// are added to them, π is, which is irrational: what is left is never zero, and has more digits
+/// than would have to cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -106,8 +110,8 @@ fn wide(x: f64) -> Float {
 
 /// A finite `f64` as a number whose sums and products are exact.
 pub(super) fn exact(x: f64) -> Float {
-    // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of ours, and zero keeps it
-    // from becoming a panic.
+    // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of
+    // ours, and zero keeps it from becoming a panic.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

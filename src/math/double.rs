@@ -4,10 +4,12 @@ use super::{Big, Real};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
-/// The algorithms are Dekker's and Knuth's error-free transformations; sum and product are the accurate ones analysed by
-/// Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks of double-word arithmetic" (2017):
-/// relative errors of 3u² and 5u², u = 2^−53. The quotient is a long division, the root a step of Newton's method, each with a residual in double-double. Products are split after
-/// Dekker rather than by a fused multiply-add, which is a slow function call where the processor has none; both are exact.
+/// The algorithms are Dekker's and Knuth's error-free transformations; sum and product are the
+/// accurate ones analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic
+/// building blocks of double-word arithmetic" (2017): relative errors of 3u² and 5u², u = 2^−53.
+/// The quotient is a long division, the root a step of Newton's method, each with a residual in
+/// double-double. Products are split after Dekker rather than by a fused multiply-add, which is a
+/// slow function call where the processor has none; both are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
     /// The number rounded to `f64`.
@@ -38,7 +40,8 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 /// a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// 2^27 + 1: the upper part of a number of 53 bits has 26 of them, and the lower part 26 with its sign.
+    /// 2^27 + 1: the upper part of a number of 53 bits has 26 of them, and the lower part 26 with
+    /// its sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * SPLIT;

@@ -1,7 +1,9 @@
-//! Dyadic numbers: whole numbers times powers of two, which sums, differences and products of `f64` are, without any rounding.
+//! Dyadic numbers: whole numbers times powers of two, which sums, differences and products of `f64`
+//! are, without any rounding.
 //!
-//! They settle the few questions that must not depend on rounding at all: does the eye lie in this plane, on this sphere, is the up vector parallel
-//! to the view direction. That takes some microseconds.
+//! They settle the few questions that must not depend on rounding at all: does the eye lie in this
+//! plane, on this sphere, is the up vector parallel to the view direction. That takes some
+//! microseconds.
 
 use std::{cmp::Ordering, ops};
 

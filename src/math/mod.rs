@@ -1,7 +1,9 @@
-//! Arithmetic that is the same on every machine, in three precisions, sine and kin, and questions answered exactly.
+//! Arithmetic that is the same on every machine, in three precisions, sine and kin, and questions
+//! answered exactly.
 //!
-//! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A [`Ball`] is a number with a
-//! bound on its error, so that a decision either is certain or says that it is in [`Doubt`]; the next precision then decides.
+//! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A
+//! [`Ball`] is a number with a bound on its error, so that a decision either is certain or says
+//! that it is in [`Doubt`]; the next precision then decides.
 
 mod angle;
 mod ball;

@@ -38,7 +38,8 @@ impl Plane {
         Self::Tilted { normal, point: a }
     }
 
-    /// Whether it is the same plane as another: their normals are parallel, and the points' difference lies across these.
+    /// Whether it is the same plane as another: their normals are parallel, and the points'
+    /// difference lies across these.
     pub fn equals(&self, other: &Self) -> bool {
         // Where a box stands on a floor, or boxes stand side by side, many samples ask.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
@@ -107,8 +108,9 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is (2a + b)/2: if the sum is rounded, it is no
-/// subnormal number, and halving it is exact. Where 2a is too large, b/2 is exact or too small to matter.
+/// `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is (2a + b)/2: if the
+/// sum is rounded, it is no subnormal number, and halving it is exact. Where 2a is too large, b/2
+/// is exact or too small to matter.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {

@@ -1,5 +1,5 @@
-//! Bounds on errors: numbers ≥ 0, of wider range than an `f64` where big numbers need it. Their operations round to nearest; where it counts, a
-//! result is widened by [`UP`](super::UP).
+//! Bounds on errors: numbers ≥ 0, of wider range than an `f64` where big numbers need it. Their
+//! operations round to nearest; where it counts, a result is widened by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 
@@ -63,7 +63,8 @@ impl Radius for f64 {
     }
 }
 
-/// A number ≥ 0 whose exponent does not run out: mantissa · 2^exponent, the mantissa 0, infinite, or from 1 to below 2.
+/// A number ≥ 0 whose exponent does not run out: mantissa · 2^exponent, the mantissa 0, infinite,
+/// or from 1 to below 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wide {
     mantissa: f64,
@@ -71,7 +72,8 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// An exponent: what is 2^1000 times smaller is far less than [`UP`](super::UP) adds, and no underflow beside a mantissa from 1 to 2.
+    /// An exponent: what is 2^1000 times smaller is far less than [`UP`](super::UP) adds, and no
+    /// underflow beside a mantissa from 1 to 2.
     const FAR: i64 = 1000;
 
     /// mantissa · 2^exponent for any mantissa ≥ 0.
@@ -170,7 +172,8 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Far beyond the exponents of `f64`, so that nothing that is scaled by it is one, and small enough to be added and negated.
+        /// Far beyond the exponents of `f64`, so that nothing that is scaled by it is one, and
+        /// small enough to be added and negated.
         const MOST: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-MOST, MOST) as i32
     }

@@ -11,9 +11,9 @@ use super::{
 
 /// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`], from fast to precise.
 ///
-/// Operations take references, since a big number is not free to copy. Each result is off by at most
-/// [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64` or `Double` that
-/// overflows becomes infinite or NaN, which every decision takes for doubt.
+/// Operations take references, since a big number is not free to copy. Each result is off by at
+/// most [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64`
+/// or `Double` that overflows becomes infinite or NaN, which every decision takes for doubt.
 pub trait Real: Clone + Debug + Sized {
     /// What bounds errors: as wide in range as the kind itself.
     type Radius: Radius;
@@ -21,7 +21,8 @@ pub trait Real: Clone + Debug + Sized {
     const UNIT: f64;
     /// Bound on the absolute error of one operation that underflows, its radius included.
     const TINY: Self::Radius;
-    /// Whether there is no more precise kind to ask: a value that is not told from zero counts as zero.
+    /// Whether there is no more precise kind to ask: a value that is not told from zero counts as
+    /// zero.
     const LAST: bool;
 
     /// The number itself, without rounding.
@@ -57,12 +58,14 @@ pub trait Real: Clone + Debug + Sized {
     fn floor(&self) -> (Self, bool);
 }
 
-/// Added to a number below 2^51 and taken away again, it rounds that to a whole number, whose last bit is that of the sum.
+/// Added to a number below 2^51 and taken away again, it rounds that to a whole number, whose last
+/// bit is that of the sum.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// The greatest whole number that is not greater, for |x| < 2^63.
 ///
-/// `f64::floor` is a call of a function where not every processor of the kind has an instruction for it.
+/// `f64::floor` is a call of a function where not every processor of the kind has an instruction
+/// for it.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let towards_zero = x as i64 as f64;

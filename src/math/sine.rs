@@ -1,18 +1,20 @@
 //! Sine and cosine with a bound on their error.
 //!
-//! Degrees are reduced mod 360 without rounding before they become radians, so that multiples of 90° give exactly 0 and ±1
-//! however large they are. What is left is at most 45°.
+//! Degrees are reduced mod 360 without rounding before they become radians, so that multiples of
+//! 90° give exactly 0 and ±1 however large they are. What is left is at most 45°.
 
 use std::{array, ops::Neg, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// More radians are left to [`Big`]: its π has digits enough. So many are less than 2^20 quarter turns, and miss 2^20 times what the π/2 below does, 2^−143,
-/// which is nothing beside a unit of double-double, 2^−102.
+/// More radians are left to [`Big`]: its π has digits enough. So many are less than 2^20 quarter
+/// turns, and miss 2^20 times what the π/2 below does, 2^−143, which is nothing beside a unit of
+/// double-double, 2^−102.
 const MOST_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Terms of a series. With r ≤ 0.8, which is above π/4, the first that is left out of the cosine's is r³⁰/30! < 2^−117, and of the sine's, beside
-/// r itself, r³⁰/31! < 2^−122; as terms alternate and get smaller, no more than that is missing.
+/// Terms of a series. With r ≤ 0.8, which is above π/4, the first that is left out of the cosine's
+/// is r³⁰/30! < 2^−117, and of the sine's, beside r itself, r³⁰/31! < 2^−122; as terms alternate
+/// and get smaller, no more than that is missing.
 const TERMS: usize = 15;
 const LEFT_OUT: f64 = 1.0 / (1u128 << 116) as f64;
 
@@ -51,7 +53,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     }
 });
 
-/// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1. In double-double they are had by series, in the two other precisions from [`Big`].
+/// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1. In double-double they are
+/// had by series, in the two other precisions from [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MOST_RADIANS {
         let (sin, cos) = by_series(angle);
@@ -89,7 +92,8 @@ fn of_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
     turned(series(&rest), quarters)
 }
 
-/// Radians are reduced mod π/2 in three steps (Cody and Waite), of which the first two take away exact products.
+/// Radians are reduced mod π/2 in three steps (Cody and Waite), of which the first two take away
+/// exact products.
 fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     let [first, second, third] = CONSTANTS.quarter_turn;
     let quarters = (radians / first).round();
@@ -105,8 +109,8 @@ fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     turned(series(&(rest - Ball::exact(quarters) * last)), quarters)
 }
 
-/// What is left of an angle in degrees, 45 at most, beside so many quarter turns. Every step is exact: a remainder is, and so is a difference to 90 of
-/// a number between 45 and 90 (Sterbenz).
+/// What is left of an angle in degrees, 45 at most, beside so many quarter turns. Every step is
+/// exact: a remainder is, and so is a difference to 90 of a number between 45 and 90 (Sterbenz).
 fn reduced(degrees: f64) -> (f64, f64) {
     let within_turn = degrees % 360.0;
     let mut rest = within_turn % 90.0;
@@ -156,10 +160,12 @@ mod tests {
 
     use super::*;
 
-    /// How wide a ball may be, in units of double-double: what the rules of [`Ball`] make of an angle in degrees, in radians, and of both. A product with
-    /// a rounded constant gives 8 units of r for degrees, three differences 12 π/4 at most for radians. From there the series come to 19.9 units of the
-    /// sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for radians, all where |r| = π/4; and a sum of two products of these, √½ each, to
-    /// √½ (19.9 + 19.6 + 23.4 + 22.1) + 2 + 2 + 4 = 68.1.
+    /// How wide a ball may be, in units of double-double: what the rules of [`Ball`] make of an
+    /// angle in degrees, in radians, and of both. A product with a rounded constant gives 8
+    /// units of r for degrees, three differences 12 π/4 at most for radians. From there the series
+    /// come to 19.9 units of the sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for
+    /// radians, all where |r| = π/4; and a sum of two products of these, √½ each, to √½ (19.9 +
+    /// 19.6 + 23.4 + 22.1) + 2 + 2 + 4 = 68.1.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Whether both balls hold the true numbers and are no wider than they have to be.

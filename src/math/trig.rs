@@ -1,6 +1,7 @@
 //! Sine and kin of angles, the same on every machine.
 //!
-//! In: angles, or numbers. Out: the double-double numbers of `sine`, rounded; and libm's inverse functions.
+//! In: angles, or numbers. Out: the double-double numbers of `sine`, rounded; and libm's inverse
+//! functions.
 
 use super::{Angle, Ball, Double, Real, sine};
 

@@ -8,7 +8,8 @@ use std::{
     time::Duration,
 };
 
-/// What one thread puts and another one takes. A value that is put takes the place of one that nobody has taken.
+/// What one thread puts and another one takes. A value that is put takes the place of one that
+/// nobody has taken.
 #[derive(Debug)]
 pub struct Latest<T> {
     state: Mutex<State<T>>,
@@ -74,7 +75,8 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Set as soon as there is a newer value than the one that was taken, or nobody wants one any more: for cancelling work on it.
+    /// Set as soon as there is a newer value than the one that was taken, or nobody wants one any
+    /// more: for cancelling work on it.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }

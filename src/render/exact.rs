@@ -1,6 +1,7 @@
 //! A part of the picture without samples, and how far it may be from the true one.
 //!
-//! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their bounds, rounded upwards.
+//! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their
+//! bounds, rounded upwards.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -13,8 +14,9 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// The side of the tiles: so large that pixels of a checkerboard, which are computed in batches of eight that are alike, fill most of their batches
-/// (squares of the grid alone take a twentieth longer for figure 9.9), and so small that the threads end together.
+/// The side of the tiles: so large that pixels of a checkerboard, which are computed in batches of
+/// eight that are alike, fill most of their batches (squares of the grid alone take a twentieth
+/// longer for figure 9.9), and so small that the threads end together.
 const TILE: u32 = 2 * GRID;
 
 /// A computed picture, and how far it may be from the true one.
@@ -24,7 +26,8 @@ pub struct Exact<P = [f64; 3]> {
     pub film: Film<P>,
     /// For each pixel, row by row, how far each channel of its mean may be from the true one.
     pub bounds: Vec<f32>,
-    /// How many pixels of the film, rounded as files hold them, are certain to be those of the true means.
+    /// How many pixels of the film, rounded as files hold them, are certain to be those of the
+    /// true means.
     pub certain: u64,
 }
 
@@ -34,7 +37,8 @@ impl<P> Exact<P> {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
 
-    /// The root of the mean of their squares, which is no less than the root of the mean squared error of all pixels and channels.
+    /// The root of the mean of their squares, which is no less than the root of the mean squared
+    /// error of all pixels and channels.
     pub fn root_mean_square_bound(&self) -> f64 {
         let squares = self
             .bounds
@@ -57,7 +61,8 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture from an integrator of numbers of which the first three are the channels; `also` is shown all of them, tile by tile.
+/// Computes a part of the picture from an integrator of numbers of which the first three are the
+/// channels; `also` is shown all of them, tile by tile.
 pub fn render_numbers<P: film::Pixel, const N: usize>(
     integrator: &Integrator<N>,
     part: Area,

@@ -1,8 +1,9 @@
 //! The tiles of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, and counts know no order. Where it is certain that one colour is seen, samples are neither placed
-//! nor traced: the mean of equal colours is that colour. In the other pixels they are traced many at a time, and against those objects alone
-//! that may be seen there; or one by one, where to know more would cost more.
+//! A pixel's samples are counted by colour, and counts know no order. Where it is certain that one
+//! colour is seen, samples are neither placed nor traced: the mean of equal colours is that colour.
+//! In the other pixels they are traced many at a time, and against those objects alone that may be
+//! seen there; or one by one, where to know more would cost more.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -22,7 +23,8 @@ use crate::{
     tracer::{Candidate, Checks, Nearby, Part, Quartering, Scratch, World, nearby, samples},
 };
 
-/// Fewer samples than the widest vectors have numbers are placed and looked at by those that every processor has.
+/// Fewer samples than the widest vectors have numbers are placed and looked at by those that every
+/// processor has.
 const WIDE_SAMPLES: u64 = 8;
 
 /// A pixel is prepared for its samples if it has more than so many for each candidate. Measured:
@@ -176,7 +178,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Together(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // To choose others takes longer, and rays that are traced one by one afterwards are slower for it.
+            // To choose others takes longer, and rays that are traced one by one afterwards are
+            // slower for it.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
@@ -209,7 +212,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// How the samples of a pixel are traced.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where that is known.
+    /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where
+    /// that is known.
     Together(&'a [Candidate], Option<&'a Checks>),
     /// One by one, against these.
     Among(&'a [Candidate]),

@@ -1,6 +1,7 @@
 //! A part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut into tiles for the threads; `renderer` makes each.
+//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut
+//! into tiles for the threads; `renderer` makes each.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -13,7 +14,8 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// A tile has about so many samples, a few milliseconds' work: no thread waits longer for the others at the end.
+/// A tile has about so many samples, a few milliseconds' work: no thread waits longer for the
+/// others at the end.
 const TILE_SAMPLES: u64 = 1 << 18;
 
 /// Renders a part of the picture, which lies in it, with samples.
@@ -68,7 +70,8 @@ pub(super) fn render_as<P: film::Pixel>(
 /// The side of the tiles: smaller where pixels have many samples.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // A square root of a number that fits; and a power of two, so that no tile crosses a line of the grid.
+    // A square root of a number that fits; and a power of two, so that no tile crosses a line of
+    // the grid.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

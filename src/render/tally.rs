@@ -1,4 +1,5 @@
-//! What a thread counts with: how often each colour was seen in a pixel, and the means that come of such counts.
+//! What a thread counts with: how often each colour was seen in a pixel, and the means that come of
+//! such counts.
 
 use crate::{
     film::{self, Encoder, mean},
@@ -34,7 +35,8 @@ impl<P> Tally<P> {
 pub(super) struct Counts {
     /// By slot of the palette.
     of: Vec<u64>,
-    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees little of it.
+    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees
+    /// little of it.
     seen: Vec<usize>,
 }
 
@@ -66,8 +68,8 @@ impl Counts {
     }
 }
 
-/// Means of two colours, in the place that their counts choose: most pixels that see more than one see two, and most of these see them as
-/// often as some pixel before.
+/// Means of two colours, in the place that their counts choose: most pixels that see more than one
+/// see two, and most of these see them as often as some pixel before.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
 /// How many means are kept: 28 KiB of them, which fit into a first-level cache.

@@ -1,20 +1,26 @@
-//! Binomial random numbers: how many of n tries succeed, when each does with a probability p that is a fraction.
+//! Binomial random numbers: how many of n tries succeed, when each does with a probability p that
+//! is a fraction.
 //!
-//! A try succeeds where a random number is below p, and the first binary digit in which the two differ tells. So half of the tries that
-//! are open are decided at each digit, and all that is drawn is how many of some coins fall on heads. Of few coins these are random bits, counted;
-//! of many, transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random variates"), exact but for the rounding of f64.
+//! A try succeeds where a random number is below p, and the first binary digit in which the two
+//! differ tells. So half of the tries that are open are decided at each digit, and all that is
+//! drawn is how many of some coins fall on heads. Of few coins these are random bits, counted;
+//! of many, transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
+//! variates"), exact but for the rounding of f64.
 //!
-//! The binomials of `rand_distr` take the platform's `powf` and `ln`, of which the last bits differ between systems.
+//! The binomials of `rand_distr` take the platform's `powf` and `ln`, of which the last bits differ
+//! between systems.
 
 use rand::{Rng, RngExt};
 
 /// Up to so many coins are tossed one by one, 64 to a random number.
 const COUNTED: u64 = 512;
 
-/// The number of successes among `n` ≤ 2^53 tries, each of which succeeds with the probability `part`/`whole`.
+/// The number of successes among `n` ≤ 2^53 tries, each of which succeeds with the probability
+/// `part`/`whole`.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // What is left of p behind the digits that were looked at, in units of 1/whole of the last digit.
+    // What is left of p behind the digits that were looked at, in units of 1/whole of the last
+    // digit.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
@@ -68,9 +74,10 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     }
 }
 
-/// The logarithm of the probability of k heads, but for a constant, by Stirling's formula for the factorials with its error (Loader 2000, "Fast
-/// and accurate computation of binomial probabilities"): no term is much larger than the result, so that nothing cancels even for n = 2^53.
-/// k lies within n/4 of n/2.
+/// The logarithm of the probability of k heads, but for a constant, by Stirling's formula for the
+/// factorials with its error (Loader 2000, "Fast and accurate computation of binomial
+/// probabilities"): no term is much larger than the result, so that nothing cancels even for n =
+/// 2^53. k lies within n/4 of n/2.
 fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;

@@ -1,9 +1,10 @@
 //! A pixel cut into n cells of equal area, for every n: rows of cells like bricks.
 //!
-//! Row k has n_k cells of width 1/n_k, and its height is n_k/n, so that every cell has the area 1/n. The number of rows m is
-//! the whole number nearest to √n, or the nearest odd one where n is odd; n_k is ⌊n/m⌋ or ⌈n/m⌉, the longer rows are
-//! spread evenly, and the rows read the same from both ends: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n
-//! in an even number of rows cannot read the same from both ends.)
+//! Row k has n_k cells of width 1/n_k, and its height is n_k/n, so that every cell has the area
+//! 1/n. The number of rows m is the whole number nearest to √n, or the nearest odd one where n is
+//! odd; n_k is ⌊n/m⌋ or ⌈n/m⌉, the longer rows are spread evenly, and the rows read the same from
+//! both ends: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n in an even number of
+//! rows cannot read the same from both ends.)
 
 use std::ops::Range;
 
@@ -59,7 +60,8 @@ impl Bricks {
         [self.short, self.short + 1]
     }
 
-    /// The rows that hold the cells with these indices, counted row by row, and which columns of each are meant.
+    /// The rows that hold the cells with these indices, counted row by row, and which columns of
+    /// each are meant.
     pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (Row, Range<u64>)> {
         let mut next = cells.start;
         let mut k = self.row_of_cell(next.min(self.n - 1));

@@ -1,8 +1,10 @@
-//! `halton`: the points (φ₂(i), φ₃(i)), shifted per pixel (Halton 1960; Cranley and Patterson 1976 for the shift).
+//! `halton`: the points (φ₂(i), φ₃(i)), shifted per pixel (Halton 1960; Cranley and Patterson 1976
+//! for the shift).
 //!
-//! φ_b is the radical inverse: the digits of i in base b, mirrored at the point. The sequence begins at i = 0. The shift wraps
-//! around at the pixel's edge. Fractions are 64-bit integers, rounded up, so that they fall into the elementary interval that the
-//! true value lies in (or begins).
+//! φ_b is the radical inverse: the digits of i in base b, mirrored at the point. The sequence
+//! begins at i = 0. The shift wraps around at the pixel's edge. Fractions are 64-bit integers,
+//! rounded up, so that they fall into the elementary interval that the true value lies in (or
+//! begins).
 
 use std::ops::Range;
 
@@ -48,7 +50,8 @@ impl Halton {
     }
 }
 
-/// φ₃(i) in units of 2^−64, rounded up; i < 3^40. The mirrored digits are gathered as a whole number and divided once.
+/// φ₃(i) in units of 2^−64, rounded up; i < 3^40. The mirrored digits are gathered as a whole
+/// number and divided once.
 pub fn radical_inverse_3(i: u64) -> u64 {
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {

@@ -1,7 +1,9 @@
-//! `hammersley`: the points (i/n, φ₂(i)), shifted per pixel (Hammersley 1960; Cranley and Patterson 1976 for the shift).
+//! `hammersley`: the points (i/n, φ₂(i)), shifted per pixel (Hammersley 1960; Cranley and Patterson
+//! 1976 for the shift).
 //!
-//! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x it is a whole number of strata and a place
-//! within a stratum, so that each of the n columns holds exactly one point, as before the shift; in y it is any.
+//! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x it is a
+//! whole number of strata and a place within a stratum, so that each of the n columns holds exactly
+//! one point, as before the shift; in y it is any.
 
 use std::ops::Range;
 
@@ -15,7 +17,8 @@ use super::{
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The columns twice over, so that all n are in a row from any on, and the heights; nothing where n is large.
+    /// The columns twice over, so that all n are in a row from any on, and the heights; nothing
+    /// where n is large.
     turned: Vec<Stratum>,
     heights: Vec<u64>,
 }

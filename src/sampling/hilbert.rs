@@ -1,8 +1,9 @@
 //! A fixed order of a picture's pixels that keeps neighbours together: Hilbert's curve, clipped.
 //!
-//! The curve fills the smallest square of a power of two that holds the picture (Hilbert 1891); what lies outside is left out of the
-//! count. A pixel's rank is the number of the picture's pixels before it, summed quadrant by quadrant. Every aligned square of a
-//! power of two is one run of the order, so whatever is dealt out evenly along it is even in both directions.
+//! The curve fills the smallest square of a power of two that holds the picture (Hilbert 1891);
+//! what lies outside is left out of the count. A pixel's rank is the number of the picture's pixels
+//! before it, summed quadrant by quadrant. Every aligned square of a power of two is one run of the
+//! order, so whatever is dealt out evenly along it is even in both directions.
 
 use crate::area::Area;
 
@@ -10,8 +11,8 @@ use crate::area::Area;
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
     let mut side = picture.width.max(picture.height).next_power_of_two();
-    // The corner of the square that holds the pixel, and how the curve lies in it: mirrored at the main diagonal or not,
-    // turned by half or not.
+    // The corner of the square that holds the pixel, and how the curve lies in it: mirrored at the
+    // main diagonal or not, turned by half or not.
     let (mut left, mut top) = (0, 0);
     let (mut mirrored, mut turned) = (false, false);
     while side > 1 {

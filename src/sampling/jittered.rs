@@ -1,5 +1,5 @@
-//! `jittered`: one point at random in each of n cells of equal area (Cook, Porter and Carpenter 1984, "Distributed ray
-//! tracing"; the cells are [`Bricks`], so that every n has them).
+//! `jittered`: one point at random in each of n cells of equal area (Cook, Porter and Carpenter
+//! 1984, "Distributed ray tracing"; the cells are [`Bricks`], so that every n has them).
 
 use std::ops::Range;
 

@@ -1,8 +1,9 @@
 //! The numbers that a random offset can be, and the strata that they fall into.
 //!
-//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an f64, none lies on a pixel's edge
-//! or on its middle, and they are symmetric about 0, so that a mean over all of them is exactly that of the pixel. An offset
-//! is handled as its place k, from 0 to 2^53 − 1, among them.
+//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an f64,
+//! none lies on a pixel's edge or on its middle, and they are symmetric about 0, so that a mean
+//! over all of them is exactly that of the pixel. An offset is handled as its place k, from 0 to
+//! 2^53 − 1, among them.
 
 use super::rng::{scale, scale_by_parts};
 
@@ -19,8 +20,9 @@ pub fn offset(place: u64) -> f64 {
     const ONE: u64 = 1.0f64.to_bits();
     const FIRST: u64 = (0.5 / PLACES as f64).to_bits();
     const SECOND: u64 = (1.5 / PLACES as f64).to_bits();
-    // (2k + 1)/2^54 − 1/2, for k = 2i + b: i/2^52 − 1/2 as a difference of numbers from 1 to 2, and 1 or 3 of 2^54, all of them exact.
-    // Few processors make a vector of whole numbers one of f64; these steps they know.
+    // (2k + 1)/2^54 − 1/2, for k = 2i + b: i/2^52 − 1/2 as a difference of numbers from 1 to 2, and
+    // 1 or 3 of 2^54, all of them exact. Few processors make a vector of whole numbers one of
+    // f64; these steps they know.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
@@ -32,7 +34,8 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// A pixel's width or height, cut into n equal strata: which places lie in which. Each holds at least one place, up to n = 2^53.
+/// A pixel's width or height, cut into n equal strata: which places lie in which. Each holds at
+/// least one place, up to n = 2^53.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
@@ -42,7 +45,8 @@ pub struct Strata {
     stored: Vec<Stratum>,
 }
 
-/// One of n strata in a word: twice its first place, and one more where it has one place more than ⌊2^53/n⌋.
+/// One of n strata in a word: twice its first place, and one more where it has one place more than
+/// ⌊2^53/n⌋.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
@@ -149,7 +153,8 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for their neighbours.
+                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for
+                // their neighbours.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

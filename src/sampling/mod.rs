@@ -1,11 +1,13 @@
 //! Where a picture's samples lie.
 //!
-//! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and where in the pixel they lie. What is
-//! seen there is the tracer's business. A sample is a pure function of method, seed, pixel, index, the pixel's count and the picture's
-//! size: no generator has a state that would depend on what was asked before. So any part of a picture can be
-//! rendered in any order, on any number of threads, and comes out the same.
+//! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and
+//! where in the pixel they lie. What is seen there is the tracer's business. A sample is a pure
+//! function of method, seed, pixel, index, the pixel's count and the picture's size: no generator
+//! has a state that would depend on what was asked before. So any part of a picture can be rendered
+//! in any order, on any number of threads, and comes out the same.
 //!
-//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2). A file per method:
+//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2). A
+//! file per method:
 //!
 //! | method | file | unbiased |
 //! | --- | --- | --- |
@@ -57,7 +59,8 @@ pub struct Sampling {
     key: Key,
     total: u64,
     picture: Area,
-    /// How many samples each pixel has at least, and how many pixels have one more. Those of `scatter` have as many as fall there.
+    /// How many samples each pixel has at least, and how many pixels have one more. Those of
+    /// `scatter` have as many as fall there.
     count: u64,
     extra: u64,
     /// How `count` points lie, and how one more; of `scatter`, how any number does.
@@ -79,7 +82,8 @@ enum Pattern {
 }
 
 impl Sampling {
-    /// The samples of a picture of this size; each side is at least 1 and at most 2^20. The exact method has none.
+    /// The samples of a picture of this size; each side is at least 1 and at most 2^20. The exact
+    /// method has none.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
         // A method's place in the language's table, which must not change: pictures depend on it.
         let key = Key::new(sampler.seed, sampler.method as u64);
@@ -132,7 +136,8 @@ impl Sampling {
         self.counts(Area::pixel(x, y))[0]
     }
 
-    /// How many samples each pixel of a part of the picture has, row by row: much faster than asking pixel by pixel.
+    /// How many samples each pixel of a part of the picture has, row by row: much faster than
+    /// asking pixel by pixel.
     pub fn counts(&self, part: Area) -> Vec<u64> {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
@@ -145,19 +150,23 @@ impl Sampling {
         }
     }
 
-    /// Of N samples and P pixels the one with rank i along Hilbert's curve has ⌊(i + 1)N/P⌋ − ⌊iN/P⌋.
+    /// Of N samples and P pixels the one with rank i along Hilbert's curve has ⌊(i + 1)N/P⌋ −
+    /// ⌊iN/P⌋.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i + 1)·extra/P⌋ than of ⌊i·extra/P⌋
-        // where the remainder of the latter is within extra of P.
+        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i +
+        // 1)·extra/P⌋ than of ⌊i·extra/P⌋ where the remainder of the latter is within extra
+        // of P.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)
     }
 
-    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before, by vectors of either kind; `count` is what
-    /// [`count`](Self::count) says of the pixel. They take the place of the points that `out` had before.
+    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before,
+    /// by vectors of either kind; `count` is what [`count`](Self::count) says of the pixel.
+    /// They take the place of the points that `out` had before.
     ///
-    /// What a pixel's points have in common is prepared anew in each call, so ask for a few thousand at once.
+    /// What a pixel's points have in common is prepared anew in each call, so ask for a few
+    /// thousand at once.
     pub fn place(
         &self,
         vectors: SimdWidth,

@@ -1,11 +1,13 @@
-//! `multi_jittered`: one point in each cell of a grid and, at once, one in each of n columns and n rows (Kensler 2013, "Correlated
-//! multi-jittered sampling"). `n_rooks` is the grid of one row, where only the second remains (McKay, Beckman and Conover
-//! 1979, Latin hypercube; Shirley 1991 calls it n-rooks).
+//! `multi_jittered`: one point in each cell of a grid and, at once, one in each of n columns and n
+//! rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the grid of one row,
+//! where only the second remains (McKay, Beckman and Conover 1979, Latin hypercube; Shirley 1991
+//! calls it n-rooks).
 //!
-//! n = a·b points have a grid of a columns and b rows, b the greatest divisor of n that is not above √n. The point of cell (i, j) lies in
-//! the fine column i·b + σ(j) and in the fine row j·a + τ(i), for two random permutations σ of the b rows and τ of the a columns. Both
-//! are the same for the whole pixel, and that is the correlation which Kensler adds to Chiu, Shirley and Wang 1994. A prime n
-//! has b = 1: the Latin hypercube.
+//! n = a·b points have a grid of a columns and b rows, b the greatest divisor of n that is not
+//! above √n. The point of cell (i, j) lies in the fine column i·b + σ(j) and in the fine row j·a +
+//! τ(i), for two random permutations σ of the b rows and τ of the a columns. Both are the same for
+//! the whole pixel, and that is the correlation which Kensler adds to Chiu, Shirley and Wang 1994.
+//! A prime n has b = 1: the Latin hypercube.
 
 use std::ops::Range;
 

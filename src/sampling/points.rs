@@ -5,7 +5,8 @@ use glam::DVec2;
 /// Lists of coordinates are filled up to a multiple of so many, the widest vectors' numbers.
 const LANES: usize = 8;
 
-/// Some points of a pixel, as a list of each coordinate: loops over them become vectors. Kept from pixel to pixel for their room.
+/// Some points of a pixel, as a list of each coordinate: loops over them become vectors. Kept from
+/// pixel to pixel for their room.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     len: usize,
@@ -30,7 +31,8 @@ impl Points {
         x.zip(y).map(|(&x, &y)| DVec2::new(x, y))
     }
 
-    /// Their coordinates. Behind the last there may be more, up to a multiple of eight, that lie anywhere in the pixel.
+    /// Their coordinates. Behind the last there may be more, up to a multiple of eight, that lie
+    /// anywhere in the pixel.
     pub fn lanes(&self) -> [&[f64]; 2] {
         let end = self.len.next_multiple_of(LANES);
         [&self.x[..end], &self.y[..end]]

@@ -1,4 +1,5 @@
-//! `random`: independent, uniform points. `scatter` places its points within a pixel in the same way.
+//! `random`: independent, uniform points. `scatter` places its points within a pixel in the same
+//! way.
 
 use std::ops::Range;
 

@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use super::bricks::Bricks;
 
-/// Places the points with these indices: the middles of the cells of [`Bricks`], row by row. The same in every pixel.
+/// Places the points with these indices: the middles of the cells of [`Bricks`], row by row. The
+/// same in every pixel.
 ///
-/// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly the negative of that.
+/// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly
+/// the negative of that.
 #[inline(always)]
 pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     let mut points = x.iter_mut().zip(y);
@@ -18,7 +20,8 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     }
 }
 
-/// The middle of the parts from `first` to before `first` + `parts` of `n`, relative to the middle of all.
+/// The middle of the parts from `first` to before `first` + `parts` of `n`, relative to the middle
+/// of all.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
     // The numerator is at most 2^53 in magnitude, so only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64

@@ -1,8 +1,9 @@
 //! Random numbers that are counted: the i-th one is a function of i and of what it is for.
 //!
-//! A [`Key`] names a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the i-th 64-bit number of that
-//! purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators") with its state
-//! computed instead of carried. [`CounterRng`] gives the numbers of a key in turn, to whatever takes a generator of the crate `rand`.
+//! A [`Key`] names a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the i-th
+//! 64-bit number of that purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable
+//! pseudorandom number generators") with its state computed instead of carried. [`CounterRng`]
+//! gives the numbers of a key in turn, to whatever takes a generator of the crate `rand`.
 
 use std::{convert::Infallible, ops::Range};
 
@@ -24,7 +25,8 @@ impl Key {
         Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
     }
 
-    /// The key of one part of this purpose, such as a pixel or an axis. Distinct parts have distinct keys.
+    /// The key of one part of this purpose, such as a pixel or an axis. Distinct parts have
+    /// distinct keys.
     pub fn part(self, part: u64) -> Self {
         Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
     }
@@ -37,7 +39,8 @@ impl Key {
             .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
     }
 
-    /// Tells `each` two numbers for each of some points, with the indices 2i and 2i + 1: some at a time, and the index of the first of them.
+    /// Tells `each` two numbers for each of some points, with the indices 2i and 2i + 1: some at a
+    /// time, and the index of the first of them.
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut room = [[0; 2]; BATCH];
@@ -95,8 +98,8 @@ impl TryRng for CounterRng {
     }
 }
 
-/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1. Its bias is below n/2^64 (Lemire 2019, without
-/// the rejection).
+/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1. Its
+/// bias is below n/2^64 (Lemire 2019, without the rejection).
 #[inline(always)]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
@@ -104,14 +107,15 @@ pub fn scale(bits: u64, n: u64) -> u64 {
 
 /// The same for an `n` of at most 2^53, in steps that loops make vectors of.
 ///
-/// Of the usual steps, by halves of 32 bits, compilers make the one product of 128 bits that vectors do not have.
+/// Of the usual steps, by halves of 32 bits, compilers make the one product of 128 bits that
+/// vectors do not have.
 #[inline(always)]
 pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
-    // The product is high·n_high 2^58 + high·n_low 2^32 + low·n_high 2^26 + low·n_low, none of the four above 2^59. What is cut off on the way
-    // is less than what is added next counts in.
+    // The product is high·n_high 2^58 + high·n_low 2^32 + low·n_high 2^26 + low·n_low, none of the
+    // four above 2^59. What is cut off on the way is less than what is added next counts in.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6

@@ -1,10 +1,11 @@
 //! `scatter`: points uniform over the whole picture, as a pure function of the pixel.
 //!
-//! How many of N uniform points fall into each pixel is multinomial, and a multinomial splits: of n points in a rectangle, the part
-//! that one half takes is binomial, and given that, the halves are independent. So N is split down a fixed binary tree of
-//! rectangles of pixels, each draw decided by its node. A rectangle's longer side (its width, if they are equal) is cut at the
-//! greatest power of two below it, so that nearly all cuts are into halves, whose draws count random bits. Where in its pixel a point
-//! lies is then uniform.
+//! How many of N uniform points fall into each pixel is multinomial, and a multinomial splits: of n
+//! points in a rectangle, the part that one half takes is binomial, and given that, the halves are
+//! independent. So N is split down a fixed binary tree of rectangles of pixels, each draw decided
+//! by its node. A rectangle's longer side (its width, if they are equal) is cut at the
+//! greatest power of two below it, so that nearly all cuts are into halves, whose draws count
+//! random bits. Where in its pixel a point lies is then uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;
@@ -18,7 +19,8 @@ struct Node {
     points: u64,
 }
 
-/// How many of `total` points fall into each pixel of a part of the picture, row by row, as `key` decides.
+/// How many of `total` points fall into each pixel of a part of the picture, row by row, as `key`
+/// decides.
 pub fn counts(key: Key, total: u64, picture: Area, part: Area) -> Vec<u64> {
     let mut counts = vec![0; part.pixels() as usize];
     let root = Node {

@@ -2,7 +2,8 @@
 
 use super::rng::Key;
 
-/// Up to this length a permutation is stored, and uniform among all; a longer one is computed entry by entry.
+/// Up to this length a permutation is stored, and uniform among all; a longer one is computed entry
+/// by entry.
 const STORED: u64 = 1 << 12;
 
 /// Lengths up to this need no allocation.
@@ -79,9 +80,10 @@ fn fisher_yates(entries: &mut [u16], key: Key) {
     }
 }
 
-/// The entry at `index` of a permutation of 0 … n − 1, computed alone: a keyed bijection of the numbers of as many bits as
-/// n − 1 has, applied until the result is below n ("cycle walking", Black and Rogaway 2002, which makes of it a bijection of the
-/// numbers below n). At least half of the numbers of so many bits are, so twice is enough on average.
+/// The entry at `index` of a permutation of 0 … n − 1, computed alone: a keyed bijection of the
+/// numbers of as many bits as n − 1 has, applied until the result is below n ("cycle walking",
+/// Black and Rogaway 2002, which makes of it a bijection of the numbers below n). At least half of
+/// the numbers of so many bits are, so twice is enough on average.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;
@@ -90,7 +92,8 @@ fn permute(index: u64, n: u64, key: Key) -> u64 {
     loop {
         for round in 0..4 {
             let random = key.bits(round);
-            // Each step is a bijection modulo a power of two: times an odd number, plus a number, upper half onto lower half.
+            // Each step is a bijection modulo a power of two: times an odd number, plus a number,
+            // upper half onto lower half.
             value = value.wrapping_mul(random | 1).wrapping_add(random >> 32) & mask;
             value ^= value >> half;
         }
@@ -129,7 +132,8 @@ mod tests {
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }
-        // Mean 3003, standard deviation of the mean 6007/√12/√2000 = 39; two entries are neighbours once in 3000.
+        // Mean 3003, standard deviation of the mean 6007/√12/√2000 = 39; two entries are neighbours
+        // once in 3000.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

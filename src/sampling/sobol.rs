@@ -1,14 +1,18 @@
-//! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly permuted (t, m, s)-nets").
+//! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly
+//! permuted (t, m, s)-nets").
 //!
-//! The first coordinate of point i is its bits, mirrored; the second multiplies them by Pascal's triangle modulo 2 first. The sequence
-//! begins at i = 0, which must not be left out (Owen 2020). The first n = 2^m points have exactly one in every box of 2^−a by
-//! 2^(a−m), and so has every further block of 2^m.
+//! The first coordinate of point i is its bits, mirrored; the second multiplies them by Pascal's
+//! triangle modulo 2 first. The sequence begins at i = 0, which must not be left out (Owen 2020).
+//! The first n = 2^m points have exactly one in every box of 2^−a by 2^(a−m), and so has every
+//! further block of 2^m.
 //!
-//! Owen's nested uniform scrambling flips each bit of a coordinate by a random bit that belongs to all the bits above it. The n points
-//! differ in their first m = ⌈log₂ n⌉ bits on either axis. Below these, every point is alone in its part of the tree, and its bits are
-//! independent: random bits do. So this is the true scrambling, with m decisions a coordinate instead of 53; for the m a hash of 64
-//! bits decides a subtree of six levels at a time. (Laine and Karras' one-multiplication scrambles were not tried: known to have weak
-//! bits, and no cheaper at the counts that pictures use.)
+//! Owen's nested uniform scrambling flips each bit of a coordinate by a random bit that belongs to
+//! all the bits above it. The n points differ in their first m = ⌈log₂ n⌉ bits on either axis.
+//! Below these, every point is alone in its part of the tree, and its bits are independent: random
+//! bits do. So this is the true scrambling, with m decisions a coordinate instead of 53; for the m
+//! a hash of 64 bits decides a subtree of six levels at a time. (Laine and Karras'
+//! one-multiplication scrambles were not tried: known to have weak bits, and no cheaper at the
+//! counts that pictures use.)
 
 use std::ops::Range;
 
@@ -25,7 +29,8 @@ const STORED: u64 = 1 << (2 * LEVELS);
 pub struct Sobol {
     /// The least m with n ≤ 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of the points, where there are not too many; else nothing.
+    /// The m topmost bits of both coordinates of the points, where there are not too many; else
+    /// nothing.
     tops: Vec<[u16; 2]>,
 }
 
@@ -76,8 +81,9 @@ fn at_leaves<const MOST: usize>(axes: &[Tree; 2], tops: &[[u16; 2]], [x, y]: [&m
     }
 }
 
-/// Multiplies the bits of i by Pascal's triangle: bit j of the result is the sum modulo 2 of binomial(k, j) times bit k. That
-/// binomial is odd where the ones of j are among those of k, so one step for each bit of the *position* does it.
+/// Multiplies the bits of i by Pascal's triangle: bit j of the result is the sum modulo 2 of
+/// binomial(k, j) times bit k. That binomial is odd where the ones of j are among those of k, so
+/// one step for each bit of the *position* does it.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -108,7 +114,8 @@ impl Tree {
         }
     }
 
-    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where two hashes decide all of these.
+    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where two
+    /// hashes decide all of these.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -160,7 +167,8 @@ impl Tree {
     }
 }
 
-/// What becomes of the bits on some levels of a subtree whose nodes, in order of depth, have the bits 1, 2 … 63 of `flips`.
+/// What becomes of the bits on some levels of a subtree whose nodes, in order of depth, have the
+/// bits 1, 2 … 63 of `flips`.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
@@ -175,7 +183,8 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// The random bits on the way down a subtree whose nodes, in order of depth, have the bits 1, 2 … 63 of `flips`.
+/// The random bits on the way down a subtree whose nodes, in order of depth, have the bits 1, 2 …
+/// 63 of `flips`.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);

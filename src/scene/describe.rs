@@ -1,4 +1,5 @@
-//! The language's words in Markdown, as its own table has them: for hovers, completion and `explain`.
+//! The language's words in Markdown, as its own table has them: for hovers, completion and
+//! `explain`.
 
 use std::{fmt::Write, ops::Range};
 
@@ -14,8 +15,8 @@ pub const ABOUT_LET: &str =
 /// What `for` does.
 pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
 
-/// A word of the language, with all that it means and an example of each: a kind of block, a field, a method, a function, a
-/// constant, a colour.
+/// A word of the language, with all that it means and an example of each: a kind of block, a field,
+/// a method, a function, a constant, a colour.
 pub fn word(word: &str) -> Option<String> {
     let mut parts = Vec::new();
     let example = |text: &str| format!("\n\n```scn\n{text}\n```");

@@ -1,7 +1,8 @@
 //! Values that a field can have beside what else its block is given.
 //!
-//! A field's own example can be an error there: a corner of a box on the wrong side of the other one, a camera that looks at its own
-//! eye. In: the field, and the values of the others. Out: a value that fits them, as it is written.
+//! A field's own example can be an error there: a corner of a box on the wrong side of the other
+//! one, a camera that looks at its own eye. In: the field, and the values of the others. Out: a
+//! value that fits them, as it is written.
 
 use glam::DVec3;
 
@@ -12,8 +13,8 @@ use crate::{
     schema::{Field, Value},
 };
 
-/// A value that a field can have, given the values of the others in its block. Where none that is tried fits, it is the field's own
-/// example.
+/// A value that a field can have, given the values of the others in its block. Where none that is
+/// tried fits, it is the field's own example.
 pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> String {
     const POINTS: [&str; 7] = ["max", "min", "lookat", "eye", "v0", "v1", "v2"];
     const STEPS: [DVec3; 6] = [

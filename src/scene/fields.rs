@@ -1,4 +1,5 @@
-//! The fields of an image, a camera and a shape by their names: the value of each, and the same with another one.
+//! The fields of an image, a camera and a shape by their names: the value of each, and the same
+//! with another one.
 
 use std::cmp::Ordering;
 
@@ -33,7 +34,8 @@ enum Place<'a> {
 }
 
 impl Part {
-    /// The value of a field, if it is used: of alternatives the one that it is written in. A box has all of its four.
+    /// The value of a field, if it is used: of alternatives the one that it is written in. A box
+    /// has all of its four.
     pub fn value(mut self, field: &str) -> Option<Value> {
         if let (Self::Shape(Shape::Box(cuboid)), "center" | "size") = (self, field) {
             return Some(Value::Vector(tidy(match field {
@@ -51,7 +53,8 @@ impl Part {
         })
     }
 
-    /// The same with another value of a field that is used. Whether the language's conditions hold is not asked.
+    /// The same with another value of a field that is used. Whether the language's conditions hold
+    /// is not asked.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
         if let (Self::Shape(Shape::Box(cuboid)), "center" | "size", Value::Vector(to)) =
             (&mut self, field, value)

@@ -1,7 +1,8 @@
 //! What a scene file means: plain data with everything resolved.
 //!
-//! In: the texts of a file and of its overrides, which are parsed here. Out: a [`Scene`], or problems. Defaults are filled in, alternatives decided and
-//! expressions evaluated; every condition of the language's table holds. What the tracer makes of it is not known here.
+//! In: the texts of a file and of its overrides, which are parsed here. Out: a [`Scene`], or
+//! problems. Defaults are filled in, alternatives decided and expressions evaluated; every
+//! condition of the language's table holds. What the tracer makes of it is not known here.
 
 #![cfg_attr(
     not(test),

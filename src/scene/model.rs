@@ -31,7 +31,8 @@ pub struct Scene {
     pub camera: Camera,
     /// Where its samples lie.
     pub sampler: Sampler,
-    /// What is seen, in the order of the file: on a tie the first one wins. Shared by scenes that differ in the rest.
+    /// What is seen, in the order of the file: on a tie the first one wins. Shared by scenes that
+    /// differ in the rest.
     pub objects: Arc<Vec<Object>>,
 }
 
@@ -76,11 +77,12 @@ pub enum View {
     Direction(DVec3),
 }
 
-/// The level direction of cameras whose up vector is parallel to their view direction: they show the picture that one gets
-/// on tilting the camera from looking along it. It is −z, or +y where up is parallel to that.
+/// The level direction of cameras whose up vector is parallel to their view direction: they show
+/// the picture that one gets on tilting the camera from looking along it. It is −z, or +y where up
+/// is parallel to that.
 ///
-/// So, looking against up, the top of the picture is the part of this direction that is perpendicular to up; looking along
-/// up, the opposite.
+/// So, looking against up, the top of the picture is the part of this direction that is
+/// perpendicular to up; looking along up, the opposite.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -89,7 +91,8 @@ pub fn level_direction(up: DVec3) -> DVec3 {
     }
 }
 
-/// How much a camera sees, in one of the language's three ways. Angles lie between 0 and 180 degrees.
+/// How much a camera sees, in one of the language's three ways. Angles lie between 0 and 180
+/// degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// The distance from the eye to the view plane, > 0.

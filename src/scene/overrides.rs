@@ -1,7 +1,7 @@
 //! `--set TARGET=VALUE`.
 //!
-//! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the items with their values in them. What a value is in its place is for lowering to find
-//! out.
+//! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the
+//! items with their values in them. What a value is in its place is for lowering to find out.
 
 use super::{
     error::error,
@@ -115,13 +115,14 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     })
 }
 
-/// Puts the values of the arguments into items of a file, in the place of what stands there. Those whose targets are not
-/// among them are left. Of several things of one name the first is meant.
+/// Puts the values of the arguments into items of a file, in the place of what stands there. Those
+/// whose targets are not among them are left. Of several things of one name the first is meant.
 pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
     overrides.retain(|it| !it.put_into(items));
 }
 
-/// Adds the blocks that a file leaves out to its end, for the arguments whose targets are not in it. Reports the other ones.
+/// Adds the blocks that a file leaves out to its end, for the arguments whose targets are not in
+/// it. Reports the other ones.
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,

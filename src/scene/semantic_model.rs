@@ -1,4 +1,5 @@
-//! A scene as far as it can be told: for editors, which show what is there while the rest is being typed.
+//! A scene as far as it can be told: for editors, which show what is there while the rest is being
+//! typed.
 //!
 //! In: what lowering read. Out: the tree beside what it means, and the value of any part of it.
 
@@ -70,7 +71,8 @@ impl<'s> SemanticModel<'s> {
         })
     }
 
-    /// The definition that a name means at a place: one that stands before it, and is the first of its name.
+    /// The definition that a name means at a place: one that stands before it, and is the first of
+    /// its name.
     pub fn definition_at(&self, name: &str, at: usize) -> Option<&Definition<'s>> {
         let place = self.names.place(name)?;
         let items = &self.parsed.tree.items;
@@ -82,15 +84,16 @@ impl<'s> SemanticModel<'s> {
         found.filter(|definition| definition.span.end <= at)
     }
 
-    /// The value that a definition gives its name; none if it failed, or is not the first of its name.
+    /// The value that a definition gives its name; none if it failed, or is not the first of its
+    /// name.
     pub fn defined(&self, definition: &Definition<'s>) -> Option<Value> {
         let name = definition.name?;
         let is_first = self.names.place(name.text) == Some(name.span);
         is_first.then(|| self.names.value(name.text)).flatten()
     }
 
-    /// What a value of the tree is; `wanted` is the type that would fit, if one is known. None if it failed, or means nothing by itself, such as
-    /// the word of a method.
+    /// What a value of the tree is; `wanted` is the type that would fit, if one is known. None if
+    /// it failed, or means nothing by itself, such as the word of a method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         let mut problems = Problems::default();
         let mut evaluator = Evaluator {

@@ -11,11 +11,13 @@ use glam::DVec3;
 use super::model::{Camera, Checkerboard, Image, Lens, Object, Outline, Shape, View};
 use crate::math::{Angle, Big, trig};
 
-/// By so much of the lengths that are compared a comparison has to be clear. With up and the view direction at [`LEAST_SINE`] or more the
-/// axes are good to 2^−52/10^−6, about 2·10⁻¹⁰, and all else is better.
+/// By so much of the lengths that are compared a comparison has to be clear. With up and the view
+/// direction at [`LEAST_SINE`] or more the axes are good to 2^−52/10^−6, about 2·10⁻¹⁰, and all
+/// else is better.
 const MARGIN: f64 = 1e-8;
 
-/// Below this sine of the angle between them, up and the view direction do not tell the axes well enough.
+/// Below this sine of the angle between them, up and the view direction do not tell the axes well
+/// enough.
 pub const LEAST_SINE: f64 = 1e-6;
 
 /// Why nothing is seen.
@@ -246,14 +248,16 @@ impl Frustum {
         ]
     }
 
-    /// Whether all of a sphere lies clearly on the outer side of a plane: at n·(p − e) < bound, n of length 1.
+    /// Whether all of a sphere lies clearly on the outer side of a plane: at n·(p − e) < bound, n
+    /// of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
         // What is not a number is not less.
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
-    /// The same of the plane of a checkerboard. A ray that goes by y along for each metre of depth meets it at the depth (h − e_y)/y.
+    /// The same of the plane of a checkerboard. A ray that goes by y along for each metre of depth
+    /// meets it at the depth (h − e_y)/y.
     fn may_see_plane(&self, height: f64, near: f64, far: f64) -> bool {
         let above = height - self.eye.y;
         let middle = self.forward.y * above.signum();

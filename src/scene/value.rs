@@ -1,7 +1,8 @@
 //! What can be done with values.
 //!
-//! Operators and functions know no places in a text: they say what comes out, or that the types do not go together, and
-//! the caller adds the place. What is not finite comes out as it is; the caller reports it.
+//! Operators and functions know no places in a text: they say what comes out, or that the types do
+//! not go together, and the caller adds the place. What is not finite comes out as it is; the
+//! caller reports it.
 
 use glam::DVec3;
 
@@ -105,8 +106,8 @@ fn normalize(v: DVec3) -> DVec3 {
     DVec3::new(scaled.x / length, scaled.y / length, scaled.z / length)
 }
 
-/// The vector with its greatest part between 1 and 2, and the power of two that was taken out. Nothing is rounded but parts
-/// too small to show beside the greatest.
+/// The vector with its greatest part between 1 and 2, and the power of two that was taken out.
+/// Nothing is rounded but parts too small to show beside the greatest.
 fn to_unit_scale(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     if greatest == 0.0 || !greatest.is_finite() {

@@ -9,7 +9,8 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// A row for each field: its name, what it takes, what it is if it is not given, and what it is; then what else there is to say of it.
+/// A row for each field: its name, what it takes, what it is if it is not given, and what it is;
+/// then what else there is to say of it.
 macro_rules! fields {
     ($($name:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*) => {
         &[$(Field {

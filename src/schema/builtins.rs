@@ -8,7 +8,8 @@ pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// A row for each function: its name, what it takes and gives, and what it is; then what else there is to say of it.
+/// A row for each function: its name, what it takes and gives, and what it is; then what else there
+/// is to say of it.
 macro_rules! functions {
     ($($name:ident($($takes:ident)*) $gives:ident $help:literal $($more:ident($value:expr))*;)*) => {
         &[$(Function {
@@ -104,7 +105,8 @@ impl Function {
     }
 }
 
-/// The predefined names that are neither colours nor functions, each with its value and a line of help.
+/// The predefined names that are neither colours nor functions, each with its value and a line of
+/// help.
 pub const CONSTANTS: &[(&str, Value, &str)] = &[
     (
         "pi",

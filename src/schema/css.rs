@@ -1,4 +1,5 @@
-//! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with the same one brings nine crates that have to be compiled.
+//! The colours that CSS names (CSS Color Module Level 4, section 6.1): a table, as a library with
+//! the same one brings nine crates that have to be compiled.
 
 use std::{collections::HashMap, sync::LazyLock};
 

@@ -2,7 +2,8 @@
 
 use crate::suggest::{self, is_among};
 
-/// A row for each technique: what it is in the program, its word, what it is, and other words that people try for it.
+/// A row for each technique: what it is in the program, its word, what it is, and other words that
+/// people try for it.
 macro_rules! methods {
     ($($method:ident $name:literal $help:literal $tried:literal)*) => {
         /// A sampling technique.

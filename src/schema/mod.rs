@@ -1,9 +1,11 @@
-//! The facts of the language: its blocks and their fields, types, defaults and conditions, with a line of help each.
+//! The facts of the language: its blocks and their fields, types, defaults and conditions, with a
+//! line of help each.
 //!
-//! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought among them, and the
-//! language's reference is tested against them.
+//! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought
+//! among them, and the language's reference is tested against them.
 //!
-//! `types` has what a value can be, `row_types` what a row says; the rows stand in `blocks`, `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
+//! `types` has what a value can be, `row_types` what a row says; the rows stand in `blocks`,
+//! `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
 
 mod blocks;
 mod builtins;

@@ -68,7 +68,8 @@ impl Type {
         }
     }
 
-    /// What a value is a list of, and of how many: a vector of three numbers, a pair of two colours.
+    /// What a value is a list of, and of how many: a vector of three numbers, a pair of two
+    /// colours.
     pub fn parts(self) -> Option<(Self, usize)> {
         match self {
             Self::Vector => Some((Self::Number, 3)),

@@ -1,9 +1,10 @@
 //! Who may do what.
 //!
-//! The page's files hold no secret, and whoever asks this host for them gets them. A conversation, and with it the scene's
-//! file, is for pages that show a token. Other pages in the same browser can connect as well, but they cannot set the
-//! headers that are looked at: `Host` (a name of theirs may lead to this machine) and `Origin`. A token is never a part of
-//! what a browser sends by itself: cookies go to all servers of a machine, so there is none, and the part of an address
+//! The page's files hold no secret, and whoever asks this host for them gets them. A conversation,
+//! and with it the scene's file, is for pages that show a token. Other pages in the same browser
+//! can connect as well, but they cannot set the headers that are looked at: `Host` (a name of
+//! theirs may lead to this machine) and `Origin`. A token is never a part of what a browser sends
+//! by itself: cookies go to all servers of a machine, so there is none, and the part of an address
 //! that the token stands in stays in the browser.
 
 use std::{
@@ -59,7 +60,8 @@ pub fn refusal(
     }
 }
 
-/// Returns the value of a header; an empty one, which is never right, if there are several or it is no text.
+/// Returns the value of a header; an empty one, which is never right, if there are several or it is
+/// no text.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().unwrap_or_default();
@@ -74,7 +76,8 @@ pub struct Access {
     started: Mutex<Started>,
 }
 
-/// The session of the browser that the host starts. Its first token stands in a command line, which all users can read.
+/// The session of the browser that the host starts. Its first token stands in a command line, which
+/// all users can read.
 #[derive(Debug)]
 struct Started {
     /// In the command line. It serves once.
@@ -219,7 +222,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // One that came in time is used up, whenever it is shown again: whoever was first may not be the user.
+        // One that came in time is used up, whenever it is shown again: whoever was first may not
+        // be the user.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();

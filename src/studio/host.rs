@@ -1,4 +1,5 @@
-//! The host that serves the page: its files to whoever asks, and a conversation to whoever [`Access`] admits.
+//! The host that serves the page: its files to whoever asks, and a conversation to whoever
+//! [`Access`] admits.
 
 use std::{
     io,
@@ -32,8 +33,8 @@ use super::{
     strangers::{Door, Visitor},
 };
 
-/// Time that conversations have to finish a save and to take their leave, when the host ends. Whoever needs longer (a save on
-/// a disk that does not answer) is not waited for.
+/// Time that conversations have to finish a save and to take their leave, when the host ends.
+/// Whoever needs longer (a save on a disk that does not answer) is not waited for.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// The page's files.
@@ -59,7 +60,8 @@ struct Shared {
 }
 
 impl Host {
-    /// Listens at a port, or at any one that is free if it is 0. Nobody but this machine reaches it.
+    /// Listens at a port, or at any one that is free if it is 0. Nobody but this machine reaches
+    /// it.
     ///
     /// # Errors
     ///
@@ -78,21 +80,23 @@ impl Host {
         })
     }
 
-    /// The address that lets a browser in, for the user alone; and one that does so once, for a command line: other users of
-    /// the machine can read those.
+    /// The address that lets a browser in, for the user alone; and one that does so once, for a
+    /// command line: other users of the machine can read those.
     pub fn addresses(&self) -> [String; 2] {
         let port = self.port;
         let tokens = self.shared.access.tokens();
         tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `end` is there. What is being saved then is saved, unless that takes long, and nothing more.
+    /// Serves until `end` is there. What is being saved then is saved, unless that takes long, and
+    /// nothing more.
     ///
     /// # Errors
     ///
     /// The system does not tell what happens to connections.
     pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
-        // Its only thread carries messages; what they ask for is done by the threads of the conversations.
+        // Its only thread carries messages; what they ask for is done by the threads of the
+        // conversations.
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
@@ -185,7 +189,8 @@ async fn socket(
         .on_upgrade(async move |socket| admit(&shared, &visitor, socket).await)
 }
 
-/// Begins a conversation with a page whose first message is a token. How long it is waited for is the connection's matter.
+/// Begins a conversation with a page whose first message is a token. How long it is waited for is
+/// the connection's matter.
 async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
     let Some(Ok(Message::Text(token))) = socket.recv().await else {
         return;

@@ -1,7 +1,7 @@
 //! Connections of whoever has not shown a token: they have little time, few bytes and few places.
 //!
-//! Any program on this machine can connect, and keep a connection open without a word. Since the oldest such connection is
-//! closed when there are too many, those that wait keep nobody out.
+//! Any program on this machine can connect, and keep a connection open without a word. Since the
+//! oldest such connection is closed when there are too many, those that wait keep nobody out.
 
 use std::{
     collections::VecDeque,
@@ -27,15 +27,16 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of strangers' connections. A page has up to three while it loads, and one until it has shown its token.
+/// Maximum number of strangers' connections. A page has up to three while it loads, and one until
+/// it has shown its token.
 const MOST: usize = 64;
 
-/// Lifetime of a stranger's connection: the head of a request, its response, or the handshake of a web socket and the token.
-/// On one machine that takes milliseconds.
+/// Lifetime of a stranger's connection: the head of a request, its response, or the handshake of a
+/// web socket and the token. On one machine that takes milliseconds.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a stranger may send. A browser's head has about one KiB, unless other programs on this
-/// machine have set many cookies.
+/// Maximum number of bytes that a stranger may send. A browser's head has about one KiB, unless
+/// other programs on this machine have set many cookies.
 const LONGEST: usize = 32 << 10;
 
 /// Who has connected, as both the connection and those who answer it know it.

@@ -10,14 +10,15 @@ use crate::{
 /// What is said of a slip.
 #[derive(Clone, Copy)]
 pub struct Message {
-    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do where
-    /// there is no fix.
+    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do
+    /// where there is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }
 
 impl Message {
-    /// What has an unsafe fix, if any: its code, what is wrong, what is said at the place, and help.
+    /// What has an unsafe fix, if any: its code, what is wrong, what is said at the place, and
+    /// help.
     pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
             texts,

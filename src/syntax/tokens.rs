@@ -21,7 +21,8 @@ pub enum TokenKind {
     Word,
     /// One character of any other sort, `**` or `:=`.
     Sign,
-    /// `// …` without its line end, or `/* … */`; without its `*/` it goes on to the end of the text.
+    /// `// …` without its line end, or `/* … */`; without its `*/` it goes on to the end of the
+    /// text.
     Comment,
     /// A character that cannot be seen and is no white space of the language.
     OddSpace,

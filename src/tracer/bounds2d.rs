@@ -1,10 +1,12 @@
 //! Where in the view plane an object may be seen, and how near it is at most.
 //!
-//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its inverse depth. A sphere's are the tangents from
-//! the eye, those of a triangle and of a box the extremes of their corners.
+//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its
+//! inverse depth. A sphere's are the tangents from the eye, those of a triangle and of a box the
+//! extremes of their corners.
 //!
-//! The bounds are those of the object's convex hull, and wider than all roundings on the way by far more than the last
-//! precision cannot tell: outside of them every decision says for certain that the object is missed.
+//! The bounds are those of the object's convex hull, and wider than all roundings on the way by far
+//! more than the last precision cannot tell: outside of them every decision says for certain that
+//! the object is missed.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Range, local_form::Patch, object::Object,
@@ -27,7 +29,8 @@ pub struct Extent {
 /// By how much of its terms a quotient is widened: a few roundings count for 2^−50 of them.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Below this, products with roundings, 2^−53 of a number, may lose digits to the range of an `f64`, which ends at 1e-308 for whole ones.
+/// Below this, products with roundings, 2^−53 of a number, may lose digits to the range of an
+/// `f64`, which ends at 1e-308 for whole ones.
 const LEAST: f64 = 1e-280;
 
 impl Object<f64> {
@@ -89,8 +92,9 @@ impl Extent {
     }
 }
 
-/// Two planes through the eye and along an axis touch the ball: in the plane across that axis it is a disc with the centre (c, z),
-/// to which two lines through the origin are tangent. Their slopes are (cz ± R √(c² + z² − R²))/(z² − R²).
+/// Two planes through the eye and along an axis touch the ball: in the plane across that axis it is
+/// a disc with the centre (c, z), to which two lines through the origin are tangent. Their slopes
+/// are (cz ± R √(c² + z² − R²))/(z² − R²).
 fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     let Some(([x, y, z], radius)) = sphere.ball() else {
         return Hull::Unbounded;
@@ -98,7 +102,8 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R are rounded once, so that their product and what it is added to are good in all their digits.
+    // z − R and z + R are rounded once, so that their product and what it is added to are good in
+    // all their digits.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > LEAST) {
         return Hull::Unbounded;

@@ -1,8 +1,9 @@
 //! The camera: from a sample point to a ray's direction.
 //!
-//! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and ahead (−w). There a ray's
-//! direction is r = (X, Y, Z) with X and Y proportional to the distance in pixels from the picture's centre, and Z = 1 but
-//! for the widest angles, where a power of two keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
+//! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and
+//! ahead (−w). There a ray's direction is r = (X, Y, Z) with X and Y proportional to the distance
+//! in pixels from the picture's centre, and Z = 1 but for the widest angles, where a power of two
+//! keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +13,8 @@ use crate::{
     scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View},
 };
 
-/// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only at the end.
+/// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only
+/// at the end.
 #[derive(Clone, Debug)]
 pub struct Basis {
     /// The picture's right.
@@ -35,7 +37,8 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// a + b, which is nothing where no more is left of them than their roundings, at most four in each: a roll by 45 degrees takes equal numbers from each other.
+/// a + b, which is nothing where no more is left of them than their roundings, at most four in
+/// each: a roll by 45 degrees takes equal numbers from each other.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -56,9 +59,10 @@ fn view_direction(camera: &scene::Camera) -> Dyadic3 {
 impl Basis {
     /// The basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
     ///
-    /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view direction are. Where
-    /// they are parallel, u = (h × up)/|h × up| with the [level direction](scene::level_direction) h: that of the camera
-    /// which looks along h and has the same up.
+    /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view
+    /// direction are. Where they are parallel, u = (h × up)/|h × up| with the [level
+    /// direction](scene::level_direction) h: that of the camera which looks along h and has the
+    /// same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = Dyadic::vector(camera.up);
@@ -128,8 +132,8 @@ impl<R: Copy> Window<R> {
 pub struct Camera<T: Real> {
     /// Its eye, in the world.
     pub eye: DVec3,
-    /// Lengths of the world are multiplied by two to this power, so that very large and very small worlds stay within the
-    /// range of `f64`; 0 for any other.
+    /// Lengths of the world are multiplied by two to this power, so that very large and very small
+    /// worlds stay within the range of `f64`; 0 for any other.
     pub exponent: i32,
     /// Right, down and ahead, in the world.
     pub axes: [Ball3<T>; 3],
@@ -143,7 +147,8 @@ pub struct Camera<T: Real> {
     pub window: Window<T::Radius>,
 }
 
-/// A ray's direction (X, Y, Z) with its square; each of X and Y is off by at most 5 [`UNIT`](Real::UNIT) of itself.
+/// A ray's direction (X, Y, Z) with its square; each of X and Y is off by at most 5
+/// [`UNIT`](Real::UNIT) of itself.
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
     /// To the right.
@@ -156,8 +161,9 @@ pub struct Direction<T> {
     pub square: T,
 }
 
-/// A point of the picture, in pixels from its centre, x to the right and y down; each coordinate is the exact sum of two
-/// numbers, since a pixel's centre and an offset from it do not always have an `f64` sum.
+/// A point of the picture, in pixels from its centre, x to the right and y down; each coordinate is
+/// the exact sum of two numbers, since a pixel's centre and an offset from it do not always have an
+/// `f64` sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// x.
@@ -167,7 +173,8 @@ pub struct Point {
 }
 
 impl<T: Real> Camera<T> {
-    /// The camera of a scene for sample points at most `reach` pixels from the picture's centre in x and y.
+    /// The camera of a scene for sample points at most `reach` pixels from the picture's centre in
+    /// x and y.
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
@@ -248,7 +255,8 @@ impl<T: Real> Camera<T> {
         self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
     }
 
-    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's axes and scaled.
+    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's
+    /// axes and scaled.
     pub fn relative(&self, point: DVec3) -> Ball3<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
@@ -264,11 +272,13 @@ impl<T: Real> Camera<T> {
     }
 }
 
-/// Binary exponents between which lengths are left as they are: squares of lengths up to the greatest, and of all that are at least 2^−200 of the least, are
-/// well within the range of `f64`, which is 2^−1022 to 2^1024.
+/// Binary exponents between which lengths are left as they are: squares of lengths up to the
+/// greatest, and of all that are at least 2^−200 of the least, are well within the range of `f64`,
+/// which is 2^−1022 to 2^1024.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
-/// The power of two that brings the farthest lengths of a scene between those of [`LENGTHS`], 0 if they are.
+/// The power of two that brings the farthest lengths of a scene between those of [`LENGTHS`], 0 if
+/// they are.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let far = |point: DVec3| (point - scene.camera.eye).abs().max_element();
     let farthest = scene.objects.iter().map(|object| match object.shape {

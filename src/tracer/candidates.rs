@@ -1,8 +1,9 @@
 //! What may be seen in a part of the picture.
 //!
-//! In: the world, and a rectangle of its view plane. Out: the objects that are not certain to be missed or hidden there. The method is interval
-//! arithmetic: the range of each object's forms over the rectangle, widened by the errors of its decisions. An object that every ray of the
-//! rectangle meets hides all whose greatest inverse depth is below its least one.
+//! In: the world, and a rectangle of its view plane. Out: the objects that are not certain to be
+//! missed or hidden there. The method is interval arithmetic: the range of each object's forms over
+//! the rectangle, widened by the errors of its decisions. An object that every ray of the rectangle
+//! meets hides all whose greatest inverse depth is below its least one.
 
 use glam::DVec2;
 
@@ -179,8 +180,9 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that lie behind the nearest one all over the patch, though their depths there overlap, or in the same plane as one that
-/// comes before them in the file. Of layers the nearest one hides all others; of those in one plane it is the first.
+/// Removes flat objects that lie behind the nearest one all over the patch, though their depths
+/// there overlap, or in the same plane as one that comes before them in the file. Of layers the
+/// nearest one hides all others; of those in one plane it is the first.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
     let is_flat = |candidate: &&Candidate| {
         let object = f64::object(&world.geometry, candidate.object);
@@ -199,7 +201,8 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
     }
 }
 
-/// Whether an object that every ray through a patch meets hides another there by the forms of their planes.
+/// Whether an object that every ray through a patch meets hides another there by the forms of their
+/// planes.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
     let (Ok(a), Ok(b)) = (a.convex(), b.convex()) else {
@@ -226,8 +229,8 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     }
 }
 
-/// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last precision was not asked, in which what it does
-/// not tell apart counts as equal.
+/// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last
+/// precision was not asked, in which what it does not tell apart counts as equal.
 pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,

@@ -1,12 +1,13 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
-//! In: a block of pixels in which a board is all that is seen. Out: runs of pixels that show one colour, and the squares that each other pixel
-//! shows.
+//! In: a block of pixels in which a board is all that is seen. Out: runs of pixels that show one
+//! colour, and the squares that each other pixel shows.
 //!
-//! Where a board alone is seen, most parts of the picture end as pixels, which have their corners in common. So the squares that the
-//! corners of a block lie in are computed row by row, in plain arrays, which the compiler makes vectors of: a ratio of linear forms is
-//! the greatest and the least at corners, and a pixel whose corners lie in one square, each farther from its edge than errors reach, shows nothing
-//! else.
+//! Where a board alone is seen, most parts of the picture end as pixels, which have their corners
+//! in common. So the squares that the corners of a block lie in are computed row by row, in plain
+//! arrays, which the compiler makes vectors of: a ratio of linear forms is the greatest and the
+//! least at corners, and a pixel whose corners lie in one square, each farther from its edge than
+//! errors reach, shows nothing else.
 
 use std::{array, ops::ControlFlow};
 
@@ -23,11 +24,12 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// The form below a quotient is at least so many times as great as its error: then (a ± e)/(l ± f) is within 4/3 of (e + f·|a/l|)/l of a/l, and this takes
-/// the place of the 4/3.
+/// The form below a quotient is at least so many times as great as its error: then (a ± e)/(l ± f)
+/// is within 4/3 of (e + f·|a/l|)/l of a/l, and this takes the place of the 4/3.
 const CLEAR: f64 = 4.0;
 
-/// Places that are off by more than this, in squares, tell nothing worth having: only the half of each square that is away from its lines would be certain.
+/// Places that are off by more than this, in squares, tell nothing worth having: only the half of
+/// each square that is away from its lines would be certain.
 const UNSURE: f64 = 0.25;
 
 /// The greatest side of a block, in pixels: that of the squares that quartering begins with.
@@ -42,8 +44,8 @@ pub struct Checks {
     pub(crate) squares: Squares,
     /// The squares of its corners, in x and in z: above on the left and on the right, and below.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the corners are certain to lie in these squares. If not, lines of the board displaced by no more than the
-    /// forms of `squares` may be off have the corners in them.
+    /// Whether the corners are certain to lie in these squares. If not, lines of the board
+    /// displaced by no more than the forms of `squares` may be off have the corners in them.
     pub(crate) is_certain: bool,
 }
 
@@ -76,8 +78,9 @@ pub enum Shown<'a> {
     Unknown,
 }
 
-/// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is seen, show of it: in runs of one colour and
-/// singly. `None` if the object is none or the board too far. The part's sides are at most [`SIDE`].
+/// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is
+/// seen, show of it: in runs of one colour and singly. `None` if the object is none or the board
+/// too far. The part's sides are at most [`SIDE`].
 pub fn show(
     world: &World,
     part: Area,
@@ -245,7 +248,8 @@ impl Mesh {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The form of the block is off by its error, and the value at the pixel's centre by as much again.
+            // The form of the block is off by its error, and the value at the pixel's centre by as
+            // much again.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let Squares { across, below, odd } = &self.squares;
@@ -268,8 +272,9 @@ impl Mesh {
         })
     }
 
-    /// Fills in the squares in which a pixel's corners probably lie, and returns how far any of them may lie from the
-    /// line next to it, in squares. Returns `None` if a quotient is no number.
+    /// Fills in the squares in which a pixel's corners probably lie, and returns how far any of
+    /// them may lie from the line next to it, in squares. Returns `None` if a quotient is no
+    /// number.
     #[cold]
     fn probable(
         &self,
@@ -309,7 +314,8 @@ impl Checks {
     }
 }
 
-/// Where so many half pixels lie from the left or from the top, in units of the block's side from its centre.
+/// Where so many half pixels lie from the left or from the top, in units of the block's side from
+/// its centre.
 fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
@@ -373,8 +379,8 @@ impl Squares {
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
-    /// From which to which square there are any in the pixel, in x and in z: perhaps one square more than there are. `None` if that
-    /// is not certain.
+    /// From which to which square there are any in the pixel, in x and in z: perhaps one square
+    /// more than there are. `None` if that is not certain.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));

@@ -1,8 +1,10 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
-//! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour there. Below the horizon the plane's inverse
-//! depth ℓ is positive, and x/square is a ratio of linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
-//! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error reaches a whole number is in doubt.
+//! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour
+//! there. Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of
+//! linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
+//! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error
+//! reaches a whole number is in doubt.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -14,7 +16,8 @@ use crate::{
     scene,
 };
 
-/// From how many squares on a board is not moved nearer: from 2^52 on a rounded quotient may not be the nearest whole number.
+/// From how many squares on a board is not moved nearer: from 2^52 on a rounded quotient may not be
+/// the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -30,22 +33,26 @@ pub struct Checkerboard<T: Real> {
     pub odd: bool,
 }
 
-/// A checkerboard in a pixel, a part of one, or a rectangle of pixels: the point (x, y), from its centre in units of its sides, shows the board's point
-/// (N₀/ℓ, N₁/ℓ), in squares from a corner of squares nearby, where ℓ > 0.
+/// A checkerboard in a pixel, a part of one, or a rectangle of pixels: the point (x, y), from its
+/// centre in units of its sides, shows the board's point (N₀/ℓ, N₁/ℓ), in squares from a corner of
+/// squares nearby, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// The factors of x, y and 1 in N₀ and N₁; in the last precision, whose numbers `f64` need not hold, all forms are scaled to be about 1.
+    /// The factors of x, y and 1 in N₀ and N₁; in the last precision, whose numbers `f64` need not
+    /// hold, all forms are scaled to be about 1.
     pub across: [[f64; 3]; 2],
     /// Those of ℓ.
     pub below: [f64; 3],
-    /// How far a value of each of these forms may be from the true one, but for the rounding of the factors.
+    /// How far a value of each of these forms may be from the true one, but for the rounding of
+    /// the factors.
     pub rads: [f64; 3],
     /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
 }
 
 impl<T: Real> Checkerboard<T> {
-    /// Prepares a checkerboard; `None` if its plane holds the eye, which sees it edge-on: not at all.
+    /// Prepares a checkerboard; `None` if its plane holds the eye, which sees it edge-on: not at
+    /// all.
     pub fn new(camera: &Camera<T>, shape: &scene::Checkerboard) -> Option<Self> {
         let scene::Checkerboard { y, square, .. } = *shape;
         if y == camera.eye.y {
@@ -78,7 +85,8 @@ impl<T: Real> Checkerboard<T> {
         })
     }
 
-    /// Whether the square that the ray meets has the second colour: floor(x/square) + floor(z/square) is odd.
+    /// Whether the square that the ray meets has the second colour: floor(x/square) +
+    /// floor(z/square) is odd.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         let below = self.below.at(r);
@@ -90,8 +98,9 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// The board about a ray, in units of the sides of what lies there of the picture. A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin
-    /// near: the one that makes them small at the corner where ℓ is largest (elsewhere it may be next to 0).
+    /// The board about a ray, in units of the sides of what lies there of the picture. A multiple
+    /// of ℓ is subtracted from N₀ and N₁, which moves the origin near: the one that makes them
+    /// small at the corner where ℓ is largest (elsewhere it may be next to 0).
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
@@ -112,7 +121,8 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let often = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
-            // The error of ℓ is at least 12 roundings of it, so that twice as much is enough for those of the product and the difference, too.
+            // The error of ℓ is at least 12 roundings of it, so that twice as much is enough for
+            // those of the product and the difference, too.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let forms = [a, b, (below, rad)];
@@ -160,7 +170,8 @@ struct EyeOffset {
 impl EyeOffset {
     /// Splits a coordinate without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // The remainder of f64 is exact, by infinity too, and so are the differences of numbers within a factor of two (Sterbenz).
+        // The remainder of f64 is exact, by infinity too, and so are the differences of numbers
+        // within a factor of two (Sterbenz).
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {
             size if size < square * 0.5 => 0,

@@ -1,9 +1,11 @@
 //! A convex object with flat faces: what a triangle, a box and a checkerboard's plane are to a ray.
 //!
-//! In: linear forms over the view plane. Out: a ray's crossings; over a rectangle, the intervals of their inverse depths. A ray meets the object
-//! where no edge's form is negative: the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous coordinates", 1997).
-//! Where it does, it enters through the farthest of the planes that the eye looks at from outside and leaves through the nearest of the others:
-//! Kay and Kajiya's slabs ("Ray tracing complex scenes", 1986) in inverse depths, which are linear forms. Errors: each form's own bound.
+//! In: linear forms over the view plane. Out: a ray's crossings; over a rectangle, the intervals of
+//! their inverse depths. A ray meets the object where no edge's form is negative: the edge
+//! functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous coordinates",
+//! 1997). Where it does, it enters through the farthest of the planes that the eye looks at from
+//! outside and leaves through the nearest of the others: Kay and Kajiya's slabs ("Ray tracing
+//! complex scenes", 1986) in inverse depths, which are linear forms. Errors: each form's own bound.
 
 use std::cmp::Ordering;
 
@@ -22,7 +24,8 @@ pub type Face<T> = (u8, Form<T>);
 /// A convex object with flat faces, prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Convex<T: Real> {
-    /// Those of the edges, each ≥ 0 on the object's side of it; then the inverse depths of the faces that rays meet first, and of those behind them.
+    /// Those of the edges, each ≥ 0 on the object's side of it; then the inverse depths of the
+    /// faces that rays meet first, and of those behind them.
     forms: Vec<Form<T>>,
     /// How many of the forms are edges', and how many edges' and first faces'.
     edges: u8,
@@ -34,7 +37,8 @@ pub struct Convex<T: Real> {
 }
 
 impl<T: Real> Convex<T> {
-    /// From its edges and those of its faces, six at most, that the eye looks at from outside and from inside.
+    /// From its edges and those of its faces, six at most, that the eye looks at from outside and
+    /// from inside.
     pub fn new(edges: Vec<Form<T>>, fronts: Vec<Face<T>>, backs: Vec<Face<T>>) -> Self {
         let is_inside = fronts.is_empty();
         let firsts = match is_inside {
@@ -87,7 +91,8 @@ impl<T: Real> Convex<T> {
         }
     }
 
-    /// Whether the eye is inside, so that of several faces' planes the nearest is the one that is seen.
+    /// Whether the eye is inside, so that of several faces' planes the nearest is the one that is
+    /// seen.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
@@ -103,10 +108,12 @@ impl<T: Real> Convex<T> {
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))
     }
 
-    /// The nearest crossing in front of the eye: where the ray enters the closed object or, from inside, leaves it.
+    /// The nearest crossing in front of the eye: where the ray enters the closed object or, from
+    /// inside, leaves it.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // What no edge's form is positive of is, in the last precision, too small or too nearly edge-on to be told from nothing.
+        // What no edge's form is positive of is, in the last precision, too small or too nearly
+        // edge-on to be told from nothing.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {
@@ -138,9 +145,11 @@ impl<T: Real> Convex<T> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// The least or the greatest inverse depth of some faces. Where two are not clearly apart, the middle of the least ball need not be the least
-    /// number, but it is within the greatest radius of it. In whose plane the crossing lies is said only where it is certain: just outside of an
-    /// edge, a ray meets the one plane a little before it meets the box in the other.
+    /// The least or the greatest inverse depth of some faces. Where two are not clearly apart, the
+    /// middle of the least ball need not be the least number, but it is within the greatest
+    /// radius of it. In whose plane the crossing lies is said only where it is certain: just
+    /// outside of an edge, a ray meets the one plane a little before it meets the box in the
+    /// other.
     #[inline]
     fn extreme(
         &self,

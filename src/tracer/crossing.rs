@@ -1,4 +1,5 @@
-//! Where a ray meets a surface: the inverse depth of the crossing, and which part of the surface it lies in.
+//! Where a ray meets a surface: the inverse depth of the crossing, and which part of the surface it
+//! lies in.
 
 use crate::math::{Ball, Real};
 
@@ -18,8 +19,10 @@ pub enum SurfacePart {
     Entry,
     /// The side of a sphere where a ray leaves.
     Exit,
-    /// The plane of a flat object: a triangle's, the checkerboard's, or that of the face with this index of a box.
+    /// The plane of a flat object: a triangle's, the checkerboard's, or that of the face with this
+    /// index of a box.
     Plane(u8),
-    /// An edge of a box, or so near to one that the precision at hand cannot say in which of its faces' planes.
+    /// An edge of a box, or so near to one that the precision at hand cannot say in which of its
+    /// faces' planes.
     Edge,
 }

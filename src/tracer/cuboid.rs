@@ -1,8 +1,9 @@
 //! The box: six faces along the axes.
 //!
-//! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. With μ = 1/λ a point λr lies between the planes x = lo and x = hi
-//! (as seen from the eye) where lo·μ ≤ r_x ≤ hi·μ: on which side of its two planes the eye lies makes of these a greatest and a least μ, each a
-//! linear form, without a division by r_x, which may be zero.
+//! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. With μ = 1/λ a
+//! point λr lies between the planes x = lo and x = hi (as seen from the eye) where lo·μ ≤ r_x ≤
+//! hi·μ: on which side of its two planes the eye lies makes of these a greatest and a least μ, each
+//! a linear form, without a division by r_x, which may be zero.
 
 use std::{array, cmp::Ordering};
 
@@ -33,7 +34,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         };
         let faces = match outside {
             _ if eye == at => {
-                // Where the eye lies in a face's plane, that face is seen edge-on and bounds nothing, but a ray must not be on the outside of it.
+                // Where the eye lies in a face's plane, that face is seen edge-on and bounds
+                // nothing, but a ray must not be on the outside of it.
                 let inward = if is_upper { -1.0 } else { 1.0 };
                 let normal = normal.map(|x| x.times_power(inward));
                 edges.push(Form::new(camera, &camera.turned(&normal)));

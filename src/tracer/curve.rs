@@ -1,18 +1,20 @@
 //! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and where they cross each other, as curves in the
-//! coordinates of that sub-pixel. Outlines of spheres are Q = 0 (`sphere`); two planes cross where their inverse depths are equal, a plane and a
+//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and where
+//! they cross each other, as curves in the coordinates of that sub-pixel. Outlines of spheres are Q
+//! = 0 (`sphere`); two planes cross where their inverse depths are equal, a plane and a
 //! sphere in the circle's cone, two spheres in their radical plane.
 //!
-//! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a bound on its values there, so that what is left
-//! is good to the last bit of an `f64` however far the sub-pixel is from the picture's centre.
+//! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a
+//! bound on its values there, so that what is left is good to the last bit of an `f64` however far
+//! the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
 
-/// The error of a line's form, in units of its greatest slope, from which on double-double was not enough: eight roundings of an `f64`, more than
-/// the three of its factors come to.
+/// The error of a line's form, in units of its greatest slope, from which on double-double was not
+/// enough: eight roundings of an `f64`, more than the three of its factors come to.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A boundary in a pixel.
@@ -104,10 +106,13 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r = 0 that bounds it then.
+    /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r =
+    /// 0 that bounds it then.
     ///
-    /// For one outside that line comes as well. No ray on it meets the sphere; but of the conic's two branches, in front of the eye and
-    /// behind it, which lie on either side of it, no precision tells the one from the other where the sphere is a plane but for its 1e-200th part.
+    /// For one outside that line comes as well. No ray on it meets the sphere; but of the conic's
+    /// two branches, in front of the eye and behind it, which lie on either side of it, no
+    /// precision tells the one from the other where the sphere is a plane but for its 1e-200th
+    /// part.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Curve> {
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
@@ -134,7 +139,8 @@ impl<T: Real> SubPixelFrame<T> {
             | (Surface::Sphere(sphere), Surface::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // In the sphere's unit of inverse depth. Its scale is within the range of an f64, its inverse need not be.
+                // In the sphere's unit of inverse depth. Its scale is within the range of an f64,
+                // its inverse need not be.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -143,7 +149,8 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Two spheres cross in their radical plane: |q − c|² − R² is the same for both where 2 (c' − c)·q = C' − C.
+    /// Two spheres cross in their radical plane: |q − c|² − R² is the same for both where 2 (c' −
+    /// c)·q = C' − C.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Curve> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
         // To one unit.
@@ -164,9 +171,11 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// The circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r, |hr − (n·r)c|² = R² (n·r)².
+    /// The circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r, |hr − (n·r)c|² = R²
+    /// (n·r)².
     ///
-    /// Written so, it is a sum of squares that are small where the circle is, and does not cancel for a small and far sphere.
+    /// Written so, it is a sum of squares that are small where the circle is, and does not cancel
+    /// for a small and far sphere.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Curve {
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
@@ -201,8 +210,8 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Curve {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// A linear form's zero line. Its greater slope becomes 1, so that forms of one line, as those of the horizons of parallel planes are, have the
-/// same factors.
+/// A linear form's zero line. Its greater slope becomes 1, so that forms of one line, as those of
+/// the horizons of parallel planes are, have the same factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Curve {
     let [a, b, _] = factors;
     let greatest = match a.magnitude() < b.magnitude() {
@@ -268,14 +277,16 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// How much of the pixel's area may lie between the true conic and the computed one: at most that of the points where
-    /// |F| ≤ ε, the form's error. Three bounds of it hold, and the least counts:
+    /// How much of the pixel's area may lie between the true conic and the computed one: at most
+    /// that of the points where |F| ≤ ε, the form's error. Three bounds of it hold, and the least counts:
     ///
-    /// - By the coarea formula 2ε · length / least gradient; a conic is no longer in the pixel than twice the perimeter.
+    /// - By the coarea formula 2ε · length / least gradient; a conic is no longer in the pixel than
+    ///   twice the perimeter.
     /// - About an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
-    /// - In any case 4 · 2 · √(ε / greatest |F|), by the inequality of Brudnyi and Ganzburg (1973) for polynomials of degree
-    ///   2 on a convex set of area 1 in the plane. The greatest |F| is at least 1/16, since a factor of at least 1/2 is a
-    ///   combination of values of F: A of three with the weights 2, 4 and 2, the others of fewer.
+    /// - In any case 4 · 2 · √(ε / greatest |F|), by the inequality of Brudnyi and Ganzburg (1973)
+    ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
+    ///   least 1/16, since a factor of at least 1/2 is a combination of values of F: A of three
+    ///   with the weights 2, 4 and 2, the others of fewer.
     pub fn doubtful_area(&self) -> f64 {
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
@@ -295,8 +306,9 @@ impl Conic {
 
     /// The range of its form over the pixel.
     ///
-    /// It is least and greatest at corners, or where it is level along a side or in all directions. Of such a place that is not known well
-    /// nothing much depends: to another one in the pixel the form rises by half the product of the way and of its gradient, which is
+    /// It is least and greatest at corners, or where it is level along a side or in all directions.
+    /// Of such a place that is not known well nothing much depends: to another one in the pixel
+    /// the form rises by half the product of the way and of its gradient, which is
     /// next to none.
     pub fn over_pixel(&self) -> Range {
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);

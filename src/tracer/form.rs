@@ -1,26 +1,29 @@
 //! Linear forms: the boundaries and depths of everything flat.
 //!
-//! In: a vector in the camera's axes. Out: the form aX + bY + c over the view plane that it makes. Every edge of a flat surface is the zero line of
-//! one, and the inverse depth of its plane is one. Errors: one bound for all values in the window, of its factors' own errors and the roundings of
+//! In: a vector in the camera's axes. Out: the form aX + bY + c over the view plane that it makes.
+//! Every edge of a flat surface is the zero line of one, and the inverse depth of its plane is one.
+//! Errors: one bound for all values in the window, of its factors' own errors and the roundings of
 //! its evaluation.
 
 use super::camera::{Camera, Direction, Window};
 use crate::math::{Ball, Ball3, Double, Real, UP};
 
-/// A linear form over the view plane with one bound on the error of its values, whatever the sample point.
+/// A linear form over the view plane with one bound on the error of its values, whatever the sample
+/// point.
 #[derive(Clone, Debug)]
 pub struct Form<T: Real> {
     /// Factors of X, Y and 1.
     factors: [T; 3],
     /// How far a computed value may be from the true one.
     rad: T::Radius,
-    /// The same by |X|, |Y| and |Z|, in the last precision. None follows it, so that there the error is bounded for each ray: in the middle
-    /// of the widest views values are far smaller than elsewhere.
+    /// The same by |X|, |Y| and |Z|, in the last precision. None follows it, so that there the
+    /// error is bounded for each ray: in the middle of the widest views values are far smaller
+    /// than elsewhere.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum; half as many again to
-/// cover their products.
+/// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum;
+/// half as many again to cover their products.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
@@ -117,7 +120,8 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
         + T::TINY * 8.0
 }
 
-/// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen from the eye.
+/// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen
+/// from the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)

@@ -1,8 +1,10 @@
 //! Linear and quadratic forms over a rectangle of the view plane: a pixel, a part of one, or many.
 //!
-//! In: a form over the view plane, and the rectangle. Out: the same form as a function of the offset from the rectangle's centre, in units of its
-//! sides, and the range of its values. Errors: one bound for all values there, of what the form's factors and its value at the centre are off and of
-//! the roundings of its evaluation; so what a range says of the rectangle, every sample in it says.
+//! In: a form over the view plane, and the rectangle. Out: the same form as a function of the
+//! offset from the rectangle's centre, in units of its sides, and the range of its values. Errors:
+//! one bound for all values there, of what the form's factors and its value at the centre are off
+//! and of the roundings of its evaluation; so what a range says of the rectangle, every sample in
+//! it says.
 
 use super::{
     camera::{Camera, Direction},
@@ -15,11 +17,14 @@ use crate::{
     math::{Real, UP},
 };
 
-/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear one each factor has one, and so has its quotient by the error;
-/// products and sums, where offsets are at most ½, have two. Of a quadratic one each of six terms has five at most, generously counted.
+/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear
+/// one each factor has one, and so has its quotient by the error; products and sums, where offsets
+/// are at most ½, have two. Of a quadratic one each of six terms has five at most, generously
+/// counted.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Products below the normal numbers lose up to half of the least number each, of which there are at most 16.
+/// Products below the normal numbers lose up to half of the least number each, of which there are
+/// at most 16.
 const LOST: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -42,7 +47,8 @@ pub struct LocalForm {
 /// A linear form in units of its error.
 pub type ScaledLine = [f64; 3];
 
-/// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of its values.
+/// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of
+/// its values.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalQuadratic {
     pub factors: [f64; 6],
@@ -82,7 +88,8 @@ impl Patch {
 }
 
 impl Form<f64> {
-    /// The form over a rectangle. Its own error bound counts twice: for its factors, and for its value at the centre.
+    /// The form over a rectangle. Its own error bound counts twice: for its factors, and for its
+    /// value at the centre.
     #[inline]
     pub fn local(&self, patch: &Patch) -> LocalForm {
         let [a, b, _] = *self.factors();
@@ -178,7 +185,8 @@ impl LocalQuadratic {
     }
 }
 
-/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level before that.
+/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level
+/// before that.
 fn greatest(a: f64, b: f64) -> f64 {
     if a < -b { a * a / -b } else { 2.0 * a + b }
 }

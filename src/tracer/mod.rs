@@ -1,13 +1,14 @@
 //! What a ray can hit: the scene's objects as seen from the eye.
 //!
-//! In: a [`Scene`](crate::scene::Scene). Out: for a sample point of the picture, the colour seen there, as a slot of the
-//! palette. No text and no names: an object is its index in the file.
+//! In: a [`Scene`](crate::scene::Scene). Out: for a sample point of the picture, the colour seen
+//! there, as a slot of the palette. No text and no names: an object is its index in the file.
 //!
-//! All rays share the eye, so everything happens in the view plane: boundaries are lines and conics there, and of the
-//! surfaces at a point the nearest is the one with the greatest inverse depth, a linear form for everything flat. What does
-//! not depend on the sample point is prepared once per picture; which objects a ray may meet at all, a quadtree over the view plane
-//! knows. Every decision is made in `f64` with a bound on its error;
-//! what that leaves in doubt is decided in double-double, and what that leaves in doubt, in big numbers.
+//! All rays share the eye, so everything happens in the view plane: boundaries are lines and conics
+//! there, and of the surfaces at a point the nearest is the one with the greatest inverse depth, a
+//! linear form for everything flat. What does not depend on the sample point is prepared once per
+//! picture; which objects a ray may meet at all, a quadtree over the view plane knows. Every
+//! decision is made in `f64` with a bound on its error; what that leaves in doubt is decided in
+//! double-double, and what that leaves in doubt, in big numbers.
 
 mod camera;
 mod crossing;

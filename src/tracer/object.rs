@@ -1,7 +1,8 @@
 //! Any object, prepared for one picture.
 //!
-//! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer asks of every kind of object: crossings of a ray,
-//! intervals over a rectangle, the curves that bound it. Each kind answers for itself; here is only the choice between them.
+//! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer
+//! asks of every kind of object: crossings of a ray, intervals over a rectangle, the curves that
+//! bound it. Each kind answers for itself; here is only the choice between them.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -100,7 +101,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// The surfaces where rays meet it: those of their first crossings, of their second ones, or of both.
+    /// The surfaces where rays meet it: those of their first crossings, of their second ones, or of
+    /// both.
     pub fn surfaces(&self, which: Crossings) -> Vec<Surface<'_, T>> {
         let convex = match self.convex() {
             Ok(convex) => convex,

@@ -1,7 +1,7 @@
 //! All crossings of one ray, for people.
 //!
-//! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the nearest first, computed in big numbers, so that each
-//! number printed is the true one rounded.
+//! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the
+//! nearest first, computed in big numbers, so that each number printed is the true one rounded.
 
 use std::cmp::Ordering;
 
@@ -33,9 +33,9 @@ pub struct Hit {
     pub visible: bool,
 }
 
-/// The ray through a point of the picture plane, in pixels from the picture's top left corner: its direction, of length
-/// 1, and all its crossings in front of the eye, the nearest first, equal ones in file order. The point must lie within
-/// the reach that the world was made for.
+/// The ray through a point of the picture plane, in pixels from the picture's top left corner: its
+/// direction, of length 1, and all its crossings in front of the eye, the nearest first, equal ones
+/// in file order. The point must lie within the reach that the world was made for.
 pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     let camera = &world.geometry.big.camera;
     let point = camera.picture_point(pixels);
@@ -99,7 +99,8 @@ fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     }
 }
 
-/// A coordinate or the square of a ray's direction, with what its roundings may have cost, which are fewer than 32.
+/// A coordinate or the square of a ray's direction, with what its roundings may have cost, which
+/// are fewer than 32.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
         rad: x.magnitude() * (32.0 * Big::UNIT),
@@ -107,7 +108,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no height of 1e-97.
+/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no
+/// height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

@@ -1,10 +1,13 @@
 //! The sphere: a conic in the view plane.
 //!
-//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, their intervals. With c the centre as seen from the eye, R
-//! the radius and C = c·c − R² (the power of the eye), the ray λr meets the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the discriminant is
-//! Q = R² r·r − |c × r|² by Lagrange's identity, which unlike (c·r)² − r·r C does not subtract large squares where the sphere is small and far.
+//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, their
+//! intervals. With c the centre as seen from the eye, R the radius and C = c·c − R² (the power of
+//! the eye), the ray λr meets the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the
+//! discriminant is Q = R² r·r − |c × r|² by Lagrange's identity, which unlike (c·r)² − r·r C does
+//! not subtract large squares where the sphere is small and far.
 //!
-//! Errors: Q and c·r have one bound each over the whole window, their roundings counted; C is computed exactly where it is small.
+//! Errors: Q and c·r have one bound each over the whole window, their roundings counted; C is
+//! computed exactly where it is small.
 
 use std::cmp::Ordering;
 
@@ -40,7 +43,8 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's, twice over for squares, and eight for their sum.
+/// Roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's, twice over for squares,
+/// and eight for their sum.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -97,7 +101,8 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = match T::LAST {
-            // No precision follows it, so that the error is bounded for this ray: in the middle of the widest views it is far smaller than elsewhere.
+            // No precision follows it, so that the error is bounded for this ray: in the middle of
+            // the widest views it is far smaller than elsewhere.
             true => radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -153,7 +158,8 @@ impl<T: Real> Sphere<T> {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of it is the sharper one.
+        // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of
+        // it is the sharper one.
         let other = b * b - &self.power * &square;
         let root = match other.rad < q.rad {
             true => other.sqrt(),
@@ -176,7 +182,8 @@ impl<T: Real> Sphere<T> {
 }
 
 impl Sphere<f64> {
-    /// The centre and the radius of a ball that holds it, errors included, in its own unit; none for an eye that is not outside.
+    /// The centre and the radius of a ball that holds it, errors included, in its own unit; none
+    /// for an eye that is not outside.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
         // Three roundings of 2^−53.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
@@ -227,8 +234,8 @@ impl Sphere<f64> {
         self.is_outside().then(|| self.widened(exits()))
     }
 
-    /// The inverse depths of exits. With 1/λ = r·r/(b + √Q), which is (√Q − b)/(−C), it falls as b grows; for an eye inside
-    /// the second way of writing it bounds it where b ≤ 0.
+    /// The inverse depths of exits. With 1/λ = r·r/(b + √Q), which is (√Q − b)/(−C), it falls as b
+    /// grows; for an eye inside the second way of writing it bounds it where b ≤ 0.
     fn exits(&self, q: Range, b: Range, patch: &Patch) -> Range {
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
@@ -258,8 +265,9 @@ impl Sphere<f64> {
 
     /// Q and c·r over a rectangle, Q by its expansion about the centre.
     ///
-    /// Its factors are made of the same products as Q, and the rectangle is within the window, so that Q's bound counts once for the value at the
-    /// centre, twice for each gradient and once for each of the three second derivatives.
+    /// Its factors are made of the same products as Q, and the rectangle is within the window, so
+    /// that Q's bound counts once for the value at the centre, twice for each gradient and once
+    /// for each of the three second derivatives.
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
@@ -284,8 +292,9 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the relative error of that; `None` for an eye
-    /// that is not outside, or not known to a quarter: up to there twice the error of a number covers that of its inverse.
+    /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the
+    /// relative error of that; `None` for an eye that is not outside, or not known to a
+    /// quarter: up to there twice the error of a number covers that of its inverse.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
@@ -388,7 +397,8 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Error bounds of Q and c·r for |X|, |Y| and |Z| up to some, from the sizes of the centre's coordinates, their error, R² and its error.
+/// Error bounds of Q and c·r for |X|, |Y| and |Z| up to some, from the sizes of the centre's
+/// coordinates, their error, R² and its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,

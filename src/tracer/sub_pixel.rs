@@ -1,14 +1,15 @@
 //! A pixel, or a square part of one: where exact pictures are computed.
 //!
-//! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre, without error: sides are powers of two.
+//! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre,
+//! without error: sides are powers of two.
 
 use glam::DVec2;
 
 use super::camera::{Camera, Direction};
 use crate::math::Real;
 
-/// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its centre, x to the right and y
-/// down.
+/// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its
+/// centre, x to the right and y down.
 #[derive(Clone, Copy, Debug)]
 pub struct SubPixel {
     /// The pixel's column.

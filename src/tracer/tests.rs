@@ -163,8 +163,8 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// The rows at the horizon leave doubts of about 1e-10 of the samples. And what lies in one plane is no doubt, which would cost a hundred times as much
-/// as a decision.
+/// The rows at the horizon leave doubts of about 1e-10 of the samples. And what lies in one plane
+/// is no doubt, which would cost a hundred times as much as a decision.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -228,7 +228,8 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // Of a sphere at the height of the eye, the ends right and left are met at that height; of a box, at a corner.
+    // Of a sphere at the height of the eye, the ends right and left are met at that height; of a
+    // box, at a corner.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
@@ -292,8 +293,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// Of objects in one plane nearly every sample point asks whether they are: were they prepared for it, there would be as much to do for a point
-/// as for a scene where they are too many to be kept.
+/// Of objects in one plane nearly every sample point asks whether they are: were they prepared for
+/// it, there would be as much to do for a point as for a scene where they are too many to be kept.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![
@@ -302,7 +303,8 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     ];
     let mut random = Random::new(5);
     for _ in 0..80 {
-        // In y = 0, y = −z and z = 0.3 x, as whole numbers of 64ths and with normals of several lengths.
+        // In y = 0, y = −z and z = 0.3 x, as whole numbers of 64ths and with normals of several
+        // lengths.
         let [a, b] = [0, 1].map(|_| (random.below(256) as f64 - 128.0) / 64.0);
         let length = random.below(9) as f64 - 4.5;
         for (at, normal) in [

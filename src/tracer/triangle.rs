@@ -1,7 +1,7 @@
 //! The triangle: three edges, each a line in the view plane.
 //!
-//! In: the triangle's numbers and the camera. Out: a [`Convex`] object of three edges, each form the determinant of the edge's ends and the ray, and
-//! one face; and its corners.
+//! In: the triangle's numbers and the camera. Out: a [`Convex`] object of three edges, each form
+//! the determinant of the edge's ends and the ray, and one face; and its corners.
 
 use std::{array, cmp::Ordering};
 
@@ -17,7 +17,8 @@ use crate::{
     scene::{self, CenteredTriangle, Outline},
 };
 
-/// Prepares a triangle, and tells its corners in the camera's axes; `None` if its plane holds the eye, which sees it edge-on: not at all.
+/// Prepares a triangle, and tells its corners in the camera's axes; `None` if its plane holds the
+/// eye, which sees it edge-on: not at all.
 pub fn prepare<T: Real>(
     camera: &Camera<T>,
     shape: &scene::Triangle,
@@ -28,7 +29,8 @@ pub fn prepare<T: Real>(
     }
 }
 
-/// Two triangles that share an edge have the same two points for it, so that of every ray they know exactly the same.
+/// Two triangles that share an edge have the same two points for it, so that of every ray they know
+/// exactly the same.
 fn by_vertices<T: Real>(
     camera: &Camera<T>,
     vertices: &[DVec3; 3],
@@ -40,8 +42,8 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// The normal a × b of the plane through the eye and an edge from a corner to another. Its form matters by its sign alone, so it may have a scale of
-/// its own.
+/// The normal a × b of the plane through the eye and an edge from a corner to another. Its form
+/// matters by its sign alone, so it may have a scale of its own.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
         // a × b = a × (b − a)
@@ -64,7 +66,8 @@ fn by_centroid<T: Real>(
     shape: &CenteredTriangle,
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     let plane = SeenPlane::across(camera, shape)?;
-    // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each other.
+    // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each
+    // other.
     let from_eye = camera.relative(shape.centroid);
     let offsets = offsets::<T>(shape);
     let [far, near] = [
@@ -77,8 +80,9 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners themselves little would be left of a
-    // triangle far away beside its size: of a × b, a = c + o and b = c + p, that is c × (p − o) + o × p.
+    // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners
+    // themselves little would be left of a triangle far away beside its size: of a × b, a = c +
+    // o and b = c + p, that is c × (p − o) + o × p.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -103,7 +107,8 @@ fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
-/// The vertices of a triangle in the world: as they are written, or left base end, right base end, apex, each coordinate rounded once.
+/// The vertices of a triangle in the world: as they are written, or left base end, right base end,
+/// apex, each coordinate rounded once.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
         Outline::Vertices(vertices) => return *vertices,
@@ -114,8 +119,9 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
-/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number a rounding of the true one. So triangles in one plane, with
-/// normals of whatever lengths, get the same n and h, and planes along the axes those of a box's faces.
+/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number a
+/// rounding of the true one. So triangles in one plane, with normals of whatever lengths, get the
+/// same n and h, and planes along the axes those of a box's faces.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
@@ -161,10 +167,11 @@ impl<T: Real> SeenPlane<T> {
     }
 }
 
-/// The vertices as seen from the centroid, in the world's axes: left base end, right base end, apex.
+/// The vertices as seen from the centroid, in the world's axes: left base end, right base end,
+/// apex.
 ///
-/// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² + c²)/(2c) and y = 2A/c, the
-/// area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
+/// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² +
+/// c²)/(2c) and y = 2A/c, the area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
 fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     let exponent = libm::frexp(shape.sides.max_element()).1;
     let [a, b, c] = shape
@@ -193,8 +200,8 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     })
 }
 
-/// Unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| × right, with (0, 0, −1) for Y where n
-/// is parallel to it.
+/// Unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| × right, with
+/// (0, 0, −1) for Y where n is parallel to it.
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));

@@ -1,4 +1,5 @@
-//! The report's page in a real browser, which has to be there: `cargo test -- --ignored browser`, with Chromium on the path.
+//! The report's page in a real browser, which has to be there: `cargo test -- --ignored browser`,
+//! with Chromium on the path.
 
 use std::{path::Path, process::Command};
 

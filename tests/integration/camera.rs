@@ -25,8 +25,8 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// Along (1, 1, 1), u and v have in x the ratio that the sine and the cosine of 60 degrees have: equal products take each other away, and not all
-/// but a rounding of each other.
+/// Along (1, 1, 1), u and v have in x the ratio that the sine and the cosine of 60 degrees have:
+/// equal products take each other away, and not all but a rounding of each other.
 #[test]
 fn a_roll_that_ends_in_a_plane_of_the_axes_is_in_it() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {

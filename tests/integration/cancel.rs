@@ -1,4 +1,5 @@
-//! What nobody wants any more is given up: reading a long text, in each way that there is to read one, and preparing many objects.
+//! What nobody wants any more is given up: reading a long text, in each way that there is to read
+//! one, and preparing many objects.
 
 use std::{
     fmt::Write,
@@ -36,8 +37,9 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Does something to the end, and has it given up at two early moments by another thread: what is left then takes at least three quarters of
-/// the time, and it has to end long before that is done. Other work on the machine may delay either, so one of five tries is enough.
+/// Does something to the end, and has it given up at two early moments by another thread: what is
+/// left then takes at least three quarters of the time, and it has to end long before that is done.
+/// Other work on the machine may delay either, so one of five tries is enough.
 #[track_caller]
 fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {

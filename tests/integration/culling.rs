@@ -1,4 +1,5 @@
-//! A picture is the same to the bit whether its samples are culled and traced many at a time, or one by one, as the oracle has judged them.
+//! A picture is the same to the bit whether its samples are culled and traced many at a time, or
+//! one by one, as the oracle has judged them.
 
 use std::{
     collections::BTreeSet,
@@ -133,7 +134,8 @@ fn scenes_full_of_ties(effort: Effort) {
     }
 }
 
-/// Triangles that lie in one tilted plane or on the board and overlap, more than are kept in higher precisions.
+/// Triangles that lie in one tilted plane or on the board and overlap, more than are kept in higher
+/// precisions.
 #[test]
 fn very_many_in_one_plane() {
     let mut random = Random::new(141);
@@ -246,7 +248,8 @@ fn crowds_of_objects_as_small_as_pixels() {
         objects.extend_from_slice(&others.objects);
         // Some of them twice: the first is seen.
         objects.extend_from_within(3500..4500);
-        // One sample a pixel is traced by itself where objects are dense, of which many samples are asked together.
+        // One sample a pixel is traced by itself where objects are dense, of which many samples are
+        // asked together.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

@@ -1,8 +1,10 @@
-//! Every diagnostic, as the fixtures in `tests/diagnostics` say, and whole reports as people see them.
+//! Every diagnostic, as the fixtures in `tests/diagnostics` say, and whole reports as people see
+//! them.
 //!
-//! A fixture is a scene with the expectations in its own comments, below the line that they are about: `^^^` stands under
-//! the place to jump to, and `---` under every other label. A line `// --set TARGET=VALUE` is an argument, and what stands
-//! below it is about the argument. `//! …` is about the start of the text. `PINHOLE_BLESS=1 cargo test` writes them anew.
+//! A fixture is a scene with the expectations in its own comments, below the line that they are
+//! about: `^^^` stands under the place to jump to, and `---` under every other label. A line `//
+//! --set TARGET=VALUE` is an argument, and what stands below it is about the argument. `//! …` is
+//! about the start of the text. `PINHOLE_BLESS=1 cargo test` writes them anew.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
@@ -62,7 +64,8 @@ fn sets(file: &Source) -> impl Iterator<Item = (usize, &str)> {
     lines.filter_map(|(index, line)| Some((index + 1, line.strip_prefix(SET)?)))
 }
 
-/// The expectations that a fixture should have, each with the line that it stands below (0: the first).
+/// The expectations that a fixture should have, each with the line that it stands below (0: the
+/// first).
 fn expectations(sources: &Sources) -> Vec<(usize, String)> {
     let mut expected = Vec::new();
     for diagnostic in scene::read(sources).diagnostics {

@@ -1,6 +1,8 @@
-//! Tests whose tables take long: a sample of each in every run, the whole table where somebody asks for it.
+//! Tests whose tables take long: a sample of each in every run, the whole table where somebody asks
+//! for it.
 //!
-//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does; it wants Neovim, QEMU and Chromium, too.
+//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does; it wants
+//! Neovim, QEMU and Chromium, too.
 
 /// How much of its tables a test tries.
 #[derive(Clone, Copy, PartialEq)]
@@ -39,7 +41,8 @@ impl Effort {
     }
 }
 
-/// Makes two tests of a function that takes an [`Effort`]: `NAME::sample`, and `NAME::exhaustive`, which is ignored by default.
+/// Makes two tests of a function that takes an [`Effort`]: `NAME::sample`, and `NAME::exhaustive`,
+/// which is ignored by default.
 macro_rules! sampled_and_exhaustive {
     ($name:ident) => {
         mod $name {

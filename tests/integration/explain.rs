@@ -1,7 +1,9 @@
-//! The pages of the diagnostic codes: each has its form, its wrong scene has that mistake and no other, its right one none.
+//! The pages of the diagnostic codes: each has its form, its wrong scene has that mistake and no
+//! other, its right one none.
 //!
-//! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` a character that would not be seen. The
-//! `--set` arguments of a command in a fence `console` apply to the scene above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
+//! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` a
+//! character that would not be seen. The `--set` arguments of a command in a fence `console` apply
+//! to the scene above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
 
 use std::{collections::BTreeSet, path::Path};
 

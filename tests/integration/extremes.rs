@@ -1,6 +1,8 @@
-//! Scenes of numbers of all sizes: whatever can be said is rendered, and no channel is anything but a number from 0 to 1.
+//! Scenes of numbers of all sizes: whatever can be said is rendered, and no channel is anything but
+//! a number from 0 to 1.
 //!
-//! A run of the tests asks 150, and 1200 with those that are ignored; `PINHOLE_SCENES=10000000 cargo test extremes` asks ten million, for some hours.
+//! A run of the tests asks 150, and 1200 with those that are ignored; `PINHOLE_SCENES=10000000
+//! cargo test extremes` asks ten million, for some hours.
 
 use std::num::NonZero;
 
@@ -28,7 +30,8 @@ const SCENES: usize = 1200;
 /// Samples a pixel, at random.
 const SAMPLES: u64 = 64;
 
-/// How far a mean of the samples may be from what it estimates: farther at one of 10^13 (Hoeffding's inequality for numbers from 0 to 1).
+/// How far a mean of the samples may be from what it estimates: farther at one of 10^13
+/// (Hoeffding's inequality for numbers from 0 to 1).
 const FAR: f64 = 0.49;
 
 /// So many of a hundred numbers may have any size.
@@ -41,8 +44,9 @@ fn assert_light(film: &Film, text: &str) {
     }
 }
 
-/// Renders a scene culled, one by one and exactly. Whether the samples' squares are those that the exact picture sums up is decided but by
-/// hundreds of bits where squares and places are numbers of all sizes, and not asked then.
+/// Renders a scene culled, one by one and exactly. Whether the samples' squares are those that the
+/// exact picture sums up is decided but by hundreds of bits where squares and places are numbers of
+/// all sizes, and not asked then.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -153,7 +157,8 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // The horizon is √(2h/R) above the middle, with the eye h from the surface; the view plane is as far as it is high.
+        // The horizon is √(2h/R) above the middle, with the eye h from the surface; the view plane
+        // is as far as it is high.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(
@@ -165,7 +170,8 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
     }
 }
 
-/// There a ray's direction is next to nothing beside all others', and so are the numbers that its surfaces are compared by.
+/// There a ray's direction is next to nothing beside all others', and so are the numbers that its
+/// surfaces are compared by.
 #[test]
 fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
     for view in [

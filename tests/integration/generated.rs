@@ -9,8 +9,8 @@ use crate::{scenes::sources, tracer::Random};
 /// Which numbers a scene has.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
-    /// Multiples of a unit. Of 1/2, eyes are on surfaces, rays in planes, through corners and along edges, faces in common planes and at the
-    /// depth of the near and the far plane.
+    /// Multiples of a unit. Of 1/2, eyes are on surfaces, rays in planes, through corners and along
+    /// edges, faces in common planes and at the depth of the near and the far plane.
     MultiplesOf(f64),
     /// Some whole, some round, some neither; but so many of a hundred have any size.
     Wild(u64),
@@ -130,7 +130,8 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No longer than the other two together, and often just as long; or a triangle whose vertices are rational.
+                // No longer than the other two together, and often just as long; or a triangle
+                // whose vertices are rational.
                 let sides = match self.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

@@ -1,6 +1,7 @@
 //! The examples as small pictures, byte for byte, and the gallery that shows them.
 //!
-//! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `examples/pictures`: look at them before they are kept.
+//! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `examples/pictures`: look at
+//! them before they are kept.
 
 use std::{fs, path::Path};
 
@@ -25,7 +26,8 @@ fn rendered(text: &str) -> image::RgbImage {
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 
-/// A PNG file of other programs. What `image` writes into memory would be compiled anew here, with all formats that it knows.
+/// A PNG file of other programs. What `image` writes into memory would be compiled anew here, with
+/// all formats that it knows.
 pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);

@@ -148,11 +148,13 @@ fn what_the_probe_sees_is_what_the_picture_shows() {
 fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere is seen 10 times the eye's distance to the right: at x = 20 in the view plane, 225 pixels a unit.
+    // The sphere is seen 10 times the eye's distance to the right: at x = 20 in the view plane, 225
+    // pixels a unit.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked case a floor point is twice its view plane point (1, −1.5), 160 pixels to the right of the middle and 240 above it.
+    // In the worked case a floor point is twice its view plane point (1, −1.5), 160 pixels to the
+    // right of the middle and 240 above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -208,9 +210,9 @@ fn what_is_seen_of_each_object_is_told() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the middle. In a view plane at
-        // 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance c and depth
-        // z has the area π r² √(c² − r²) / (z² − r²)^1.5.
+        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the middle. In a view plane
+        // at 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance
+        // c and depth z has the area π r² √(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {

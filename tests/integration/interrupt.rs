@@ -8,7 +8,8 @@ use std::{
 
 use crate::program::{Folder, Said};
 
-/// A command that is interrupted after so many milliseconds: long enough to have begun, and far from long enough to be done. What it says then.
+/// A command that is interrupted after so many milliseconds: long enough to have begun, and far
+/// from long enough to be done. What it says then.
 pub fn interrupted(command: &mut Command, after: u64) -> Said {
     let (said, time) = ended_by("INT", command, after);
     assert!(time < Duration::from_secs(5));
@@ -36,7 +37,8 @@ fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Said, Duration)
     (said, time)
 }
 
-/// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes more than a minute.
+/// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes
+/// more than a minute.
 pub fn long_pixel() -> String {
     let spheres = (0..150).map(|i| format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n"));
     format!(

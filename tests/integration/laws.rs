@@ -1,4 +1,5 @@
-//! Laws of pictures: what moving, turning, scaling and mirroring a world with its camera does to them, to the bit.
+//! Laws of pictures: what moving, turning, scaling and mirroring a world with its camera does to
+//! them, to the bit.
 //!
 //! Coordinates are multiples of 1/128, so that moving and turning them is exact.
 
@@ -115,7 +116,8 @@ fn swap_colors(scene: &mut Scene) {
     }
 }
 
-/// The pictures of two scenes of one size are the same but for where their pixels go: sampled to the bit, and exactly as far as their bounds allow to say so.
+/// The pictures of two scenes of one size are the same but for where their pixels go: sampled to
+/// the bit, and exactly as far as their bounds allow to say so.
 #[track_caller]
 fn agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
     let [one, other] = [before, after].map(sampled);
@@ -149,7 +151,8 @@ fn quarter_turns_about_y_swap_the_boards_colours() {
         // The square at (i, j) becomes that at (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // A normal along the axis does not turn its triangle with it, whose base then is along the world's x: spin does.
+        // A normal along the axis does not turn its triangle with it, whose base then is along the
+        // world's x: spin does.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);

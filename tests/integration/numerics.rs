@@ -52,7 +52,8 @@ fn every_case_breaks_the_textbook_and_stays_within_the_bound_that_is_claimed() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // The last bit of a distance is a rounding's: were it never wrong, nothing would have been measured.
+            // The last bit of a distance is a rounding's: were it never wrong, nothing would have
+            // been measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
             // Rays parallel to the board meet it nowhere.
             None => assert_eq!(id, "P2"),

@@ -1,4 +1,5 @@
-//! A text that is read in parts means what it means as a whole: the same tree, the same scene, the same diagnostics.
+//! A text that is read in parts means what it means as a whole: the same tree, the same scene, the
+//! same diagnostics.
 //!
 //! Parts of a single byte are taken apart at every brace, so that small texts have many.
 

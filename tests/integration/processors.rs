@@ -1,6 +1,8 @@
-//! The same pictures on other processors, for which QEMU has to be there: `cargo test -- --ignored processors`, with `qemu-x86_64` on the path.
+//! The same pictures on other processors, for which QEMU has to be there: `cargo test -- --ignored
+//! processors`, with `qemu-x86_64` on the path.
 //!
-//! Which vectors there are is asked at run time, so the same code goes other ways on a processor that has none.
+//! Which vectors there are is asked at run time, so the same code goes other ways on a processor
+//! that has none.
 
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 
@@ -15,7 +17,8 @@ use crate::{
     scenes::{example, rendered, whole, with_samples},
 };
 
-/// As QEMU calls them: one with the vectors that every processor of the kind has, two numbers wide, and one with four.
+/// As QEMU calls them: one with the vectors that every processor of the kind has, two numbers wide,
+/// and one with four.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
 
 const SCENES: [&str; 5] = [
@@ -29,7 +32,8 @@ const SCENES: [&str; 5] = [
 /// Says where the test is to leave its pictures, and that it has no more to do.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// The test runs itself on the others, once each: QEMU translates most of what it runs anew in each process.
+/// The test runs itself on the others, once each: QEMU translates most of what it runs anew in each
+/// process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {

@@ -37,7 +37,8 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The words of a line as a shell takes them: blanks are between them, but for those in single quotes.
+/// The words of a line as a shell takes them: blanks are between them, but for those in single
+/// quotes.
 pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;

@@ -20,9 +20,11 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Checks the texts of a folder, which have a question in each line, and below it what is answered, `<`.
+/// Checks the texts of a folder, which have a question in each line, and below it what is answered,
+/// `<`.
 ///
-/// The first word says what is asked of the text behind it; what else a question needs stands behind an arrow. `--` begins a remark.
+/// The first word says what is asked of the text behind it; what else a question needs stands
+/// behind an arrow. `--` begins a remark.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);

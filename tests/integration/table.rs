@@ -1,7 +1,8 @@
 //! Tables of cases in one text: a line each, its cells apart by arrows.
 
-/// The cells of each line. White space around a cell is no part of it; `\n`, `\r`, `\t` and `\u{feff}` in one are what they are in a string of Rust.
-/// Empty lines and those that begin with `--` are not rows.
+/// The cells of each line. White space around a cell is no part of it; `\n`, `\r`, `\t` and
+/// `\u{feff}` in one are what they are in a string of Rust. Empty lines and those that begin with
+/// `--` are not rows.
 pub fn lines(table: &'static str) -> Vec<Vec<&'static str>> {
     let lines = table.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("--"));

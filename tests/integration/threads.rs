@@ -9,7 +9,8 @@ use std::{
 
 use crate::{cancel::spheres, program::Folder};
 
-/// The most threads that a process was seen with until it ended. It may have had more: one looks only now and then.
+/// The most threads that a process was seen with until it ended. It may have had more: one looks
+/// only now and then.
 fn most(command: &mut Command) -> usize {
     let command = command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut process = command.spawn().expect("the program");
@@ -22,7 +23,8 @@ fn most(command: &mut Command) -> usize {
     most
 }
 
-/// Holds the program to one thread, and to six when it is asked for six, beside the first one and those that wait for Ctrl-C.
+/// Holds the program to one thread, and to six when it is asked for six, beside the first one and
+/// those that wait for Ctrl-C.
 fn hold_to_the_number_asked_for(folder: &Folder, line: &str) {
     let most = |threads: u32| most(&mut folder.command(&format!("{line} --threads {threads}")));
     let one = most(1);

@@ -1,7 +1,7 @@
 //! `watch` from outside: an editor's ways to save, broken texts, bursts, and the end.
 //!
-//! Every step waits for what it is to bring about, with a patience that a busy machine does not exhaust; fixed times pass only where
-//! nothing is to happen.
+//! Every step waits for what it is to bring about, with a patience that a busy machine does not
+//! exhaust; fixed times pass only where nothing is to happen.
 
 use std::{
     cell::RefCell,
@@ -208,7 +208,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // Nobody watches the folder of the link in the middle: what no event tells is seen, however much else happens.
+    // Nobody watches the folder of the link in the middle: what no event tells is seen, however
+    // much else happens.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {

@@ -10,9 +10,9 @@ use crate::{area::Area, film::DECODED_LIMIT};
 /// Arguments of `diff`.
 #[derive(Debug, clap::Args)]
 pub struct DiffArgs {
-    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input;
-    /// whole numbers count as sRGB and floats as linear light, and what is transparent is seen on
-    /// black
+    /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard
+    /// input; whole numbers count as sRGB and floats as linear light, and what is transparent
+    /// is seen on black
     pub a: PathBuf,
     /// Another picture, or a scene whose exact picture A is compared with
     pub b: PathBuf,
@@ -108,7 +108,8 @@ pub enum GradeFormat {
 /// How much work a verdict may be.
 #[derive(Debug, clap::Args)]
 pub struct EffortArgs {
-    /// Spend up to so many times as much work on a picture before the search for what is wrong ends
+    /// Spend up to so many times as much work on a picture before the search for what is wrong
+    /// ends
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = effort)]
     pub effort: f64,
 }

@@ -212,8 +212,8 @@ pub struct StudioArgs {
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct InspectArgs {
-    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input; what is seen is
-    /// told of its first 100 objects
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input; what is seen
+    /// is told of its first 100 objects
     pub scene: PathBuf,
     #[command(flatten)]
     pub overrides: Overrides,
@@ -272,8 +272,8 @@ pub struct ReportArgs {
     pub scenes: Vec<PathBuf>,
     /// The folder for index.html (a page with charts, tables and pictures), both charts as SVG,
     /// report.csv and report.json; of several scenes each has a folder in it. It is made if it is
-    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way, or a
-    /// symbolic link, is refused
+    /// missing, and keeps a list `.pinhole` of what was made there: any other file in the way, or
+    /// a symbolic link, is refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// The methods [default: all]
@@ -322,8 +322,8 @@ pub struct FmtArgs {
 /// Arguments of `explain`.
 #[derive(Debug, clap::Args)]
 pub struct ExplainArgs {
-    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of the
-    /// language or of the reference, or `language` [default: list all codes]
+    /// The code that stands in the brackets of a report, with `pinhole::` or without, a word of
+    /// the language or of the reference, or `language` [default: list all codes]
     #[arg(value_name = "WORD")]
     pub words: Vec<String>,
 }

@@ -15,10 +15,12 @@ use crate::{
 /// So near, in radians, the view direction may come to the up vector: one degree.
 const POLE: f64 = PI / 180.0;
 
-/// What the camera's distance, or its view distance, is multiplied by over the height of the picture.
+/// What the camera's distance, or its view distance, is multiplied by over the height of the
+/// picture.
 const ZOOM: f64 = 4.0;
 
-/// How far away that is which the camera is moved about: `lookat`, or else what is seen in the middle of the picture, or the nearest object.
+/// How far away that is which the camera is moved about: `lookat`, or else what is seen in the
+/// middle of the picture, or the nearest object.
 pub fn distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let from_eye = |point: DVec3| unit(point - camera.eye).1;
@@ -38,7 +40,8 @@ pub fn distance(scene: &Scene) -> f64 {
     seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
 }
 
-/// A camera after the pointer has moved from one point of the picture to another; `distance` is how far away that is which it is moved about.
+/// A camera after the pointer has moved from one point of the picture to another; `distance` is how
+/// far away that is which it is moved about.
 pub fn moved(
     camera: &Camera,
     projection: &Projection,
@@ -59,7 +62,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // What is seen follows the hand in both: the camera goes the other way where it stays in its place.
+            // What is seen follows the hand in both: the camera goes the other way where it stays
+            // in its place.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -110,8 +114,9 @@ fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// The view direction turned as the pointer has moved, in heights of the picture, each of which is half a turn: about the up vector where it goes to the right,
-/// and away from the up vector where it goes down.
+/// The view direction turned as the pointer has moved, in heights of the picture, each of which is
+/// half a turn: about the up vector where it goes to the right, and away from the up vector where
+/// it goes down.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // What right and up in the world are in the rolled picture.

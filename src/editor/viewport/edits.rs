@@ -1,7 +1,9 @@
 //! Numbers of fields, written into the text where they stand.
 //!
-//! A literal is replaced, number by number, so that one that does not change stays as it is written. Where a name stands, the literal of its `let` changes;
-//! to an expression an offset is added, or changed where the expression ends in one. A field that is not there is added to its block.
+//! A literal is replaced, number by number, so that one that does not change stays as it is
+//! written. Where a name stands, the literal of its `let` changes; to an expression an offset is
+//! added, or changed where the expression ends in one. A field that is not there is added to its
+//! block.
 
 use glam::DVec3;
 
@@ -52,7 +54,8 @@ impl Change {
     }
 }
 
-/// The fields of a block in which its part differs from what it is to be; of a box those of the form that the text has.
+/// The fields of a block in which its part differs from what it is to be; of a box those of the
+/// form that the text has.
 pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
     let other_form = match block.fields.iter().any(|field| field.name.text == "min") {
         true => ["center", "size"],
@@ -272,8 +275,8 @@ impl<'s> Writer<'_, 's> {
         Some(())
     }
 
-    /// A value that has changed by an amount, with as many decimals as there are to be; the old number where the amount has none of them. An angle that has
-    /// no unit yet is in degrees.
+    /// A value that has changed by an amount, with as many decimals as there are to be; the old
+    /// number where the amount has none of them. An angle that has no unit yet is in degrees.
     fn sum(&self, from: Value, by: Value, unit: Option<Unit>) -> String {
         if let (Value::Vector(from), Value::Vector(by)) = (from, by) {
             let number = |axis| {
@@ -289,7 +292,8 @@ impl<'s> Writer<'_, 's> {
     }
 }
 
-/// The unit of a number or an angle, with a sign or without, if it has one; none at all of other values.
+/// The unit of a number or an angle, with a sign or without, if it has one; none at all of other
+/// values.
 fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     match &tree.kind {
         ValueKind::Number(_) => Some(None),

@@ -17,8 +17,9 @@ pub const TOLERANCE: f64 = 0.5;
 /// Why nothing is moved where numbers have too few digits, or are too large.
 pub const TOO_FAR: &str = "that is too far away";
 
-/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye is. The name is that of the field that moves with it, with an
-/// axis behind it where it moves along that alone.
+/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye
+/// is. The name is that of the field that moves with it, with an axis behind it where it moves
+/// along that alone.
 pub type Handle = (&'static str, Option<DVec3>);
 
 /// What a point moves along, other than the plane through it that is parallel to the view plane.
@@ -89,7 +90,8 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
 
 /// Where a ray from the eye touches a sphere, on the side of a direction; nowhere from inside it.
 ///
-/// With c from the eye to the centre, k = r/|c| and t the direction across c, of length 1, this is (1 − k²) c + r √(1 − k²) t.
+/// With c from the eye to the centre, k = r/|c| and t the direction across c, of length 1, this is
+/// (1 − k²) c + r √(1 − k²) t.
 pub fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
     let (axis, distance) = unit(sphere.center - eye);
     let across = towards - axis * towards.dot(axis);
@@ -107,7 +109,8 @@ pub fn unit(v: DVec3) -> (DVec3, f64) {
     (scaled.normalize(), scaled.length() * greatest)
 }
 
-/// An object with a handle moved to where it is to be seen at a point of the picture, or as near to that as it can be.
+/// An object with a handle moved to where it is to be seen at a point of the picture, or as near to
+/// that as it can be.
 pub fn moved(
     shape: Shape,
     handle: &str,
@@ -144,7 +147,8 @@ pub fn moved(
             let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
             let along = Along::named(axis).or(along);
             let by = moved_point(at, to, along, projection)? - at;
-            // What has corners moves by them: as a field, the centre of a box is rounded, and that of three vertices is none.
+            // What has corners moves by them: as a field, the centre of a box is rounded, and that
+            // of three vertices is none.
             let fields = match (field, shape) {
                 ("center", Shape::Box(_)) => &["min", "max"][..],
                 ("center", Shape::Triangle(_)) => &CORNERS,
@@ -163,7 +167,8 @@ pub fn moved(
     moved.ok_or_else(no_handle)
 }
 
-/// A point moved to where it is seen at a point of the picture, or as near to that as what it moves along allows.
+/// A point moved to where it is seen at a point of the picture, or as near to that as what it moves
+/// along allows.
 fn moved_point(
     point: DVec3,
     to: DVec2,
@@ -175,7 +180,8 @@ fn moved_point(
         None => projection.on_plane(to, point, projection.ahead),
         Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            // The axis is seen as a line, and what is seen across it from `to` lies in a plane with the eye, which the axis meets at the nearest point.
+            // The axis is seen as a line, and what is seen across it from `to` lies in a plane with
+            // the eye, which the axis meets at the nearest point.
             let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
             let normal = unit(from_eye.cross(axis)).0;
             across = unit(normal.reject_from(projection.ahead)).0;
@@ -215,7 +221,8 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// The normal whose tip is seen at a point of the picture, on the side of the centroid where it is now; or that whose tip comes nearest.
+/// The normal whose tip is seen at a point of the picture, on the side of the centroid where it is
+/// now; or that whose tip comes nearest.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
@@ -228,7 +235,8 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
     unit(tip).0 * length
 }
 
-/// The spin with which the apex is seen in the direction of a point of the picture from the centroid.
+/// The spin with which the apex is seen in the direction of a point of the picture from the
+/// centroid.
 fn spun(
     triangle: &CenteredTriangle,
     apex: DVec3,

@@ -4,18 +4,21 @@ use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Lines are cut off where they come nearer to the plane of the eye than this part of their size: a point in it is infinitely far away in the picture.
+/// Lines are cut off where they come nearer to the plane of the eye than this part of their size: a
+/// point in it is infinitely far away in the picture.
 const NEAREST: f64 = 1e-6;
 
-/// Lines are cut off so many picture sizes outside of it: browsers draw in single precision, in which a tenth of a pixel is kept up to 2^20 pixels, and a page shows
-/// a picture with up to 8192 in a row.
+/// Lines are cut off so many picture sizes outside of it: browsers draw in single precision, in
+/// which a tenth of a pixel is kept up to 2^20 pixels, and a page shows a picture with up to 8192
+/// in a row.
 const REACH: f64 = 128.0;
 
 /// A line through some points of the picture.
 pub type Line = Vec<DVec2>;
 
 impl Projection {
-    /// What is seen of a line through some points: several lines where parts of it are not in front of the eye, or too far outside of the picture.
+    /// What is seen of a line through some points: several lines where parts of it are not in front
+    /// of the eye, or too far outside of the picture.
     pub fn line(&self, points: &[DVec3]) -> Vec<Line> {
         let far = points
             .iter()
@@ -35,7 +38,8 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Segments of the picture, or what of them is not too far outside, as lines: one goes on where the next segment begins where it ends.
+    /// Segments of the picture, or what of them is not too far outside, as lines: one goes on where
+    /// the next segment begins where it ends.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         let segments = segments.into_iter();
@@ -48,7 +52,8 @@ impl Projection {
         lines
     }
 
-    /// The part of a segment in the picture grown by so many of its sizes on each side (Liang and Barsky's algorithm).
+    /// The part of a segment in the picture grown by so many of its sizes on each side (Liang and
+    /// Barsky's algorithm).
     pub(super) fn clip(&self, [from, to]: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         let along = to - from;
         let (mut first, mut last): (f64, f64) = (0.0, 1.0);
@@ -64,10 +69,12 @@ impl Projection {
         (first < last).then(|| [first, last].map(|part| from.lerp(to, part)))
     }
 
-    /// The image of all directions whose y, at a depth of 1, is this: a line from one edge to another of the picture grown by its own size on each side.
-    /// None where there is none, or where it does not cross that.
+    /// The image of all directions whose y, at a depth of 1, is this: a line from one edge to
+    /// another of the picture grown by its own size on each side. None where there is none, or
+    /// where it does not cross that.
     pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
-        // The ray through (x, y) has the height ahead.y + (right.y (x − w/2) − top.y (y − h/2)) pitch.
+        // The ray through (x, y) has the height ahead.y + (right.y (x − w/2) − top.y (y − h/2))
+        // pitch.
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
         // The point of it that is nearest to the middle, and its direction.

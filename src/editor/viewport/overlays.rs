@@ -1,4 +1,5 @@
-//! What can be drawn over a picture: horizon, vanishing points with the lines that lead there, and the objects' outlines and handles.
+//! What can be drawn over a picture: horizon, vanishing points with the lines that lead there, and
+//! the objects' outlines and handles.
 
 use glam::{DVec2, DVec3};
 

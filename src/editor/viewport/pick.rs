@@ -18,7 +18,8 @@ pub const MOST_SAMPLES: u64 = 1 << 16;
 /// More samples of a pixel would take too long.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// What is seen at a point of the picture: where an object is hit, unless it is the background, and the colour. Nothing outside the picture.
+/// What is seen at a point of the picture: where an object is hit, unless it is the background, and
+/// the colour. Nothing outside the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
@@ -39,8 +40,8 @@ pub struct PixelSamples {
     pub color: Color,
 }
 
-/// The samples of the pixel in a column and a row, which lies in the picture; none of an exact picture. Of more than [`MOST_SAMPLES`] only the
-/// first are shown.
+/// The samples of the pixel in a column and a row, which lies in the picture; none of an exact
+/// picture. Of more than [`MOST_SAMPLES`] only the first are shown.
 ///
 /// # Errors
 ///

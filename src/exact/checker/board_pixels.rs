@@ -1,8 +1,11 @@
-//! Pixels that show nothing but a checkerboard and few of its lines: most pixels that are not of one colour. They are computed in batches of eight.
+//! Pixels that show nothing but a checkerboard and few of its lines: most pixels that are not of
+//! one colour. They are computed in batches of eight.
 //!
-//! In: such pixels one by one, in any order, with the squares of their corners. Out: their integrals of the board's sign. Pixels are sorted by how many lines of either
-//! family cross them; eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors. A pixel's sum is made of its own numbers, by the
-//! same operations whichever others it is computed with, so that it depends neither on their order nor on which part of a picture is wanted.
+//! In: such pixels one by one, in any order, with the squares of their corners. Out: their
+//! integrals of the board's sign. Pixels are sorted by how many lines of either family cross them;
+//! eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors.
+//! A pixel's sum is made of its own numbers, by the same operations whichever others it is computed
+//! with, so that it depends neither on their order nor on which part of a picture is wanted.
 
 use super::{
     homography::Sum,
@@ -10,7 +13,8 @@ use super::{
 };
 use crate::tracer::{Candidate, Checks};
 
-/// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and pixels with more lines are few. (Measured: with 8 or 128 times differ by about a tenth at most.)
+/// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and
+/// pixels with more lines are few. (Measured: with 8 or 128 times differ by about a tenth at most.)
 const MOST: usize = 32;
 
 /// A pixel that shows nothing but a checkerboard.
@@ -49,8 +53,9 @@ impl BoardBatches {
         }
     }
 
-    /// Queues a pixel. `tell` is called for each pixel of a batch that becomes full, with its integral, positive for the first colour; and at once, without one, for
-    /// a pixel that too many lines cross.
+    /// Queues a pixel. `tell` is called for each pixel of a batch that becomes full, with its
+    /// integral, positive for the first colour; and at once, without one, for a pixel that too
+    /// many lines cross.
     pub fn push(
         &mut self,
         pixel: BoardPixel,

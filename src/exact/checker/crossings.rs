@@ -1,7 +1,8 @@
 //! The lines that one edge of a polygon crosses, and the sum over them one by one.
 //!
-//! In: the series X of [`green`](super::green) along an edge, and where its first line is crossed. Out: Σ (−1)^j X over crossings, in lanes that the
-//! compiler makes vectors of, with a bound: the terms that the series is cut off by, and roundings.
+//! In: the series X of [`green`](super::green) along an edge, and where its first line is crossed.
+//! Out: Σ (−1)^j X over crossings, in lanes that the compiler makes vectors of, with a bound: the
+//! terms that the series is cut off by, and roundings.
 
 use super::homography::{Sum, UNIT};
 use super::special::{turn_exactly, waves};
@@ -12,15 +13,18 @@ use multiversion::multiversion;
 
 /// The most terms of the asymptotic series.
 pub(super) const MAX_TERMS: usize = 20;
-/// A sum has fewer blocks than this: m grows by half in each until, after 15, they have MOST_BLOCK crossings, and 300,000 crossings are 74 of those.
+/// A sum has fewer blocks than this: m grows by half in each until, after 15, they have MOST_BLOCK
+/// crossings, and 300,000 crossings are 74 of those.
 const BLOCKS: f64 = 128.0;
 
-/// The crossings of a block: enough that choosing its number of terms is a small part of the work, and few enough for the roundings of a sum. (Measured: a
-/// quarter and four times as many change times by about a tenth at most.)
+/// The crossings of a block: enough that choosing its number of terms is a small part of the work,
+/// and few enough for the roundings of a sum. (Measured: a quarter and four times as many change
+/// times by about a tenth at most.)
 const LEAST_BLOCK: f64 = 16.0;
 const MOST_BLOCK: f64 = 4096.0;
 
-/// There are eight running sums, since the terms' signs alternate; and t is computed in double-double again every 64 crossings.
+/// There are eight running sums, since the terms' signs alternate; and t is computed in
+/// double-double again every 64 crossings.
 const LANES: usize = 8;
 const CHUNK: usize = 64;
 
@@ -60,8 +64,8 @@ impl Series {
         size
     }
 
-    /// How many terms a sum over so many crossings needs from some depth on, for what is left to be below `limit`; and
-    /// what is left.
+    /// How many terms a sum over so many crossings needs from some depth on, for what is left to be
+    /// below `limit`; and what is left.
     fn enough(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -104,9 +108,10 @@ impl LineCrossings {
             let (terms, left) = series.enough(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // t is off by two roundings, and three of the way that it goes within a chunk, which X′, at most π X's bound, takes to X; half
-            // that way on the average, and four times all that for certain. A term has 14 roundings of its own, counted as in `green`; the sum of the block as many as
-            // are added in a lane.
+            // t is off by two roundings, and three of the way that it goes within a chunk, which
+            // X′, at most π X's bound, takes to X; half that way on the average, and
+            // four times all that for certain. A term has 14 roundings of its own, counted as in
+            // `green`; the sum of the block as many as are added in a lane.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -128,7 +133,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // A loop that the compiler makes vectors of, to the end of the last of them; what is too much is not added.
+            // A loop that the compiler makes vectors of, to the end of the last of them; what is
+            // too much is not added.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.turned_at(&Double::from_f64(j)).hi;

@@ -1,19 +1,22 @@
-//! The board's integral over a polygon of many squares, along its boundary, by Green's theorem with periodic Euler polynomials. Symbols are those of
-//! [`Homography`].
+//! The board's integral over a polygon of many squares, along its boundary, by Green's theorem with
+//! periodic Euler polynomials. Symbols are those of [`Homography`].
 //!
-//! In: a convex polygon in which m changes little from square to square, which may reach to the horizon. Out: the integral of the board's sign, with a bound: what the
-//! series neglects, what is neglected of sums over crossings, roundings, and what roundings of the forms displace.
+//! In: a convex polygon in which m changes little from square to square, which may reach to the
+//! horizon. Out: the integral of the board's sign, with a bound: what the series neglects, what is
+//! neglected of sums over crossings, roundings, and what roundings of the forms displace.
 //!
-//! With the waves A_k of `special` and J = K/m³, P = Σ_j (−1)^j A_j+1(a) ∂_a^j J, of n terms, has ∂_a P = s(a)·J up to
-//! ±A_n(a) ∂_a^n J. By Green's theorem ∬ s(a) s(b) J da db = ∮ s(b) P db. Likewise Q = Σ_k (−1)^k A_k+1(b) ∂_b^k J, and
-//! Ψ = ΣΣ (−1)^(j+k) A_j+1(a) A_k+1(b) ∂_a^j ∂_b^k J, j + k < n, has dΨ = s(a) Q da + s(b) P db up to terms of order n.
-//! On an edge, where m grows by γ for a unit of b, X = −K Σ_k (k+1)!/2 · S_k A_k+1(b) m^(−2−k), k = 1 … n, with S_1 = 1
+//! With the waves A_k of `special` and J = K/m³, P = Σ_j (−1)^j A_j+1(a) ∂_a^j J, of n terms, has
+//! ∂_a P = s(a)·J up to ±A_n(a) ∂_a^n J. By Green's theorem ∬ s(a) s(b) J da db = ∮ s(b) P db.
+//! Likewise Q = Σ_k (−1)^k A_k+1(b) ∂_b^k J, and Ψ = ΣΣ (−1)^(j+k) A_j+1(a) A_k+1(b) ∂_a^j ∂_b^k J,
+//! j + k < n, has dΨ = s(a) Q da + s(b) P db up to terms of order n. On an edge, where m grows by γ
+//! for a unit of b, X = −K Σ_k (k+1)!/2 · S_k A_k+1(b) m^(−2−k), k = 1 … n, with S_1 = 1
 //! and S_k+1 = γ·S_k + (∂m/∂b)^k, has dX/db = −Q up to order n. Hence with ρ = da/db
 //!
-//! ∫ s(b) P db = ΔΨ − ∫ s(a) Q da = ΔΨ + ρ ∫ s(a) dX, and with the roles exchanged = −(db/da) ∫ s(b) dX′(a),
+//! ∫ s(b) P db = ΔΨ − ∫ s(a) Q da = ΔΨ + ρ ∫ s(a) dX, and with the roles exchanged = −(db/da) ∫
+//! s(b) dX′(a),
 //!
-//! and ∫ s(a) dX is [s(a)·X] less the jumps of s(a) times X: an edge costs as many terms as it crosses lines of one family,
-//! and the family that it crosses less may be chosen.
+//! and ∫ s(a) dX is [s(a)·X] less the jumps of s(a) times X: an edge costs as many terms as it
+//! crosses lines of one family, and the family that it crosses less may be chosen.
 
 use super::super::{budget::Budget, clip::measure};
 use super::crossings::{LineCrossings, MAX_TERMS, Series};
@@ -27,12 +30,14 @@ use std::f64::consts::PI;
 /// The series is long enough when what it neglects is below this part of what is asked for.
 const TRUNCATION: f64 = 1e-3;
 
-/// Shares of the tolerance that an edge may neglect at its lines, in a polygon that reaches the horizon: an edge that
-/// ends, and one that runs into the horizon. There are at most two of either kind where both matter, and half of what
-/// the edges neglect together counts, since these are sums of signs.
+/// Shares of the tolerance that an edge may neglect at its lines, in a polygon that reaches the
+/// horizon: an edge that ends, and one that runs into the horizon. There are at most two of either
+/// kind where both matter, and half of what the edges neglect together counts, since these are sums
+/// of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
-/// The same in a polygon whose edges all end: two recede, and the other two hardly neglect anything (`tail::level`).
+/// The same in a polygon whose edges all end: two recede, and the other two hardly neglect anything
+/// (`tail::level`).
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// A polygon may neglect the part of that which its area is of the pixel's, but at least this part.
 const LEAST_SHARE: f64 = 1.0 / 64.0;
@@ -48,7 +53,8 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// The integral over a convex polygon of which every square is far away, which may reach to the horizon.
+/// The integral over a convex polygon of which every square is far away, which may reach to the
+/// horizon.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -58,7 +64,8 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // Polygons that make up a pixel neglect no more together than one does, but for those below LEAST_SHARE, nor many edges more than four.
+    // Polygons that make up a pixel neglect no more together than one does, but for those below
+    // LEAST_SHARE, nor many edges more than four.
     let share = area.abs().max(LEAST_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -90,7 +97,8 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // The k-th term has 3k + 4 roundings at most and less than 2^−k of the first one's size, Σ (3k + 4)/2^k = 14; and K's product has two.
+            // The k-th term has 3k + 4 roundings at most and less than 2^−k of the first one's
+            // size, Σ (3k + 4)/2^k = 14; and K's product has two.
             sum.bound += (16.0 * UNIT + 2.0 * board.misfit) * size;
         }
     }
@@ -98,11 +106,13 @@ pub(super) fn sum(
     sum
 }
 
-/// How many terms the series needs for what it neglects to be below a limit, and what it then neglects.
+/// How many terms the series needs for what it neglects to be below a limit, and what it then
+/// neglects.
 ///
-/// With |A_k| ≤ ½π^(1−k), what P neglects integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n times the area in the picture,
-/// and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along
-/// the edge and along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
+/// With |A_k| ≤ ½π^(1−k), what P neglects integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n times
+/// the area in the picture, and what Ψ and X neglect on an edge to n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J
+/// |dt|, where g is the largest of m's slopes along the edge and along its parameter t, and ∫ J
+/// |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
 fn terms(
     board: &Homography,
     nearest: f64,
@@ -174,7 +184,8 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge from its near end to its far one. `c` counts the lines of the family that it crosses less, t those of the other.
+/// An edge from its near end to its far one. `c` counts the lines of the family that it crosses
+/// less, t those of the other.
 struct Edge {
     /// +1 or −1 where the boundary runs from near to far or back, times the sign before ρ ∫ s dX.
     sign: f64,
@@ -201,7 +212,8 @@ struct Edge {
 }
 
 impl Edge {
-    /// An edge of the boundary, summed along the axis of the board that it follows more; `None` if there is nothing to sum.
+    /// An edge of the boundary, summed along the axis of the board that it follows more; `None` if
+    /// there is nothing to sum.
     fn new(board: &Homography, from: &Corner, to: &Corner) -> Option<Self> {
         let forward = from.depth <= to.depth;
         let (near, far) = if forward { (from, to) } else { (to, from) };
@@ -220,7 +232,8 @@ impl Edge {
         Some(edge)
     }
 
-    /// An edge from its near end to its far one, whose lines of the axis c are summed along the axis t.
+    /// An edge from its near end to its far one, whose lines of the axis c are summed along the
+    /// axis t.
     fn along(board: &Homography, near: &Corner, far: &Corner, [c, t]: [usize; 2]) -> Option<Self> {
         let by_b = t == 1;
         let endless = far.depth.is_infinite();
@@ -302,7 +315,8 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at either end: its terms, counted as Ψ's, have 14 roundings of the first one's size. Every term is proportional to K, which is rounded, too.
+        // X at either end: its terms, counted as Ψ's, have 14 roundings of the first one's size.
+        // Every term is proportional to K, which is rounded, too.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.misfit * all);

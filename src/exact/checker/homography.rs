@@ -1,8 +1,9 @@
 //! The homography from a pixel to a checkerboard, and what the rounding of its forms may do.
 //!
-//! In: a board's three linear forms as the tracer has them for a sub-pixel. Out: places and depths on the floor, the depth's slopes and the density of the floor in
-//! the picture, and a bound on how far roundings move what a polygon shows (a first-order perturbation of the forms by four roundings each,
-//! taken back to the picture by the inverse of their matrix).
+//! In: a board's three linear forms as the tracer has them for a sub-pixel. Out: places and depths
+//! on the floor, the depth's slopes and the density of the floor in the picture, and a bound on how
+//! far roundings move what a polygon shows (a first-order perturbation of the forms by four
+//! roundings each, taken back to the picture by the inverse of their matrix).
 
 use glam::DVec2;
 
@@ -12,12 +13,14 @@ use crate::math::{Double, Real, two_product};
 /// The unit roundoff of `f64`.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// A determinant of less than this, of forms whose largest factors are about 1, is taken for singular and replaced by it, so that its inverse
-/// and products with that are numbers; what is computed then is in doubt as a whole.
+/// A determinant of less than this, of forms whose largest factors are about 1, is taken for
+/// singular and replaced by it, so that its inverse and products with that are numbers; what is
+/// computed then is in doubt as a whole.
 const LEAST_DETERMINANT: f64 = 1e-100;
 
-/// If roundings displace points by no more than this, in pixels, a corner that only they keep off the horizon is said to be on it: what that changes is in
-/// the bound, and a hundredth of what is asked for.
+/// If roundings displace points by no more than this, in pixels, a corner that only they keep off
+/// the horizon is said to be on it: what that changes is in the bound, and a hundredth of what is
+/// asked for.
 const BESIDE: f64 = 1e-11;
 
 /// A number and a bound on its absolute error, in square pixels.
@@ -29,12 +32,13 @@ pub(in crate::exact) struct Sum {
 
 /// The infinite board as a pixel sees it.
 ///
-/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ either way), shows the point
-/// (a, b) = (N_a/L, N_b/L) of the floor, in squares; each of N_a, N_b, L is a linear form c0·x + c1·y + c2, and L > 0 is the
-/// side of the horizon where the floor is. The sign of a square is s(a)·s(b) with s the square wave.
+/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ either way), shows
+/// the point (a, b) = (N_a/L, N_b/L) of the floor, in squares; each of N_a, N_b, L is a linear form
+/// c0·x + c1·y + c2, and L > 0 is the side of the horizon where the floor is. The sign of a square
+/// is s(a)·s(b) with s the square wave.
 ///
-/// With M the matrix of the three forms, 1/L = m(a, b) = p·a + q·b + r is the third row of M⁻¹: a depth, linear on the
-/// floor. A piece da·db of floor covers J = K/m³ square pixels, K = 1/|det M|.
+/// With M the matrix of the three forms, 1/L = m(a, b) = p·a + q·b + r is the third row of M⁻¹: a
+/// depth, linear on the floor. A piece da·db of floor covers J = K/m³ square pixels, K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
     /// N_a and N_b.
@@ -53,7 +57,8 @@ pub(in crate::exact) struct Homography {
     displacement: f64,
     /// The direction of the horizon, of length 1.
     horizon: DVec2,
-    /// How far rounding may displace across the direction of the horizon: where L is 0, and so much more for each unit of L.
+    /// How far rounding may displace across the direction of the horizon: where L is 0, and so
+    /// much more for each unit of L.
     upwards: [f64; 2],
     /// Up to this L a point may lie on the horizon but for roundings, and is said to.
     horizon_off: f64,
@@ -61,7 +66,8 @@ pub(in crate::exact) struct Homography {
 
 /// A corner of a region: what floor it shows, and m there.
 ///
-/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges leave for it.
+/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges leave for
+/// it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub floor: [f64; 2],
@@ -84,7 +90,8 @@ impl Sum {
         }
     }
 
-    /// This sum over so much area; the mean of both colours if it is out of the range of numbers or its bound is no less than the area.
+    /// This sum over so much area; the mean of both colours if it is out of the range of numbers or
+    /// its bound is no less than the area.
     pub fn or_unknown(self, area: f64) -> Self {
         match self.value.is_finite() && self.bound < area {
             true => self,
@@ -124,8 +131,8 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Of three linear forms, N_a and N_b, and L; they may have any common positive factor. The nearer the origin of a and b is to the pixel,
-    /// the smaller the bounds.
+    /// Of three linear forms, N_a and N_b, and L; they may have any common positive factor. The
+    /// nearer the origin of a and b is to the pixel, the smaller the bounds.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
@@ -142,16 +149,19 @@ impl Homography {
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // How far det M may be off, relative to it, where each of the three factors of a product is off by so much of itself, or each of its sums and products in
-        // double-double by two units; and 1/det M by its own roundings.
+        // How far det M may be off, relative to it, where each of the three factors of a product is
+        // off by so much of itself, or each of its sums and products in double-double by
+        // two units; and 1/det M by its own roundings.
         let det_off = |unit: f64| match is_singular {
             true => f64::INFINITY,
             false => 8.0 * unit * products / det.abs() + 4.0 * UNIT,
         };
-        // A form's value is off by at most three roundings of its largest terms; the fourth is for the quotient.
+        // A form's value is off by at most three roundings of its largest terms; the fourth is for
+        // the quotient.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // v = M⁻¹·e is how far errors e of the forms displace a point; L(v) = e_L. Coordinates themselves are rounded, too.
+        // v = M⁻¹·e is how far errors e of the forms displace a point; L(v) = e_L. Coordinates
+        // themselves are rounded, too.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -219,18 +229,21 @@ impl Homography {
         level > 0.0 && level <= self.horizon_off
     }
 
-    /// Where along an axis the floor is that a point shows, where L has a value above 0, and how far roundings may be off.
+    /// Where along an axis the floor is that a point shows, where L has a value above 0, and how
+    /// far roundings may be off.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // Three roundings in the factors of either form, four in its value, and one in the quotient; twice that, where ℓ is off by half of itself at most.
+        // Three roundings in the factors of either form, four in its value, and one in the
+        // quotient; twice that, where ℓ is off by half of itself at most.
         (place, 16.0 * UNIT / level * terms)
     }
 
-    /// How much rounding may change what a polygon shows of the board, in square pixels: what the displacement of its boundary sweeps.
+    /// How much rounding may change what a polygon shows of the board, in square pixels: what the
+    /// displacement of its boundary sweeps.
     ///
-    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L: near the horizon points hardly move across it,
-    /// however far they may move along it.
+    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L: near the horizon points
+    /// hardly move across it, however far they may move along it.
     pub(in crate::exact) fn displaced(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         let levels = polygon.iter().map(|&p| form(&self.below, p));

@@ -1,8 +1,9 @@
 //! The board's integral where its squares are near: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture on which ℓ > 0. Out: the sum of the signed areas of the squares in it, with a bound.
-//! The lines of one family cut the polygon into rows, and those of the other cut each row into squares (`clip`). The bound adds up how far each cut may be from the true line, times its length, and the
-//! roundings of the areas.
+//! In: a convex polygon of the picture on which ℓ > 0. Out: the sum of the signed areas of the
+//! squares in it, with a bound. The lines of one family cut the polygon into rows, and those of the
+//! other cut each row into squares (`clip`). The bound adds up how far each cut may be from the
+//! true line, times its length, and the roundings of the areas.
 
 use glam::DVec2;
 
@@ -16,15 +17,15 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// A cut should add one corner, and all cuts of a family two. Where these are so many more, lines are closer to each other than roundings, and what is left is given
-/// up.
+/// A cut should add one corner, and all cuts of a family two. Where these are so many more, lines
+/// are closer to each other than roundings, and what is left is given up.
 const SPARE_CORNERS: usize = 32;
 
 /// Beyond this a square's number is no longer exact in `f64` together with its neighbours'.
 const LAST_SQUARE: f64 = 1e15;
 
-/// The integral over a convex polygon that does not reach the horizon. It is 0 with the polygon's area as its bound if there are more squares than the
-/// budget allows.
+/// The integral over a convex polygon that does not reach the horizon. It is 0 with the polygon's
+/// area as its bound if there are more squares than the budget allows.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum {
     let mut tally = CompensatedSum::default();
     let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
@@ -50,7 +51,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
                 return Sum::nothing_known(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // For each corner three roundings of products of two distances, which are half the perimeter at most, and one of the sum.
+            // For each corner three roundings of products of two distances, which are half the
+            // perimeter at most, and one of the sum.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -61,7 +63,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
     tally.sum()
 }
 
-/// A convex polygon from which the strips between the lines of one family are cut off, one after the other.
+/// A convex polygon from which the strips between the lines of one family are cut off, one after
+/// the other.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -145,14 +148,16 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors are off by three roundings of these, the form's value by four, and the point by four of its own.
+        // The factors are off by three roundings of these, the form's value by four, and the point
+        // by four of its own.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
     }
 }
 
-/// A sum of many numbers with a bound on its error. The roundings of the additions are kept and added in the end.
+/// A sum of many numbers with a bound on its error. The roundings of the additions are kept and
+/// added in the end.
 #[derive(Default)]
 struct CompensatedSum {
     value: f64,

@@ -1,16 +1,20 @@
-//! Special functions: Euler's polynomials made periodic, exponential integrals of imaginary arguments, and the complex numbers they need.
+//! Special functions: Euler's polynomials made periodic, exponential integrals of imaginary
+//! arguments, and the complex numbers they need.
 //!
-//! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF 24.2; Borwein, Calkin and Manna,
-//! "Euler–Boole summation revisited", 2009). They are right to a few roundings of their greatest value.
+//! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF
+//! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are right to a
+//! few roundings of their greatest value.
 //!
-//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19): F_s(−y) is the conjugate of F_s(y), and
-//! F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). They are right to some 1e-14 of their value.
+//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19):
+//! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). They are right to
+//! some 1e-14 of their value.
 
 use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// A term of a series that is no more than this, by the sum, changes nothing: a tenth of a rounding.
+/// A term of a series that is no more than this, by the sum, changes nothing: a tenth of a
+/// rounding.
 const VANISHING: f64 = 1e-17;
 
 /// A real and an imaginary part.
@@ -26,8 +30,8 @@ pub(super) fn turn_exactly(x: &Double) -> Double {
     Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
 }
 
-/// n times an angle that is given without whole turns, without whole turns: to within a rounding of itself, however small that is, as long as
-/// double-double numbers tell. n is below 2^51.
+/// n times an angle that is given without whole turns, without whole turns: to within a rounding of
+/// itself, however small that is, as long as double-double numbers tell. n is below 2^51.
 pub(super) fn turned_times(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
@@ -57,8 +61,9 @@ const ORDERS: usize = 22;
 /// How many even powers of η there are in the waves of the highest order.
 const POWERS: usize = ORDERS / 2;
 
-/// The coefficients of 1/cosh(x/2) in even powers of x, from those of cosh(x/2), 1/(4^i·(2i)!), with which their product is 1. Errors do not grow: all
-/// terms of a coefficient are about as large as it is.
+/// The coefficients of 1/cosh(x/2) in even powers of x, from those of cosh(x/2), 1/(4^i·(2i)!),
+/// with which their product is 1. Errors do not grow: all terms of a coefficient are about as large
+/// as it is.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -75,7 +80,8 @@ const SECH: [f64; POWERS] = {
     all
 };
 
-/// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j, or η^(2j+1), at j.
+/// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j,
+/// or η^(2j+1), at j.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
@@ -104,8 +110,8 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour will do, for the waves are continuous. t is
-/// below 2^51, up to which [`ROUND`] works.
+/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour
+/// will do, for the waves are continuous. t is below 2^51, up to which [`ROUND`] works.
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -114,19 +120,23 @@ fn from_middle(t: f64) -> (f64, f64) {
     (middle - (shifted - ROUND), sign)
 }
 
-/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be read.
+/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be
+/// read.
 ///
-/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t − floor(t) − ½,
-/// Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2; Borwein, Calkin and Manna,
-/// "Euler–Boole summation revisited", 2009). They are continuous from k = 1 on, and |A_k| ≤ ½π^(1−k).
+/// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t −
+/// floor(t) − ½, Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2;
+/// Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are continuous from k
+/// = 1 on, and |A_k| ≤ ½π^(1−k).
 ///
-/// The number of terms is known to the compiler, which makes vectors of many places; there must be two rows more than terms.
+/// The number of terms is known to the compiler, which makes vectors of many places; there must be
+/// two rows more than terms.
 #[inline(always)]
 pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
     let (square, odd) = (eta * eta, sign * eta);
     let mut all = [0.0; ROWS];
-    // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them would not become vectors.
+    // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them
+    // would not become vectors.
     macro_rules! order {
         ($k:literal, $first:expr, $($factor:literal)*) => {
             if TERMS + 1 >= $k {
@@ -167,7 +177,8 @@ const ORDER: u32 = 3;
 const SMALL: f64 = 3.0;
 const LARGE: f64 = 64.0;
 
-/// Between them are Taylor's series about numbers so far apart, of so many terms: the first term that is left out is at most (¼/3)^16 = 5e-18.
+/// Between them are Taylor's series about numbers so far apart, of so many terms: the first term
+/// that is left out is at most (¼/3)^16 = 5e-18.
 const STEP: f64 = 0.5;
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
@@ -236,9 +247,11 @@ fn at_step(terms: &Expansion, step: f64) -> Complex {
     })
 }
 
-/// Taylor's series from 3 to 64, each but the last begun by the one above it, half a step down. (F_s is 1/y times a number near 1, while a solution of the equation
-/// without its −1 falls as y^(s−1) downwards, so that errors vanish on the way.) That (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) is
-/// y·F_s′ = (s − 1 − iy)·F_s − 1, so that (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1, and 1 less where k is 0.
+/// Taylor's series from 3 to 64, each but the last begun by the one above it, half a step down.
+/// (F_s is 1/y times a number near 1, while a solution of the equation without its −1 falls as
+/// y^(s−1) downwards, so that errors vanish on the way.) That (s − 1)·F_s = 1 + iy·F_s−1 (DLMF
+/// 8.19.12) and F_s′ = i·(F_s−1 − F_s) is y·F_s′ = (s − 1 − iy)·F_s − 1, so that (k + 1)·y·c_k+1 =
+/// (s − 1 − k − iy)·c_k − i·c_k−1, and 1 less where k is 0.
 fn expansions() -> Vec<Expansion> {
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
@@ -274,7 +287,8 @@ fn power_series(y: f64) -> Complex {
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }
 
-/// F_1 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where it has a pole of a logarithm, the 0 that y·F_1 is.
+/// F_1 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where it has a pole of a
+/// logarithm, the 0 that y·F_1 is.
 fn first(y: f64) -> Complex {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if y == 0.0 {

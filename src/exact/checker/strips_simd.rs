@@ -1,17 +1,21 @@
-//! The integral of the board's sign over eight pixels at once, in lanes, which the compiler makes vectors of.
+//! The integral of the board's sign over eight pixels at once, in lanes, which the compiler makes
+//! vectors of.
 //!
-//! In: eight pixels that show nothing but a checkerboard, and are all crossed by the same number of lines of the one family and of the other. Out: their integrals, each with a bound: roundings of areas,
-//! and how far each line may be from the computed one.
+//! In: eight pixels that show nothing but a checkerboard, and are all crossed by the same number of
+//! lines of the one family and of the other. Out: their integrals, each with a bound: roundings of
+//! areas, and how far each line may be from the computed one.
 //!
-//! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the sign of their squares is σ_i. Beyond
-//! line k of the other family lies the signed area W_k = Σ σ_i·|strip i ∩ H_k|, W_0 being all of it, and the sign changes from
-//! line to line:
+//! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the
+//! sign of their squares is σ_i. Beyond line k of the other family lies the signed area W_k = Σ
+//! σ_i·|strip i ∩ H_k|, W_0 being all of it, and the sign changes from line to line:
 //!
 //! ∬ s(a) s(b) dx dy = s_0·(W_0 + 2 Σ_k (−1)^k W_k).
 //!
-//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q, f being the part of the side that
-//! lies beyond, if O is on the line: then what the line itself contributes is 0. A side of the pixel has a part, which may have no length, in each
-//! strip; a part without length starts and ends at the same number, so that it adds 0, which takes no rounding.
+//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q, f
+//! being the part of the side that lies beyond, if O is on the line: then what the line itself
+//! contributes is 0. A side of the pixel has a part, which may have no length, in each
+//! strip; a part without length starts and ends at the same number, so that it adds 0, which takes
+//! no rounding.
 
 use std::array;
 
@@ -25,7 +29,8 @@ use super::{
 };
 use crate::tracer::{Checks, LocalForm, Squares};
 
-/// At most so many lines cut the pixels into strips: their sides, 34 of 320 bytes, stay in the first-level cache.
+/// At most so many lines cut the pixels into strips: their sides, 34 of 320 bytes, stay in the
+/// first-level cache.
 pub(super) const STRIPS: usize = 6;
 
 /// So many pixels at a time: as many numbers as the widest vectors have.
@@ -65,7 +70,8 @@ impl FormRows {
     }
 }
 
-/// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the strips that they bound.
+/// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the
+/// strips that they bound.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     start: [Row; 2],
@@ -101,7 +107,8 @@ impl Sums {
 }
 
 impl Lines {
-    /// Sets one of the pixels: the family with fewer lines comes first, and lines are counted from each family's first square.
+    /// Sets one of the pixels: the family with fewer lines comes first, and lines are counted from
+    /// each family's first square.
     pub fn set(&mut self, place: usize, checks: &Checks, families: [usize; 2], first: [f64; 2]) {
         let Squares { across, below, odd } = &checks.squares;
         let [few, many] = families.map(|family| across[family].less(first[family], below));
@@ -148,9 +155,11 @@ impl Lines {
                 sums[i] += sign * beyond[i];
             }
         }
-        // For every line: a side's part has eight operations, on its length and a distance of √2 at most; each of its 5 sums a strip is rounded, and those of the
-        // lines twice. Each line that cuts, and the two next to them, may be off by 4 roundings of a point besides. What a displaced line sweeps is
-        // as long as the pixel's diagonal, √2, and its sign changes: 2√2 is less than 3.
+        // For every line: a side's part has eight operations, on its length and a distance of √2 at
+        // most; each of its 5 sums a strip is rounded, and those of the lines twice. Each
+        // line that cuts, and the two next to them, may be off by 4 roundings of a point besides.
+        // What a displaced line sweeps is as long as the pixel's diagonal, √2, and its sign
+        // changes: 2√2 is less than 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         Sums {
@@ -163,7 +172,8 @@ impl Lines {
         }
     }
 
-    /// Adds how far line n of a family may be from the computed one: its forms are off, its factors have three roundings, its value four.
+    /// Adds how far line n of a family may be from the computed one: its forms are off, its factors
+    /// have three roundings, its value four.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Row) {
         let below = &self.below;
@@ -176,7 +186,8 @@ impl Lines {
         }
     }
 
-    /// Cuts the pixels into strips. The square wave is 1 in the first of them. 0 for each that could be cut, else infinite.
+    /// Cuts the pixels into strips. The square wave is 1 in the first of them. 0 for each that
+    /// could be cut, else infinite.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Row {
         let mut failed = [0.0; PIXELS];
@@ -258,7 +269,8 @@ impl Lines {
             let Some(chord) = chords.get_mut(strip) else {
                 break;
             };
-            // The strip above runs along its chord from where the boundary leaves it to where it came in.
+            // The strip above runs along its chord from where the boundary leaves it to where it
+            // came in.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
@@ -273,7 +285,8 @@ impl Lines {
         failed
     }
 
-    /// Twice the signed area of the strips beyond a line of the second family, counted from its first.
+    /// Twice the signed area of the strips beyond a line of the second family, counted from its
+    /// first.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Row {
         let mut area = [0.0; PIXELS];

@@ -1,20 +1,25 @@
 //! Sums over the very many lines that an edge crosses, or that never end.
 //!
-//! In: an edge's crossings with the lines of one family, and the series X of [`green`](super::green). Out: Σ (−1)^j X with a bound: what is neglected of modes
-//! and of the series, and the roundings of what is added.
+//! In: an edge's crossings with the lines of one family, and the series X of
+//! [`green`](super::green). Out: Σ (−1)^j X with a bound: what is neglected of modes and of the
+//! series, and the roundings of what is added.
 //!
 //! Crossing j lies at t_j = t + τj, m_j = g(w + j), and s changes its sign at every one. With
-//! A_k = Im (4/π) Σ_n e^(iπnt)/(n (iπn)^k) over the odd n, Σ_j (−1)^j A_k+1(t_j) m_j^(−2−k) is the sum of the modes
+//! A_k = Im (4/π) Σ_n e^(iπnt)/(n (iπn)^k) over the odd n, Σ_j (−1)^j A_k+1(t_j) m_j^(−2−k) is the
+//! sum of the modes
 //!
-//! g^(−2−k) Im (4/π) e^(iπnt)/(n (iπn)^(k+1)) V(θ), V_s(θ) = Σ_j e^(iθj) (w + j)^(−s), s = k + 2, θ = nπ(τ + 1) less turns,
+//! g^(−2−k) Im (4/π) e^(iπnt)/(n (iπn)^(k+1)) V(θ), V_s(θ) = Σ_j e^(iθj) (w + j)^(−s), s = k + 2, θ
+//! = nπ(τ + 1) less turns,
 //!
-//! a Lerch series. (w + j)^(−s) = ∫ x^(s−1) e^(−(w+j)x) dx/Γ(s), so that V = ∫ x^(s−1) e^(−wx)/(1 − e^(iθ−x)) dx/Γ(s); the
-//! pole at x = iθ gives w^(1−s)·e^z E_s(z), z = −iθw, an exponential integral (DLMF 8.19), and Taylor's series of the
-//! regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ about ζ = −iθ gives w^(−s)·(R + R′·s/w + …), term by term. It is
-//! the Euler–Maclaurin sum at θ = 0 (a direction along the board's diagonal), and Boole's at θ = π.
+//! a Lerch series. (w + j)^(−s) = ∫ x^(s−1) e^(−(w+j)x) dx/Γ(s), so that V = ∫ x^(s−1) e^(−wx)/(1 −
+//! e^(iθ−x)) dx/Γ(s); the pole at x = iθ gives w^(1−s)·e^z E_s(z), z = −iθw, an exponential
+//! integral (DLMF 8.19), and Taylor's series of the regular rest R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ about
+//! ζ = −iθ gives w^(−s)·(R + R′·s/w + …), term by term. It is the Euler–Maclaurin sum at θ = 0 (a
+//! direction along the board's diagonal), and Boole's at θ = π.
 //!
-//! Where m hardly changes along N crossings, the n-th mode is at most n^−3 of the sum of all sizes, so that a few hundred are enough. Σ_j is then what one
-//! Lerch series has more than another that begins where the edge ends; or a geometric sum, where m does not change.
+//! Where m hardly changes along N crossings, the n-th mode is at most n^−3 of the sum of all sizes,
+//! so that a few hundred are enough. Σ_j is then what one Lerch series has more than another that
+//! begins where the edge ends; or a geometric sum, where m does not change.
 
 use super::super::budget::Budget;
 use super::crossings::{LineCrossings, Series};
@@ -25,32 +30,40 @@ use std::f64::consts::PI;
 
 /// What is neglected of the modes, as a part of the bound that is asked for.
 const NEGLECTED: f64 = 1e-3;
-/// Where m changes by less than one part in so many, it is taken to be the same at all crossings; the bound adds 4/STEADY of the sum for that, which is 1e-6 of
-/// something that is itself small where crossings are many. (Measured: a quarter and four times as much change no bound.)
+/// Where m changes by less than one part in so many, it is taken to be the same at all crossings;
+/// the bound adds 4/STEADY of the sum for that, which is 1e-6 of something that is itself small
+/// where crossings are many. (Measured: a quarter and four times as much change no bound.)
 const STEADY: f64 = 3e6;
 /// The terms of X that are summed by Fourier modes; later terms are only bounded.
 const MODE_TERMS: usize = 3;
 
-/// Up to so many crossings are added one by one: 60 µs, at 3 ns each. (Measured: with 5000 or 80,000 times differ by less than a tenth.)
+/// Up to so many crossings are added one by one: 60 µs, at 3 ns each. (Measured: with 5000 or
+/// 80,000 times differ by less than a tenth.)
 const SHORT: f64 = 20_000.0;
-/// No more crossings than these, nor modes, are added for an edge: that takes some milliseconds. Of the rest the bound says how much it may be.
+/// No more crossings than these, nor modes, are added for an edge: that takes some milliseconds. Of
+/// the rest the bound says how much it may be.
 const MOST: f64 = 300_000.0;
 /// The time that a mode takes, in crossings: 12 ns against 3, as measured.
 const MODE_COST: f64 = 4.0;
-/// The modes up to this one are always computed; a later one may be skipped where it is small. (Measured: with 7 a horizon takes up to a fifth longer, and with 123 no less.)
+/// The modes up to this one are always computed; a later one may be skipped where it is small.
+/// (Measured: with 7 a horizon takes up to a fifth longer, and with 123 no less.)
 const FIRST_MODES: f64 = 31.0;
-/// Shares of the tolerance, which together are less than all of it: of a sum that is left out, and as much for modes that are; of the modes beyond the last one; of
-/// what V_s lacks in the first term of X, and of the terms that have no modes. (Measured: the last two, a quarter and four times as great, change times by less than a tenth.)
+/// Shares of the tolerance, which together are less than all of it: of a sum that is left out, and
+/// as much for modes that are; of the modes beyond the last one; of what V_s lacks in the first
+/// term of X, and of the terms that have no modes. (Measured: the last two, a quarter and four
+/// times as great, change times by less than a tenth.)
 const LEFT_OUT: f64 = 0.25;
 const BEYOND: f64 = 0.6;
 const LACKING: f64 = 0.02;
 const LATER: f64 = 0.05;
 /// The series in 1/w is not used below this w: its terms fall by s/w and more, to a third each.
 const LEAST_W: f64 = 16.0;
-/// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and at least this part of it; a computed cosine leaves little of it.
+/// Below this |θ|, 2 − 2cos θ is θ² to within θ²/12, a third of a percent, and at least this part
+/// of it; a computed cosine leaves little of it.
 const SMALL_ANGLE: f64 = 0.2;
 const PART_OF_SQUARE: f64 = 0.99;
-/// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is 100 roundings of the 500 that V may be off by.
+/// Up to this |θ| Taylor's series stand for the rest of the pole: the next term, θ⁹/47900160, is
+/// 100 roundings of the 500 that V may be off by.
 const NEAR_POLE: f64 = 0.2;
 /// Units of work (some 50 ns each) for a crossing, and for a mode.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
@@ -123,7 +136,8 @@ fn start(all: &LineCrossings, series: &Series, tolerance: f64) -> f64 {
     // The cheapest: (m − m_0)/g crossings and κ/2m modes.
     let kappa = (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // Where so little is left that it may be neglected, the first term's bound being ½/π of its factor.
+    // Where so little is left that it may be neglected, the first term's bound being ½/π of its
+    // factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * LEFT_OUT * tolerance)).sqrt() + g;
     // What is neglected of a mode is w^−5, of the terms from A_5 on m^−5.
     let steep = g * libm::pow(factor / (g * g * g) / (LACKING * tolerance), 0.2);
@@ -163,7 +177,8 @@ fn rest(
     }
     let w = depth / g;
     let f = &series.factors;
-    // The amplitudes of X's first three terms in the mode n = 1, in which w^(−2−k) is still missing.
+    // The amplitudes of X's first three terms in the mode n = 1, in which w^(−2−k) is still
+    // missing.
     let mut amplitudes = [0.0; MODE_TERMS];
     let mut amplitude = 4.0 / (PI * PI * PI) / (g * g * g);
     for k in 1..=MODE_TERMS.min(series.terms) {
@@ -190,7 +205,8 @@ fn rest(
             bound: everything,
         };
     }
-    // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance that falls as n^−2.
+    // By Abel |V_3| ≤ 2w^−3/|1 − e^iθ|: a late mode n is skipped where this is below an allowance
+    // that falls as n^−2.
     let allowance = LEFT_OUT * tolerance * 2.0 * (FIRST_MODES - 1.0);
     let skipped = LEFT_OUT * tolerance;
     let threshold = 2.0 * first * all_terms * u3 / allowance;
@@ -235,7 +251,8 @@ fn rest(
     let later: f64 = (4..=series.terms)
         .map(|k| absolute(series, k, depth, g))
         .sum();
-    // The integrals are good to 1e-14, which is 90 units in the last place, and V to 500 for certain, of w^−2; rotation adds n of them, to the n-th mode.
+    // The integrals are good to 1e-14, which is 90 units in the last place, and V to 500 for
+    // certain, of w^−2; rotation adds n of them, to the n-th mode.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     Sum {
         value,
@@ -275,7 +292,8 @@ fn rest_of_pole(theta: f64, turn: Complex) -> (f64, f64) {
     (0.5 * turn[1] * gap - inverse, 0.5 * gap - inverse * inverse)
 }
 
-/// Σ (−1)^j X for an edge on which m does not double. It is at most `trivial`, and as much as `tolerance` of it may be neglected.
+/// Σ (−1)^j X for an edge on which m does not double. It is at most `trivial`, and as much as
+/// `tolerance` of it may be neglected.
 fn level(
     all: &LineCrossings,
     series: &Series,
@@ -297,7 +315,8 @@ fn level(
         amplitude *= u / PI;
     }
     let neglected = (NEGLECTED * budget.tolerance).max(LATER * tolerance);
-    // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π² n^−3.
+    // Σ n^−3 over the odd n beyond Q is at most 1/4Q²; of the trivial bound a mode is at most 8/π²
+    // n^−3.
     let last = ((trivial / neglected).sqrt().ceil() + 1.0).clamp(3.0, MOST);
     let beyond = trivial / (4.0 * (last - 1.0) * (last - 1.0));
     if beyond.is_nan() || beyond >= trivial || !budget.spend(last * MODE_WORK) {
@@ -315,8 +334,9 @@ fn level(
         true => [ends[0], ends[1].map(|x| -x)],
         false => ends,
     };
-    // By Abel Σ_j of a mode is at most 2/|1 − e^iθ| by its first term, and that π/|θ|. All modes that are left out for it together are not
-    // much more than is neglected anyhow: Σ n^−2 over the odd n is π²/8.
+    // By Abel Σ_j of a mode is at most 2/|1 − e^iθ| by its first term, and that π/|θ|. All modes
+    // that are left out for it together are not much more than is neglected anyhow: Σ n^−2 over
+    // the odd n is π²/8.
     let abel = PI
         * amplitudes
             .iter()
@@ -349,9 +369,10 @@ fn level(
     let later: f64 = (MODE_TERMS + 1..=series.terms).map(size).sum();
     // m^−s is off by s·gN/2m from its value in the middle.
     let unsteady = if is_steady { 4.0 / STEADY } else { 0.0 };
-    // To reach the mode n the place of an end is turned n/2 times, by products of four roundings: 4n for two ends, and as many for the steps that they are turned by.
-    // A mode has some 30 operations of its own, at either end. The series of Lerch are good to
-    // some 500 units in the last place of w/2 times their first term, and lack up to 0.04·s(s + 1)/w²; there are two.
+    // To reach the mode n the place of an end is turned n/2 times, by products of four roundings:
+    // 4n for two ends, and as many for the steps that they are turned by. A mode has some 30
+    // operations of its own, at either end. The series of Lerch are good to some 500 units in
+    // the last place of w/2 times their first term, and lack up to 0.04·s(s + 1)/w²; there are two.
     let lerch = if is_steady {
         0.0
     } else {
@@ -438,7 +459,8 @@ mod tests {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {
-                // Of what lerch neglects, 0.04·s(s + 1)/w², 5e-8 is left; 500 roundings of w/2 are 3e-10.
+                // Of what lerch neglects, 0.04·s(s + 1)/w², 5e-8 is left; 500 roundings of w/2 are
+                // 3e-10.
                 close(found, one_by_one(theta, 5000.0, 3000.0, s), 1e-7);
             }
         }

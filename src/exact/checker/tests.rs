@@ -1,4 +1,5 @@
-//! The board's integral against a sum over squares that shares nothing with it, against itself in pieces, and at the horizon.
+//! The board's integral against a sum over squares that shares nothing with it, against itself in
+//! pieces, and at the horizon.
 
 use std::sync::atomic::AtomicBool;
 
@@ -20,8 +21,8 @@ impl Homography {
     }
 }
 
-/// What a level camera sees: its height in squares, its focal length in pixels, where it looks in degrees, and the pixel's
-/// place from the centre of the horizon, rightwards and downwards.
+/// What a level camera sees: its height in squares, its focal length in pixels, where it looks in
+/// degrees, and the pixel's place from the centre of the horizon, rightwards and downwards.
 #[derive(Clone, Copy, Debug)]
 struct View {
     height: f64,
@@ -92,7 +93,8 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Every square on its own: its corners brought to the picture, and what is left of it between the polygon's sides.
+/// Every square on its own: its corners brought to the picture, and what is left of it between the
+/// polygon's sides.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -186,7 +188,8 @@ fn pixels_of_many_squares() {
     }
 }
 
-/// A view so wide that a pixel sees near squares far to the side: rows of hundreds, cut by sides of all slopes.
+/// A view so wide that a pixel sees near squares far to the side: rows of hundreds, cut by sides of
+/// all slopes.
 #[test]
 fn wide_views() {
     for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
@@ -207,7 +210,8 @@ fn wide_views() {
     }
 }
 
-/// Squares so small that an edge crosses a million lines, from above and aslant, beside the same in pieces that cross fewer.
+/// Squares so small that an edge crosses a million lines, from above and aslant, beside the same in
+/// pieces that cross fewer.
 #[test]
 fn a_million_lines() {
     for (turn, tilt) in [
@@ -299,8 +303,9 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// What a pixel far to the side sees in the limit of a view of 180 degrees: one straight line on the floor, a and b both linear
-/// in q = height·x/y. Between the places where one of them is whole, the parts of the polygon that q cuts out.
+/// What a pixel far to the side sees in the limit of a view of 180 degrees: one straight line on
+/// the floor, a and b both linear in q = height·x/y. Between the places where one of them is whole,
+/// the parts of the polygon that q cuts out.
 fn brute_limit(view: &View, polygon: &[DVec2], most: f64) -> (f64, f64) {
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
@@ -345,8 +350,9 @@ fn widest(focal: f64, degrees: f64) -> View {
     }
 }
 
-/// In the widest of views squares are so many, and a pixel sees so narrow a strip of them, that roundings are not small by what they displace points: a and b
-/// hardly differ but by a factor. Below the horizon, and with it.
+/// In the widest of views squares are so many, and a pixel sees so narrow a strip of them, that
+/// roundings are not small by what they displace points: a and b hardly differ but by a factor.
+/// Below the horizon, and with it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {

@@ -23,8 +23,9 @@ pub struct Client {
 }
 
 impl Client {
-    /// What a client says of itself in the parameters of `initialize`. The fields are looked up one by one: to read all that a client may say
-    /// would take a twentieth of the whole program's compilation.
+    /// What a client says of itself in the parameters of `initialize`. The fields are looked up one
+    /// by one: to read all that a client may say would take a twentieth of the whole program's
+    /// compilation.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));
@@ -42,7 +43,8 @@ impl Client {
     }
 }
 
-/// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it says nothing.
+/// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it
+/// says nothing.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),

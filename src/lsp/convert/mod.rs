@@ -1,4 +1,5 @@
-//! From the editor's answers to those of the protocol, and back. Their kinds are numbers, whose names in the protocol stand beside them.
+//! From the editor's answers to those of the protocol, and back. Their kinds are numbers, whose
+//! names in the protocol stand beside them.
 
 mod client;
 mod completion;

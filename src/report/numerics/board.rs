@@ -1,4 +1,5 @@
-//! Planes and checkerboards: horizons, integers, great heights and distances, and surfaces in one plane.
+//! Planes and checkerboards: horizons, integers, great heights and distances, and surfaces in one
+//! plane.
 
 use glam::{DVec3, dvec3};
 
@@ -91,7 +92,8 @@ fn displaced(random: &mut Random) -> Input {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left corner shows that of a square.
+/// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left
+/// corner shows that of a square.
 fn corners(random: &mut Random) -> Input {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

@@ -1,4 +1,5 @@
-//! The camera: nearly parallel up vectors, directions of all lengths, rolls, lenses, and wide pictures.
+//! The camera: nearly parallel up vectors, directions of all lengths, rolls, lenses, and wide
+//! pictures.
 
 use glam::{DVec3, dvec3};
 
@@ -34,7 +35,8 @@ fn nearly_parallel(random: &mut Random) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // Up is as near to the view direction as f64s have it; where they are all equal, the world's axes have room.
+    // Up is as near to the view direction as f64s have it; where they are all equal, the world's
+    // axes have room.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -66,8 +68,9 @@ fn lengths(random: &mut Random) -> Camera {
 
 /// A world behind lenses that see nearly everything, and behind those that see next to nothing.
 ///
-/// The widest ones make of whole rows of the picture rays that are parallel to the board up to d. That is a tie from 2^−90 on,
-/// which we take for one from 2^−310 on, the oracle from 2^−500 on: lenses between are not asked.
+/// The widest ones make of whole rows of the picture rays that are parallel to the board up to d.
+/// That is a tie from 2^−90 on, which we take for one from 2^−310 on, the oracle from 2^−500 on:
+/// lenses between are not asked.
 fn lenses(random: &mut Random) -> Input {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);

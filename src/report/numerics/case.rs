@@ -23,9 +23,11 @@ pub struct Case {
 /// What questions are asked of.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Subject {
-    /// What is seen in a scene, of which many questions are asked: errors of distances and points are counted in units in the last place.
+    /// What is seen in a scene, of which many questions are asked: errors of distances and points
+    /// are counted in units in the last place.
     Seen(fn(&mut Random) -> Input),
-    /// The axes of a camera: errors of the components of unit vectors are counted in units of 2^−53.
+    /// The axes of a camera: errors of the components of unit vectors are counted in units of
+    /// 2^−53.
     Axes(fn(&mut Random) -> Camera),
 }
 
@@ -62,7 +64,8 @@ pub(super) struct Input {
     bits: usize,
     /// Makes points of the picture: anywhere if nothing is said.
     points: Box<dyn Fn(&mut Random) -> Point>,
-    /// How many of the questions are asked there, in halves of all; the others close to boundaries.
+    /// How many of the questions are asked there, in halves of all; the others close to
+    /// boundaries.
     halves: u64,
 }
 

@@ -19,7 +19,8 @@ pub const CASES: &[Case] = &[
     Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
-/// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the planes x = e_x and y = e_y.
+/// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the
+/// planes x = e_x and y = e_y.
 fn in_planes(random: &mut Random) -> Input {
     let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
     let max = min + random.wholes([1; 3], [9; 3]) / 4.0;

@@ -12,7 +12,8 @@ use crate::sampling::{
 /// A point of a picture: along each axis a pixel's column or row, and an offset from its centre.
 pub type Point = [(u32, f64); 2];
 
-/// The coordinates on either side of the middle of a picture of the usual size, the second one upon it.
+/// The coordinates on either side of the middle of a picture of the usual size, the second one upon
+/// it.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
 /// Numbers that are a function of a case and a block of its inputs.
@@ -70,7 +71,8 @@ impl Random {
         }))
     }
 
-    /// A point of a box whose coordinates are whole numbers. An axis along which it has no length takes no number.
+    /// A point of a box whose coordinates are whole numbers. An axis along which it has no length
+    /// takes no number.
     pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| match low[axis] == high[axis] {
             true => low[axis] as f64,

@@ -30,8 +30,9 @@ fn silhouettes(random: &mut Random) -> Input {
     input(camera, &[shape])
 }
 
-/// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of the rays in that plane, which
-/// are those of the middle of the picture, none meets the sphere, and of those on the other side of it one next to it does.
+/// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of
+/// the rays in that plane, which are those of the middle of the picture, none meets the sphere, and
+/// of those on the other side of it one next to it does.
 fn touches(random: &mut Random) -> Input {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();

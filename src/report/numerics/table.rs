@@ -41,8 +41,8 @@ impl Table {
         self.inputs() == self.planned
     }
 
-    /// The same for programs. An error that is no number, as of a distance that is not found at all, is null, as are what was
-    /// not measured and what a case does not ask.
+    /// The same for programs. An error that is no number, as of a distance that is not found at
+    /// all, is null, as are what was not measured and what a case does not ask.
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|Row { case, tally }| {
             let side = |i: usize| {
@@ -97,7 +97,8 @@ impl fmt::Display for Table {
     }
 }
 
-/// A row: the case, what is hard about it, wrong decisions and errors of the textbook and of Pinhole, and the bound.
+/// A row: the case, what is hard about it, wrong decisions and errors of the textbook and of
+/// Pinhole, and the bound.
 fn cells(Row { case, tally }: &Row) -> [String; 7] {
     let [theirs, ours] = match case.decides() {
         true => [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])],

@@ -1,6 +1,7 @@
 //! What is seen at a sample point by the formulas of a textbook.
 //!
-//! Rays have unit directions, triangles an epsilon, and squares the parity of two floors. It stands here to be compared with.
+//! Rays have unit directions, triangles an epsilon, and squares the parity of two floors. It stands
+//! here to be compared with.
 
 use glam::{DVec2, DVec3};
 
@@ -37,7 +38,8 @@ pub struct Seen {
     pub point: DVec3,
 }
 
-/// Determinants below this are taken for zero, as Möller and Trumbore's own program does with 10⁻⁶, and most since with this.
+/// Determinants below this are taken for zero, as Möller and Trumbore's own program does with 10⁻⁶,
+/// and most since with this.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {

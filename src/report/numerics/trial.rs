@@ -80,7 +80,8 @@ pub(super) struct Trial {
 /// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
 const MEASURED: u64 = 16;
 
-/// One of so many boundaries is found by the oracle: to do so takes some six times as long as to ask beside it.
+/// One of so many boundaries is found by the oracle: to do so takes some six times as long as to
+/// ask beside it.
 const BY_THE_ORACLE: u64 = 8;
 
 impl Trial {
@@ -127,8 +128,8 @@ impl Trial {
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
-    /// Measures the distance and the point that are seen through a point of the picture, in units of the last place: of the distance,
-    /// and of the greatest coordinate.
+    /// Measures the distance and the point that are seen through a point of the picture, in units
+    /// of the last place: of the distance, and of the greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut Tally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -167,9 +168,10 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s on both sides of each, and
-    /// at distances from it that are spread evenly on a logarithmic scale. Most of them are found by our own decisions, and some by the
-    /// oracle's, in case we should not see that there is one.
+    /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s
+    /// on both sides of each, and at distances from it that are spread evenly on a logarithmic
+    /// scale. Most of them are found by our own decisions, and some by the oracle's, in case we
+    /// should not see that there is one.
     pub fn boundaries(&self, random: &mut Random, count: u64, tally: &mut Tally) {
         let end = tally.inputs + count;
         // A picture without a boundary is asked anywhere.
@@ -190,7 +192,8 @@ impl Trial {
         }
     }
 
-    /// A place where what is seen changes along a row (axis 0) or column (axis 1): a pixel, and the last offset before.
+    /// A place where what is seen changes along a row (axis 0) or column (axis 1): a pixel, and the
+    /// last offset before.
     fn boundary(
         &self,
         random: &mut Random,

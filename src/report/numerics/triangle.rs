@@ -1,4 +1,5 @@
-//! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the eye.
+//! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the
+//! eye.
 
 use glam::{DVec3, dvec3};
 
@@ -47,8 +48,9 @@ fn slivers(random: &mut Random) -> Input {
     input(camera, &[shape])
 }
 
-/// Two triangles, the second one the first turned by 180° about the middle of one of its edges. With these sides the vertices
-/// lie at (∓9, −4) and (0, 8) from the centroid, so the edges are shared exactly where the plane is one of the world's.
+/// Two triangles, the second one the first turned by 180° about the middle of one of its edges.
+/// With these sides the vertices lie at (∓9, −4) and (0, 8) from the centroid, so the edges are
+/// shared exactly where the plane is one of the world's.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
 /// Centroids of the turned triangle for each edge, and points of that edge, as seen from the first centroid.

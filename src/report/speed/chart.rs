@@ -1,7 +1,8 @@
 //! Error against time and against samples, as SVG.
 //!
-//! Both axes are logarithmic. A line is labelled at its end, so that nobody has to look up a legend, and its marker and dash say in
-//! black and white what its colour says otherwise. Black is written as the current colour, so that a page may be dark.
+//! Both axes are logarithmic. A line is labelled at its end, so that nobody has to look up a
+//! legend, and its marker and dash say in black and white what its colour says otherwise. Black is
+//! written as the current colour, so that a page may be dark.
 
 use std::ops::Range;
 
@@ -26,7 +27,8 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is 400 of its pixels wide.
+/// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is
+/// 400 of its pixels wide.
 const SIZE: (u32, u32) = (560, 440);
 
 /// Room at the right for the labels, the longest of which is `multi_jittered`.
@@ -170,8 +172,8 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
     canvas.present()
 }
 
-/// The vertical line of the exact method, with an arrow to where its error lies; its name stands where the lines of the others are not, which
-/// come from the top left and go to the bottom right.
+/// The vertical line of the exact method, with an arrow to where its error lies; its name stands
+/// where the lines of the others are not, which come from the top left and go to the bottom right.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -205,7 +207,8 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     }
 }
 
-/// A logarithmic axis with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where those would be many, and lines at all digits.
+/// A logarithmic axis with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where
+/// those would be many, and lines at all digits.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;

@@ -22,7 +22,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Whether two times are so close that the runs do not tell which is less: one lies within the spread of the other's runs.
+    /// Whether two times are so close that the runs do not tell which is less: one lies within the
+    /// spread of the other's runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
@@ -37,8 +38,9 @@ pub struct Ranking {
 }
 
 impl Measurement {
-    /// What an error takes of a sampled method. None if more samples do not help, or if the reference is not known well enough to tell such an error
-    /// from none: by the root of the mean of its bounds' squares, since errors are such means.
+    /// What an error takes of a sampled method. None if more samples do not help, or if the
+    /// reference is not known well enough to tell such an error from none: by the root of the
+    /// mean of its bounds' squares, since errors are such means.
     pub fn estimate(&self, series: &Series, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
@@ -60,7 +62,8 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// The methods that come to an error. What is extrapolated comes after all that was measured, however fast it seems.
+    /// The methods that come to an error. What is extrapolated comes after all that was measured,
+    /// however fast it seems.
     pub fn ranking(&self, error: f64) -> Ranking {
         let sampled = self.series.iter();
         let sampled = sampled.filter_map(|it| Some((it.method, self.estimate(it, error)?)));
@@ -87,9 +90,11 @@ impl Measurement {
 type Step = (f64, Run);
 
 impl Series {
-    /// Errors are taken to fall as a power of the samples: between two numbers of samples that were measured by the line in logarithms through both,
-    /// beyond the last with the slope of the line through the last three, as with few samples errors may fall at another rate: `scatter` leaves pixels
-    /// empty then. Times are taken to grow evenly with the samples. Where the least number is enough, it is that.
+    /// Errors are taken to fall as a power of the samples: between two numbers of samples that were
+    /// measured by the line in logarithms through both, beyond the last with the slope of the
+    /// line through the last three, as with few samples errors may fall at another rate: `scatter`
+    /// leaves pixels empty then. Times are taken to grow evenly with the samples. Where the
+    /// least number is enough, it is that.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&Point) -> Run| {
             let steps = self.points.iter();
@@ -131,7 +136,8 @@ impl Series {
         })
     }
 
-    /// The samples that an error takes between that of a few, which is greater, and that of many, which is not.
+    /// The samples that an error takes between that of a few, which is greater, and that of many,
+    /// which is not.
     fn between(&self, (few, of_few): &Step, (many, of_many): &Step, error: f64) -> f64 {
         let share = match of_many.error == 0.0 {
             // Without any error, these are enough for whatever is asked for.
@@ -146,8 +152,9 @@ impl Series {
     }
 }
 
-/// The next number of samples that is a square or the product of two neighbours. What lies between such numbers holds for them alone where the method
-/// makes a grid of as many cells, which of a prime number is a single row.
+/// The next number of samples that is a square or the product of two neighbours. What lies between
+/// such numbers holds for them alone where the method makes a grid of as many cells, which of a
+/// prime number is a single row.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let grids = [
@@ -159,7 +166,8 @@ fn oblong(per_pixel: f64) -> f64 {
     grids.find(|&grid| grid >= per_pixel).unwrap_or(per_pixel)
 }
 
-/// The time that so many samples take, no fewer than the first step's: by the line between the steps on either side, or between the first and the last.
+/// The time that so many samples take, no fewer than the first step's: by the line between the
+/// steps on either side, or between the first and the last.
 fn time_at(steps: &[Step], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();

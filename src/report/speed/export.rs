@@ -11,8 +11,9 @@ use super::{
     summary::verdicts,
 };
 
-/// A row of the CSV file. Times are medians in seconds, CPU times unless they are called wall; errors are in linear light. The exact method has a row
-/// without samples, and a bound in place of an error.
+/// A row of the CSV file. Times are medians in seconds, CPU times unless they are called wall;
+/// errors are in linear light. The exact method has a row without samples, and a bound in place of
+/// an error.
 #[derive(Default, Serialize)]
 struct Row {
     method: &'static str,

@@ -1,4 +1,5 @@
-//! How a method is drawn: a colour, a marker and a dash, each of which tells it from the others nearby on its own.
+//! How a method is drawn: a colour, a marker and a dash, each of which tells it from the others
+//! nearby on its own.
 
 use std::io;
 

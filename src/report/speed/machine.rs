@@ -7,7 +7,8 @@ use crate::files::read_system_text;
 /// A machine, as far as it matters for times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// The processor's model, as the system names it; its architecture where the system does not say.
+    /// The processor's model, as the system names it; its architecture where the system does not
+    /// say.
     pub processor: String,
     /// How many processors this process may use.
     pub processors: usize,

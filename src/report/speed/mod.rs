@@ -1,8 +1,9 @@
 //! Speed against error, method by method.
 //!
-//! In: a scene and a [`Request`]: the methods, how many samples and runs. [`measure`] times renders and compares them with the exact picture. Out:
-//! a [`Measurement`], plain data. [`text()`] makes a table of it for a terminal, [`to_csv`] and [`to_json`] make files for
-//! programs, [`against_time`] and [`against_samples`] charts, and [`page()`] makes HTML with all of that and pictures.
+//! In: a scene and a [`Request`]: the methods, how many samples and runs. [`measure`] times renders
+//! and compares them with the exact picture. Out: a [`Measurement`], plain data. [`text()`] makes a
+//! table of it for a terminal, [`to_csv`] and [`to_json`] make files for programs, [`against_time`]
+//! and [`against_samples`] charts, and [`page()`] makes HTML with all of that and pictures.
 
 mod chart;
 mod estimate;

@@ -6,7 +6,8 @@ use crate::numbers;
 /// What stands for a number that is not known.
 pub const UNKNOWN: &str = "–";
 
-/// An error that somebody asks for, in full: as a fraction of light where that is shorter, such as 1/256.
+/// An error that somebody asks for, in full: as a fraction of light where that is shorter, such as
+/// 1/256.
 pub fn asked_error(error: f64) -> String {
     let decimal = match error < 1e-4 {
         true => format!("{error:e}"),
@@ -70,7 +71,8 @@ pub fn plural(count: usize, what: &str) -> String {
     }
 }
 
-/// So many significant digits, zeros at the end included; what is very large or small has an exponent.
+/// So many significant digits, zeros at the end included; what is very large or small has an
+/// exponent.
 fn significant(number: f64, digits: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();

@@ -1,6 +1,8 @@
-//! The measurements as one page of HTML: for each scene which method to use, the charts, the table and the pictures.
+//! The measurements as one page of HTML: for each scene which method to use, the charts, the table
+//! and the pictures.
 //!
-//! The page stands alone: its charts are inline SVG, its pictures `data:` URIs, and it runs nothing. It is well-formed XML as well.
+//! The page stands alone: its charts are inline SVG, its pictures `data:` URIs, and it runs
+//! nothing. It is well-formed XML as well.
 
 use std::{fmt::Write, io};
 
@@ -17,7 +19,8 @@ use crate::{
     film::{self, Film},
 };
 
-/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays small.
+/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays
+/// small.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// The page, with a section for each scene.
@@ -88,7 +91,8 @@ fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &Shown)> {
     shown.collect()
 }
 
-/// Which part of the picture is shown of every method, and that part as the exact method and the others make it; nothing without the others.
+/// Which part of the picture is shown of every method, and that part as the exact method and the
+/// others make it; nothing without the others.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = shown_methods(measured);
     let Some(&(first, &Shown { part, .. })) = shown.first() else {

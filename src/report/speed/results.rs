@@ -80,11 +80,13 @@ pub struct Point {
 /// A render that was timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
-    /// CPU time of the whole process in seconds, all threads together. NaN where the system does not tell.
+    /// CPU time of the whole process in seconds, all threads together. NaN where the system does
+    /// not tell.
     pub cpu: f64,
     /// From the beginning to the end by the clock, in seconds.
     pub wall: f64,
-    /// The root of the mean squared difference to the exact picture, in linear light. NaN of the exact method, whose error has a bound instead.
+    /// The root of the mean squared difference to the exact picture, in linear light. NaN of the
+    /// exact method, whose error has a bound instead.
     pub error: f64,
 }
 
@@ -104,7 +106,8 @@ pub struct Shown {
 }
 
 impl Run {
-    /// Some renders as one: with the median times, and the error of all together, the root of the mean of their squares.
+    /// Some renders as one: with the median times, and the error of all together, the root of the
+    /// mean of their squares.
     pub fn typical(runs: &[Self]) -> Self {
         let all = |pick: fn(&Self) -> f64| runs.iter().map(pick).collect::<Vec<_>>();
         Self {
@@ -132,7 +135,8 @@ impl Series {
         PowerLaw::fit(&points)
     }
 
-    /// So many samples per pixel take about this CPU time, between the numbers of samples that were measured.
+    /// So many samples per pixel take about this CPU time, between the numbers of samples that were
+    /// measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[Point]| pair[1].typical().cpu > cpu;

@@ -1,9 +1,11 @@
 //! Renders are timed and compared with the exact picture.
 //!
-//! The exact picture comes first: it is the reference, and it warms the machine up, so that its time does not count. A round then renders by every
-//! method with every number of samples once; the first one with ever more of them, as long as there is time for a few such rounds, each further
-//! one in an order that is shuffled anew by a fixed rule, so that what else the machine does falls on all of them alike. What is timed is the way
-//! from the scene in memory to the film in memory: preparing the objects and the samples, starting the threads, rendering. Neither reading the
+//! The exact picture comes first: it is the reference, and it warms the machine up, so that its
+//! time does not count. A round then renders by every method with every number of samples once; the
+//! first one with ever more of them, as long as there is time for a few such rounds, each further
+//! one in an order that is shuffled anew by a fixed rule, so that what else the machine does falls
+//! on all of them alike. What is timed is the way from the scene in memory to the film in memory:
+//! preparing the objects and the samples, starting the threads, rendering. Neither reading the
 //! scene nor comparing nor encoding is.
 
 use std::time::{Duration, Instant};
@@ -25,18 +27,21 @@ use crate::{
     tracer::World,
 };
 
-/// The samples are so many powers of 4 at least, as a slope through fewer points has no standard error, and so many at most.
+/// The samples are so many powers of 4 at least, as a slope through fewer points has no standard
+/// error, and so many at most.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// So many runs are wanted, as the median of fewer is one that something else may have delayed, and no more than so many are made.
+/// So many runs are wanted, as the median of fewer is one that something else may have delayed, and
+/// no more than so many are made.
 const RUNS: (u64, u64) = (3, 9);
 
-/// The pictures are shown that the methods make in the CPU time in which the slowest one takes so many samples per pixel:
-/// enough for the methods to differ, few enough for the eye to see it.
+/// The pictures are shown that the methods make in the CPU time in which the slowest one takes so
+/// many samples per pixel: enough for the methods to differ, few enough for the eye to see it.
 const SHOWN: u64 = 16;
 
-/// Measures what is asked for. When it is cancelled, what was measured until then comes out, marked as interrupted; before the exact picture there
-/// is nothing. `progress` is told after each render what share of the whole is done; that of `control` is not.
+/// Measures what is asked for. When it is cancelled, what was measured until then comes out, marked
+/// as interrupted; before the exact picture there is nothing. `progress` is told after each render
+/// what share of the whole is done; that of `control` is not.
 pub fn measure(
     subject: &Subject,
     scene: &Scene,
@@ -106,7 +111,8 @@ struct Session<'a> {
     measured: Measurement,
 }
 
-/// What a round renders: the place of a series and that of a point in it, or the exact picture if there is none.
+/// What a round renders: the place of a series and that of a point in it, or the exact picture if
+/// there is none.
 type Task = Option<(usize, usize)>;
 
 impl Session<'_> {
@@ -150,7 +156,8 @@ impl Session<'_> {
                 self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
-            // A time is the sum of one that does not depend on the samples, and one that is four times as long for four times as many.
+            // A time is the sum of one that does not depend on the samples, and one that is four
+            // times as long for four times as many.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -175,7 +182,8 @@ impl Session<'_> {
         let measured = &mut self.measured;
         if let Some((series, point)) = task {
             let per_pixel = measured.rungs[point];
-            // Each run has a seed of its own, as has each number of samples in it: neither are the runs alike, nor do the points of a line err together.
+            // Each run has a seed of its own, as has each number of samples in it: neither are the
+            // runs alike, nor do the points of a line err together.
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
@@ -247,7 +255,8 @@ impl Session<'_> {
     }
 }
 
-/// Renders by a method with so many samples per pixel and a seed, of which the exact method takes none.
+/// Renders by a method with so many samples per pixel and a seed, of which the exact method takes
+/// none.
 fn rendered(
     scene: &Scene,
     method: Method,
@@ -264,7 +273,8 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// The largest part that is shown: several stand beside each other on a page, and a sample's noise is to be seen.
+/// The largest part that is shown: several stand beside each other on a page, and a sample's noise
+/// is to be seen.
 const PART: (u32, u32) = (240, 135);
 
 /// The part of a picture where it is most wrong, in steps of half its size.
@@ -287,7 +297,8 @@ fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     Ok(worst)
 }
 
-/// Does work, and tells its times, and no error. Nothing else runs in the process meanwhile, but for a progress bar.
+/// Does work, and tells its times, and no error. Nothing else runs in the process meanwhile, but
+/// for a progress bar.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

@@ -1,6 +1,7 @@
 //! The median, the root mean square, and the straight line of least squares.
 
-/// The median of values in any order: of an even number of them, the mean of the middle two. NaN of no values.
+/// The median of values in any order: of an even number of them, the mean of the middle two. NaN of
+/// no values.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -19,13 +20,15 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 
 /// A power law y = c · x^b, fitted as the line of least squares through the logarithms.
 ///
-/// With k points, x̄ and ȳ the means of the logarithms and S = Σ(x − x̄)², the slope is b = Σ(x − x̄)(y − ȳ) / S and its standard
-/// error √(Σr² / (k − 2) / S), r being the residuals: Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
+/// With k points, x̄ and ȳ the means of the logarithms and S = Σ(x − x̄)², the slope is b = Σ(x −
+/// x̄)(y − ȳ) / S and its standard error √(Σr² / (k − 2) / S), r being the residuals: Draper and
+/// Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
     /// The exponent b.
     pub slope: f64,
-    /// Its standard error; none of fewer than four points, as one residual more than the line has parameters says next to nothing.
+    /// Its standard error; none of fewer than four points, as one residual more than the line has
+    /// parameters says next to nothing.
     pub slope_error: Option<f64>,
 }
 

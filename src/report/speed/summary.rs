@@ -114,7 +114,8 @@ fn per_pixel(estimate: &Estimate) -> String {
     }
 }
 
-/// For each method its slope, and for each of some errors the samples, the CPU time and the wall time that it takes.
+/// For each method its slope, and for each of some errors the samples, the CPU time and the wall
+/// time that it takes.
 pub fn table(measured: &Measurement, errors: &[f64]) -> Table {
     let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
     for wanted in errors.iter().copied().map(asked_error) {
@@ -156,7 +157,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Text from outside as it may stand anywhere: with controls made visible, and without the two characters that XML cannot hold even so.
+/// Text from outside as it may stand anywhere: with controls made visible, and without the two
+/// characters that XML cannot hold even so.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -10,7 +10,8 @@ use super::{
 /// Lines are no longer than this.
 const WIDTH: usize = 100;
 
-/// What was measured, and for each error a table and which method to use; in the end how to read that.
+/// What was measured, and for each error a table and which method to use; in the end how to read
+/// that.
 pub fn text(measured: &Measurement) -> String {
     let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
     let mut text = format!(

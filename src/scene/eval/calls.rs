@@ -283,7 +283,8 @@ impl<'s> Evaluator<'_, 's> {
         fits
     }
 
-    /// Warns of a colour whose parts seem to go from 0 to 1: all are at most 1, and one is a fraction.
+    /// Warns of a colour whose parts seem to go from 0 to 1: all are at most 1, and one is a
+    /// fraction.
     fn unit_parts(&mut self, span: Span, color: Color, arguments: &[Element<'s>]) {
         let parts = color.srgb;
         if parts.iter().any(|part| *part > 1.0) || parts.iter().all(|part| part.fract() == 0.0) {

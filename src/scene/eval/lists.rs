@@ -128,8 +128,8 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// A third number behind two that are written out: the greater one of them, with which sides form a triangle, but not 0, with which there
-/// might be no direction.
+/// A third number behind two that are written out: the greater one of them, with which sides form a
+/// triangle, but not 0, with which there might be no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -139,7 +139,8 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     })
 }
 
-/// The vector of four numbers, if one of the commas stands for a decimal point: the only one without a blank behind it.
+/// The vector of four numbers, if one of the commas stands for a decimal point: the only one
+/// without a blank behind it.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {
         [one, other] => one.value.span.end + 1 == other.value.span.start,

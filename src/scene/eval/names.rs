@@ -27,7 +27,8 @@ pub struct Names<'s> {
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The same names, in order.
     order: Vec<&'s str>,
-    /// Words in what was reported, such as what was to be a name and cannot be one. They stand for nothing, and nothing is said of their uses.
+    /// Words in what was reported, such as what was to be a name and cannot be one. They stand for
+    /// nothing, and nothing is said of their uses.
     pub(super) parts: HashSet<&'s str>,
     /// Every `let` of the file, wherever.
     definitions: HashMap<&'s str, Span>,
@@ -39,7 +40,8 @@ pub struct Names<'s> {
     budget: Budget,
     /// What was reported of names, apart from the other problems, some of which are dropped again.
     pub(in crate::scene) problems: RefCell<Problems>,
-    /// The names that were reported: the next use of the same name is another label of its problem.
+    /// The names that were reported: the next use of the same name is another label of its
+    /// problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
     /// What is suggested in place of names.
     pub(in crate::scene) suggestions: Suggestions<'s>,
@@ -167,7 +169,8 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// The names that are defined so far, to search for the nearest; none if there was enough of searching.
+    /// The names that are defined so far, to search for the nearest; none if there was enough of
+    /// searching.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);

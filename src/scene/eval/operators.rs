@@ -104,7 +104,8 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports operands that do not go together. What would do is offered where it gives what is wanted.
+    /// Reports operands that do not go together. What would do is offered where it gives what is
+    /// wanted.
     fn operand_types(
         &mut self,
         step: &Step<'s>,

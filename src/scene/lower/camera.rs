@@ -39,7 +39,8 @@ impl<'s> Lowering<'s> {
                         .at(block.place("eye"), "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // A camera that looks nowhere is none, for those too who show what there is of a broken scene.
+                // A camera that looks nowhere is none, for those too who show what there is of a
+                // broken scene.
                 view = None;
             }
             (Some(eye), Some(view), Some(seen)) => {
@@ -96,8 +97,9 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // Against up, the top of the picture is the part of the level direction across up; along up, the opposite.
-        // The scale of up does not matter, and its square could be too large.
+        // Against up, the top of the picture is the part of the level direction across up; along
+        // up, the opposite. The scale of up does not matter, and its square could be too
+        // large.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);

@@ -295,8 +295,8 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, from behind the
-    /// `=` on.
+    /// `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, from behind
+    /// the `=` on.
     fn named_block(&mut self, start: Span, name: Name<'s>) {
         let (mut name, mut kind) = (name, self.name());
         let whole = start.to(kind.span);

@@ -1,7 +1,8 @@
-//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near an object is.
+//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near
+//! an object is.
 //!
-//! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of an `f64`. Both conversions are monotone, and
-//! bounds are rounded outwards.
+//! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of
+//! an `f64`. Both conversions are monotone, and bounds are rounded outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -10,10 +11,12 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of pixels at its rim, roundings included, are inside.
+/// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of
+/// pixels at its rim, roundings included, are inside.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred thousand pixels wide is a hundred of them.
+/// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred
+/// thousand pixels wide is a hundred of them.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle in the units of the grid, ends included.
@@ -34,7 +37,8 @@ pub struct Item {
     pub object: u32,
 }
 
-/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, which is ordered as the number is.
+/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, which is ordered as
+/// the number is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 

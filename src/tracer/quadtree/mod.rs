@@ -1,12 +1,15 @@
 //! Which objects may be met at a point of the view plane: a quadtree over their bounds there.
 //!
-//! Since all rays share the eye, a ray is a point of the view plane, and lies in one cell of each level alone: the way down has no
-//! branches. An object is listed in the cells that it overlaps of the level where it is about as large as they are, four of them at most,
-//! so that the lists have no more entries than four times the objects, whatever these look like. Each list begins with what may be
-//! nearest and ends, for a ray that met something already, where the rest is behind that.
+//! Since all rays share the eye, a ray is a point of the view plane, and lies in one cell of each
+//! level alone: the way down has no branches. An object is listed in the cells that it overlaps of
+//! the level where it is about as large as they are, four of them at most, so that the lists have
+//! no more entries than four times the objects, whatever these look like. Each list begins with
+//! what may be nearest and ends, for a ray that met something already, where the rest is behind
+//! that.
 //!
-//! Cells are counted in whole numbers, into which a coordinate's conversion is monotone: what it rounds never separates a point from
-//! bounds that hold it by more than one, and bounds are one wider.
+//! Cells are counted in whole numbers, into which a coordinate's conversion is monotone: what it
+//! rounds never separates a point from bounds that hold it by more than one, and bounds are one
+//! wider.
 
 mod grid;
 mod point_query;
@@ -35,8 +38,9 @@ impl Quadtree {
         Self { grid, tree }
     }
 
-    /// Shows `visit` the objects that a ray may meet, the largest first, until it fails, but for those that are not nearer than it last answered; none for a
-    /// direction outside of the window.
+    /// Shows `visit` the objects that a ray may meet, the largest first, until it fails, but for
+    /// those that are not nearer than it last answered; none for a direction outside of the
+    /// window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -46,8 +50,9 @@ impl Quadtree {
         Some(self.tree.visit(self.grid.units(r)?, visit))
     }
 
-    /// The objects that rays through a patch may meet, in file order, but for those that one hides which fills the patch: `behind` tells what is not
-    /// nearer than one that may. None if they seem to be more than `most`.
+    /// The objects that rays through a patch may meet, in file order, but for those that one hides
+    /// which fills the patch: `behind` tells what is not nearer than one that may. None if they
+    /// seem to be more than `most`.
     pub fn within(
         &self,
         patch: &Patch,

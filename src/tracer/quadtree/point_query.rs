@@ -1,6 +1,7 @@
 //! The point query: the objects that one ray may meet.
 //!
-//! In: a point in the grid. Out: the objects of the cells that hold it, from the root down, each list ended where the rest is hidden.
+//! In: a point in the grid. Out: the objects of the cells that hold it, from the root down, each
+//! list ended where the rest is hidden.
 
 use super::{
     grid::{Item, LEVELS, Nearness},
@@ -8,7 +9,8 @@ use super::{
 };
 
 impl Tree {
-    /// Shows `visit` the objects that the ray through a point may meet, until it fails, but for those that are not nearer than it last answered.
+    /// Shows `visit` the objects that the ray through a point may meet, until it fails, but for
+    /// those that are not nearer than it last answered.
     #[inline]
     pub(super) fn visit<E>(
         &self,

@@ -1,13 +1,15 @@
 //! The rectangle query: the objects that rays through a rectangle may meet.
 //!
-//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those behind one that fills it.
+//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those
+//! behind one that fills it.
 
 use super::{
     grid::{Item, Nearness, Rectangle},
     tree::{CellSquare, Tree},
 };
 
-/// An object is listed in no more cells than this: it is no longer than the cells that list it, and meets two of them along each axis.
+/// An object is listed in no more cells than this: it is no longer than the cells that list it, and
+/// meets two of them along each axis.
 const CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may meet.
@@ -46,7 +48,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         Some(items)
     }
 
-    /// Adds what a cell lists, and then what those below it do: the large objects come first, which may hide the others. None if that is too much.
+    /// Adds what a cell lists, and then what those below it do: the large objects come first, which
+    /// may hide the others. None if that is too much.
     fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {

@@ -1,14 +1,15 @@
 //! The cells of a quadtree, and the objects listed in them.
 //!
-//! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A cell is divided while it holds many objects; an
-//! object larger than its quarters stays in it.
+//! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A
+//! cell is divided while it holds many objects; an object larger than its quarters stays in it.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
 use super::grid::{Item, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
-/// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take the same time within a twentieth.
+/// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take
+/// the same time within a twentieth.
 pub const OBJECTS_A_CELL: usize = 32;
 
 /// Cells, the first of which holds the others.
@@ -36,7 +37,8 @@ impl Tree {
             cells: vec![Cell::EMPTY],
             entries: Vec::new(),
         };
-        // The items of a cell are the last ones; on the way down those of a quarter are put behind them.
+        // The items of a cell are the last ones; on the way down those of a quarter are put behind
+        // them.
         let mut stack = items;
         tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
@@ -128,7 +130,8 @@ impl CellSquare {
         }
     }
 
-    /// Whether an object is as large as the cell's quarters or larger, and so not listed below it: a smaller one meets two of them along each axis.
+    /// Whether an object is as large as the cell's quarters or larger, and so not listed below it:
+    /// a smaller one meets two of them along each axis.
     fn keeps(self, item: &Item) -> bool {
         let Rectangle { low, high } = item.bounds;
         (0..2).any(|axis| high[axis] - low[axis] >= 1 << (self.level - 1))

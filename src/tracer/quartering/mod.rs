@@ -1,4 +1,5 @@
-//! The picture cut into parts that show one colour for certain, pixels of which that is not known, and parts with too many candidates.
+//! The picture cut into parts that show one colour for certain, pixels of which that is not known,
+//! and parts with too many candidates.
 //!
 //! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The
 //! method is Warnock's subdivision ("A hidden surface algorithm for computer generated halftone
@@ -7,7 +8,8 @@
 //! then, or, if those are many, one by one among the objects nearby. Sampled and exact pictures
 //! share it: what is certain of a part is so for every ray through it.
 //!
-//! Areas are those of one fixed grid over the whole picture, whatever part of it is asked for, so that a pixel's candidates do not depend on that.
+//! Areas are those of one fixed grid over the whole picture, whatever part of it is asked for, so
+//! that a pixel's candidates do not depend on that.
 
 #[cfg(test)]
 mod tests;
@@ -22,11 +24,13 @@ use super::{
 };
 use crate::area::Area;
 
-/// The side of the squares that quartering begins with, in pixels: a power of two, so that quarters are squares.
+/// The side of the squares that quartering begins with, in pixels: a power of two, so that quarters
+/// are squares.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// A part is quartered while it has so many samples for each candidate. Measured: 4 and 8 are within a tenth of each other on 10³ and 10⁵ spheres,
-/// where 2 is up to a quarter slower; 3000 slivers with one sample a pixel take half as long with 4 as with 8.
+/// A part is quartered while it has so many samples for each candidate. Measured: 4 and 8 are
+/// within a tenth of each other on 10³ and 10⁵ spheres, where 2 is up to a quarter slower; 3000
+/// slivers with one sample a pixel take half as long with 4 as with 8.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
 /// To find where a candidate is seen, from a square of the grid down, costs as much as so many
@@ -78,7 +82,8 @@ pub struct Scratch {
 }
 
 impl<'a> Quartering<'a> {
-    /// For a prepared scene whose picture is to be known exactly: no part is [`Crowded`](Part::Crowded).
+    /// For a prepared scene whose picture is to be known exactly: no part is
+    /// [`Crowded`](Part::Crowded).
     pub fn new(world: &'a World) -> Self {
         Self::for_samples(world, f64::INFINITY)
     }
@@ -88,7 +93,8 @@ impl<'a> Quartering<'a> {
         Self { world, samples }
     }
 
-    /// Shows `visit` the parts of an area, until it has seen enough. They cover the area, and each pixel once.
+    /// Shows `visit` the parts of an area, until it has seen enough. They cover the area, and each
+    /// pixel once.
     pub fn parts(
         &self,
         wanted: Area,
@@ -123,7 +129,8 @@ impl<'a> Quartering<'a> {
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// The most candidates of an area that are worth to be told apart: a sample for each in a pixel, where the quartering ends.
+    /// The most candidates of an area that are worth to be told apart: a sample for each in a
+    /// pixel, where the quartering ends.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
         (self.samples * shared.max(1.0)) as usize

@@ -26,7 +26,8 @@ fn thousand_spheres(depth: f64) -> Vec<Shape> {
     (0..1000).map(sphere).collect()
 }
 
-/// Large triangles in planes behind each other, in any order, before the first of which nothing lies.
+/// Large triangles in planes behind each other, in any order, before the first of which nothing
+/// lies.
 fn triangles_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
@@ -36,7 +37,8 @@ fn triangles_in_layers(count: usize) -> World {
     world(&(0..count).map(layer).collect::<Vec<_>>())
 }
 
-/// Boards below each other and above each other, of one colour each, in any order; the horizon lies in the picture.
+/// Boards below each other and above each other, of one colour each, in any order; the horizon lies
+/// in the picture.
 fn boards_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let height = 1.0 + (index * 37 % count) as f64 / 64.0;

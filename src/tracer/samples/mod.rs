@@ -2,11 +2,13 @@
 //!
 //! In: a pixel, its candidates, and where its samples lie. Out: how often each colour is seen.
 //!
-//! In a pixel every boundary is a linear or a quadratic form of the offset from the pixel's centre, and each has one bound on the error
-//! of all its values there. So the objects that may be seen in the pixel are written down as a few forms, those that have one sign all
-//! over it are left out, and what is left is evaluated for all samples in plain arrays, which the compiler makes vectors of. A form is
-//! divided by its error bound: beyond ±1 its sign is certain. A sample that is not certain is asked for again on its own, exactly, so
-//! that nothing here can change what is seen: it only says it sooner.
+//! In a pixel every boundary is a linear or a quadratic form of the offset from the pixel's centre,
+//! and each has one bound on the error of all its values there. So the objects that may be seen in
+//! the pixel are written down as a few forms, those that have one sign all over it are left out,
+//! and what is left is evaluated for all samples in plain arrays, which the compiler makes vectors
+//! of. A form is divided by its error bound: beyond ±1 its sign is certain. A sample that is not
+//! certain is asked for again on its own, exactly, so that nothing here can change what is seen: it
+//! only says it sooner.
 
 mod pixel;
 mod prepare;
@@ -20,8 +22,8 @@ use crate::math::SimdWidth;
 
 pub use self::pixel::PreparedPixel;
 
-/// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but a board and that is known, what
-/// is seen of it.
+/// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but
+/// a board and that is known, what is seen of it.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
@@ -43,8 +45,9 @@ pub fn prepare(
     pixel.is_hard = prepared.is_err();
 }
 
-/// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of the palette, each any number
-/// of times. The coordinates of the offsets are two lists, filled up with any others to a multiple of eight.
+/// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of
+/// the palette, each any number of times. The coordinates of the offsets are two lists, filled up
+/// with any others to a multiple of eight.
 pub fn count(
     world: &World,
     pixel: &mut PreparedPixel,

@@ -6,10 +6,12 @@ use super::super::{
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// So many samples are evaluated at a time: their six [`Lanes`], 3 KiB, and their places stay in the first-level cache.
+/// So many samples are evaluated at a time: their six [`Lanes`], 3 KiB, and their places stay in
+/// the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1, its second colour 2i + 2.
+/// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1,
+/// its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
 pub(super) const DOUBT: f64 = -1.0;
 
@@ -23,7 +25,8 @@ pub struct PreparedPixel {
     pub(super) surfaces: Vec<PixelSurface>,
     /// Of all surfaces.
     pub(super) lines: Vec<ScaledLine>,
-    /// How far apart inverse depths must be to be told apart, if surfaces are compared sample by sample.
+    /// How far apart inverse depths must be to be told apart, if surfaces are compared sample by
+    /// sample.
     pub(super) apart: Option<f64>,
     /// Of all surfaces, if they are looked at.
     pub(super) planes: Vec<LocalForm>,
@@ -52,7 +55,8 @@ pub(super) struct ColorCount {
 pub(super) struct PixelSurface {
     /// Its index among the candidates.
     pub(super) index: usize,
-    /// Where its boundaries begin among all lines, and where they end: each is ≥ 0 where it is hit.
+    /// Where its boundaries begin among all lines, and where they end: each is ≥ 0 where it is
+    /// hit.
     pub(super) edges: [usize; 2],
     /// The boundary of a sphere.
     pub(super) conic: Option<LocalQuadratic>,
@@ -65,7 +69,8 @@ pub(super) struct PixelSurface {
 pub(super) enum Pattern {
     /// The first or the second.
     Plain(f64),
-    /// The first where the product of the lines up to `end`, behind the edges, is positive, if not `odd`.
+    /// The first where the product of the lines up to `end`, behind the edges, is positive, if not
+    /// `odd`.
     Lines { end: usize, odd: bool },
     /// Squares by division.
     Squares(Squares),

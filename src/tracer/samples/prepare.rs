@@ -1,8 +1,9 @@
 //! The preparation of a pixel: what it shows of its candidates, written down as forms.
 //!
-//! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths, sorted from back to front where their depths do
-//! not overlap. A form that has one sign all over the pixel by its bound is left out. What is rare or has overflowed is left to the world, sample by
-//! sample.
+//! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths,
+//! sorted from back to front where their depths do not overlap. A form that has one sign all over
+//! the pixel by its bound is left out. What is rare or has overflowed is left to the world, sample
+//! by sample.
 
 use super::{
     super::{
@@ -20,12 +21,13 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Forms of a board with greater errors than this are left to higher precisions: products with numbers of squares, which are below 2^53, and of a few such factors would
-/// be infinite.
+/// Forms of a board with greater errors than this are left to higher precisions: products with
+/// numbers of squares, which are below 2^53, and of a few such factors would be infinite.
 const LARGEST: f64 = 1e250;
 
-/// A square of a board is told by lines if no more than this many of them pass through the pixel, else by division. Measured: 3 to 12 make no
-/// difference, and division alone makes figure 9.9 a ninth slower.
+/// A square of a board is told by lines if no more than this many of them pass through the pixel,
+/// else by division. Measured: 3 to 12 make no difference, and division alone makes figure 9.9 a
+/// ninth slower.
 const LINES: usize = 6;
 
 /// The preparation has met something that is better traced sample by sample.
@@ -85,7 +87,8 @@ impl PreparedPixel {
         Ok(())
     }
 
-    /// Adds forms that are all ≥ 0 where an object is hit. As all functions down to `clips`, it says whether the object may be hit at all.
+    /// Adds forms that are all ≥ 0 where an object is hit. As all functions down to `clips`, it
+    /// says whether the object may be hit at all.
     fn edges(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
         for form in forms {
             if !self.edge(form.local(pixel))? {
@@ -198,7 +201,8 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd step.
+                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd
+                // step.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}

@@ -1,8 +1,9 @@
 //! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
 //!
-//! In: a prepared pixel, and a chunk of its samples. Out: what each sees, and how often each colour is seen. For each surface in turn its boundary
-//! forms are evaluated at all samples, then its pattern and its depth. Errors: a value within its form's bound of 0, or two depths within theirs of
-//! each other, make the sample one in doubt, which the world is asked for again.
+//! In: a prepared pixel, and a chunk of its samples. Out: what each sees, and how often each colour
+//! is seen. For each surface in turn its boundary forms are evaluated at all samples, then its
+//! pattern and its depth. Errors: a value within its form's bound of 0, or two depths within theirs
+//! of each other, make the sample one in doubt, which the world is asked for again.
 
 use multiversion::multiversion;
 
@@ -23,7 +24,8 @@ fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }
 
-/// Where samples lie: as many numbers of each coordinate, a multiple of eight for the widest vectors.
+/// Where samples lie: as many numbers of each coordinate, a multiple of eight for the widest
+/// vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
@@ -165,7 +167,8 @@ fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // Not so for NaN either, and the error of what is too great for the rounding is too great, too.
+        // Not so for NaN either, and the error of what is too great for the rounding is too great,
+        // too.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -241,7 +244,8 @@ impl Lanes {
         }
     }
 
-    /// Puts a surface before or behind what is seen so far, `apart` being how far depths must differ for that to be certain.
+    /// Puts a surface before or behind what is seen so far, `apart` being how far depths must
+    /// differ for that to be certain.
     #[inline(always)]
     fn merge(&mut self, apart: f64, length: usize) {
         let surface = self.margin[..length]

@@ -1,6 +1,7 @@
 //! The colours that can be seen, and which of them an object has.
 //!
-//! In: the objects and the background. Out: the palette of distinct colours, and each object's slots in it.
+//! In: the objects and the background. Out: the palette of distinct colours, and each object's
+//! slots in it.
 
 use std::collections::HashMap;
 

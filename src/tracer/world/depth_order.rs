@@ -1,8 +1,9 @@
 //! Which of two crossings is nearer, and where they are in one surface, that none is.
 //!
-//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths of one surface are in doubt at every sample
-//! point, and forms take long to prepare. So where depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding (the near and the far
-//! plane, which are no numbers of the scene, by their forms).
+//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths
+//! of one surface are in doubt at every sample point, and forms take long to prepare. So where
+//! depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding
+//! (the near and the far plane, which are no numbers of the scene, by their forms).
 
 use std::cmp::Ordering;
 
@@ -16,7 +17,8 @@ use crate::{
     },
 };
 
-/// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their computed values.
+/// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their
+/// computed values.
 #[inline]
 pub(in crate::tracer) fn order<T: Real>(
     geometry: &Geometry,
@@ -43,16 +45,19 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface that lies in one of the two planes and is in doubt about the other would need them to be equal.
+    // A surface that lies in one of the two planes and is in doubt about the other would need them
+    // to be equal.
     let at = (index, crossing.part);
-    // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it takes time.
+    // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it
+    // takes time.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }
     order
 }
 
-/// Whether two parts of objects are one surface: parts of one plane, or the same side of equal spheres.
+/// Whether two parts of objects are one surface: parts of one plane, or the same side of equal
+/// spheres.
 #[cold]
 fn is_same_surface(
     geometry: &Geometry,
@@ -67,8 +72,9 @@ fn is_same_surface(
     }
 }
 
-/// Whether two flat parts of objects lie in one plane, by the numbers of the scene and without rounding: forms need not be prepared for it,
-/// and where surfaces lie in one plane it is asked at every sample point.
+/// Whether two flat parts of objects lie in one plane, by the numbers of the scene and without
+/// rounding: forms need not be prepared for it, and where surfaces lie in one plane it is asked at
+/// every sample point.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
     (i, a): (usize, SurfacePart),

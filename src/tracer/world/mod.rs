@@ -2,7 +2,8 @@
 //!
 //! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks
 //! the objects on its way down the quadtree, or those that are known to be nearby; where
-//! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big numbers.
+//! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big
+//! numbers.
 
 mod colors;
 pub(super) mod depth_order;
@@ -120,13 +121,15 @@ impl World {
         Area::whole((2.0 * half.x) as u32, (2.0 * half.y) as u32)
     }
 
-    /// The distinct colours that can be seen: the objects' in the order of the file, the background last.
+    /// The distinct colours that can be seen: the objects' in the order of the file, the background
+    /// last.
     pub fn palette(&self) -> &[Color] {
         &self.colors.palette
     }
 
-    /// Which colour of the palette is seen at a sample point: the pixel in column `x` and row `y` from the top left, and
-    /// the offset from that pixel's centre, x to the right and y down, each in [−1/2, 1/2).
+    /// Which colour of the palette is seen at a sample point: the pixel in column `x` and row `y`
+    /// from the top left, and the offset from that pixel's centre, x to the right and y down,
+    /// each in [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         self.slot_near(x, y, offset, None)
@@ -167,7 +170,8 @@ impl World {
         self.pieces.owner(piece)
     }
 
-    /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may be seen.
+    /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may
+    /// be seen.
     pub fn slot_among(
         &self,
         x: u32,
@@ -195,7 +199,8 @@ impl World {
         self.slot(seen)
     }
 
-    /// The object that is seen at a point, of some in file order; and whether the last precision was not asked.
+    /// The object that is seen at a point, of some in file order; and whether the last precision
+    /// was not asked.
     pub(super) fn object_among(
         &self,
         point: &Point,
@@ -268,7 +273,8 @@ impl World {
         candidates
     }
 
-    /// Of some objects, in file order, the nearest crossing between the near and the far plane; of equal ones the first object's.
+    /// Of some objects, in file order, the nearest crossing between the near and the far plane; of
+    /// equal ones the first object's.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -310,8 +316,8 @@ impl World {
         Ok(nearest)
     }
 
-    /// Whether an object's crossing is nearer than the nearest so far, in whose place it is put then; of equal ones that of the object
-    /// which comes first in the file is.
+    /// Whether an object's crossing is nearer than the nearest so far, in whose place it is put
+    /// then; of equal ones that of the object which comes first in the file is.
     #[inline]
     fn meet<T: Precision>(
         &self,
@@ -345,7 +351,8 @@ impl World {
         Ok(true)
     }
 
-    /// The first of an object's crossings that lies between the near and the far plane, and whether it is the second one.
+    /// The first of an object's crossings that lies between the near and the far plane, and whether
+    /// it is the second one.
     #[inline]
     fn clip<T: Precision>(
         &self,

@@ -1,7 +1,9 @@
-//! The camera and the objects in each precision: `f64`, double-double, and big numbers, which decide everything.
+//! The camera and the objects in each precision: `f64`, double-double, and big numbers, which
+//! decide everything.
 //!
-//! In: the numbers of the scene. Out: frames and objects in the precision that is asked for; beyond `f64` they are prepared when they are
-//! first asked for. What a decision in one precision leaves in doubt, by the bounds on its errors, is asked of the next.
+//! In: the numbers of the scene. Out: frames and objects in the precision that is asked for; beyond
+//! `f64` they are prepared when they are first asked for. What a decision in one precision leaves
+//! in doubt, by the bounds on its errors, is asked of the next.
 
 use glam::{DVec2, DVec3};
 
@@ -19,8 +21,9 @@ use crate::{
     },
 };
 
-/// The answer to a question about a ray in the first precision that is certain of it, the ray having its direction there; and whether that is
-/// not the last precision, in which what it does not tell apart counts as equal, so that it is never in doubt.
+/// The answer to a question about a ray in the first precision that is certain of it, the ray
+/// having its direction there; and whether that is not the last precision, in which what it does
+/// not tell apart counts as equal, so that it is never in doubt.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &Point) = ($geometry, $point);

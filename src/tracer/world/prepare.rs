@@ -1,6 +1,7 @@
 //! The preparation of a scene.
 //!
-//! In: a scene. Out: its geometry, prepared block by block by all threads, and the quadtree over its objects' bounds.
+//! In: a scene. Out: its geometry, prepared block by block by all threads, and the quadtree over
+//! its objects' bounds.
 
 use std::sync::atomic::AtomicBool;
 
@@ -18,14 +19,15 @@ use crate::{
 };
 use glam::DVec2;
 
-/// With fewer objects no threads are started: at 0.7 µs an object (benches/README.md) they take less than a millisecond.
+/// With fewer objects no threads are started: at 0.7 µs an object (benches/README.md) they take
+/// less than a millisecond.
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
 /// So many objects are prepared before anybody is asked whether that is still wanted: 6 ms at most.
 const BLOCK: usize = 1 << 13;
 
-/// The geometry of a scene for the points of its picture plane at most `reach` pixels from the picture's centre, and where its objects are; cancelled,
-/// something of no use.
+/// The geometry of a scene for the points of its picture plane at most `reach` pixels from the
+/// picture's centre, and where its objects are; cancelled, something of no use.
 pub fn prepare(
     scene: &Scene,
     pieces: &Pieces,

@@ -1,4 +1,5 @@
-//! `pinhole-studio-bindgen ENGINE.wasm FOLDER`: writes the engine as a module for browsers, `pinhole.js` with `pinhole_bg.wasm`.
+//! `pinhole-studio-bindgen ENGINE.wasm FOLDER`: writes the engine as a module for browsers,
+//! `pinhole.js` with `pinhole_bg.wasm`.
 
 use std::{env, process::ExitCode};
 

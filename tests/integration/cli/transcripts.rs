@@ -1,5 +1,7 @@
-//! The command line as one types it: `tests/cli` has what a shell is told, `$`, and below it what comes of it: what is printed, `<`, what is told
-//! to people, `!`, and the status if it is not 0, `=`. A last line that does not end has a `\` behind it. A transcript has a folder of its own, with the scene in `a.scn`. `#` begins a remark.
+//! The command line as one types it: `tests/cli` has what a shell is told, `$`, and below it what
+//! comes of it: what is printed, `<`, what is told to people, `!`, and the status if it is not 0,
+//! `=`. A last line that does not end has a `\` behind it. A transcript has a folder of its own,
+//! with the scene in `a.scn`. `#` begins a remark.
 //!
 //! `PINHOLE_BLESS=1 cargo test` writes what comes of it anew.
 

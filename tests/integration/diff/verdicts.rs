@@ -10,7 +10,8 @@ use crate::{program::Folder, table::rows};
 
 const RANDOM: &str = "--set sampler.method=random --set sampler.per_pixel=16";
 
-/// How a picture is rendered, how it is compared with the scene, the exit status, and how the first line starts.
+/// How a picture is rendered, how it is compared with the scene, the exit status, and how the first
+/// line starts.
 const VERDICTS: &str = "
     -> -> 0 -> right: equal to the exact picture
     -> --strict -> 0 -> right: no pixel differs by more than 0.5 steps

@@ -61,8 +61,8 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Where a handle of the first object is in the world, but for those that depend on the picture; of a board as high as it is where another board, `held`, is
-/// met by the view axis.
+/// Where a handle of the first object is in the world, but for those that depend on the picture; of
+/// a board as high as it is where another board, `held`, is met by the view axis.
 fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -87,7 +87,8 @@ fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     }
 }
 
-/// The direction in the picture in which a point is seen to move that moves along an axis; of length 1.
+/// The direction in the picture in which a point is seen to move that moves along an axis; of
+/// length 1.
 fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
@@ -127,7 +128,8 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
     seen(scene, tip).distance(goal) <= 0.5 + 1e-6
 }
 
-/// The apex is seen in the direction of a point, from the centroid; or the two are too near to each other to tell.
+/// The apex is seen in the direction of a point, from the centroid; or the two are too near to each
+/// other to tell.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = seen(scene, triangle.centroid);
     let shown = overlays(scene, &Shown::First(None));

@@ -1,4 +1,5 @@
-//! The answers to one who writes a scene: a text with `$0` where the cursor is, and what comes of it.
+//! The answers to one who writes a scene: a text with `$0` where the cursor is, and what comes of
+//! it.
 
 mod answers;
 mod drags;

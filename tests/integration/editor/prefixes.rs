@@ -1,4 +1,5 @@
-//! No text that somebody types makes a reading or an answer fail: beginnings of every example, asked at their ends.
+//! No text that somebody types makes a reading or an answer fail: beginnings of every example,
+//! asked at their ends.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
@@ -83,8 +84,9 @@ fn ask_of_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
 
-/// Its beginnings, asked at their ends; the whole, asked at every place; and it without a byte, or with a piece cut out, as when a line is being
-/// rewritten. Examples have much in common: of each it is every other place, of one example the odd ones and of the next the even ones.
+/// Its beginnings, asked at their ends; the whole, asked at every place; and it without a byte, or
+/// with a piece cut out, as when a line is being rewritten. Examples have much in common: of each
+/// it is every other place, of one example the odd ones and of the next the even ones.
 fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

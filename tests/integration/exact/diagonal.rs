@@ -1,10 +1,12 @@
-//! Views along a diagonal of the board, where most is left of its squares, be they too small to be seen.
+//! Views along a diagonal of the board, where most is left of its squares, be they too small to be
+//! seen.
 
 use super::*;
 
-/// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the widest views along x = z with the eye over that line, of
-/// which both sides are the same, up to what the eye's coordinates are off and the view's depth; and two whose millions of pieces were added up
-/// with 40 digits, for d = 0.
+/// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the
+/// widest views along x = z with the eye over that line, of which both sides are the same, up to
+/// what the eye's coordinates are off and the view's depth; and two whose millions of pieces were
+/// added up with 40 digits, for d = 0.
 #[test]
 fn what_is_known_otherwise_is_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("
@@ -24,7 +26,8 @@ fn what_is_known_otherwise_is_within_the_bound() {
 
 sampled_and_exhaustive!(the_longest_lenses_end);
 
-/// Places and times so many that modes of lines do not end: something is known in the end, or nothing, but soon.
+/// Places and times so many that modes of lines do not end: something is known in the end, or
+/// nothing, but soon.
 fn the_longest_lenses_end(effort: Effort) {
     for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }

@@ -1,4 +1,5 @@
-//! The computed picture against closed forms, against itself in other ways, against samples and against rational arithmetic.
+//! The computed picture against closed forms, against itself in other ways, against samples and
+//! against rational arithmetic.
 
 mod board;
 mod bounds;
@@ -95,8 +96,9 @@ fn is_known(text: &str) {
 fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
     let sampled = sampled(&scene);
-    // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By Bernstein's inequality no more than one of 10¹⁰ sums of
-    // independent ones is farther off than this.
+    // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By
+    // Bernstein's inequality no more than one of 10¹⁰ sums of independent ones is farther off
+    // than this.
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());

@@ -26,7 +26,8 @@ impl RationalView {
         [right, top, -(back * &self.d)]
     }
 
-    /// N and L of N/L, where the ray through a point meets the board, along x or z: L is positive below the horizon.
+    /// N and L of N/L, where the ray through a point meets the board, along x or z: L is positive
+    /// below the horizon.
     fn place(&self, axis: usize) -> [Linear; 2] {
         let below = self.ray(1).map(|factor| -factor);
         let along = self.ray(axis);
@@ -34,7 +35,8 @@ impl RationalView {
         [place, below]
     }
 
-    /// The share of white squares, those whose numbers have an even sum, in a pixel below the horizon.
+    /// The share of white squares, those whose numbers have an even sum, in a pixel below the
+    /// horizon.
     fn white(&self, pixel: &Polygon) -> RBig {
         let [across, along] = [self.place(0), self.place(2)];
         let mut white = RBig::ZERO;
@@ -106,8 +108,8 @@ fn area(polygon: &Polygon) -> RBig {
     twice / RBig::from(2)
 }
 
-/// Level cameras, one that looks down to the right, by (48, −25, −36)/65, and the same rolled by the angle of cosine 3/5. The horizon
-/// is above the pixels that are asked for.
+/// Level cameras, one that looks down to the right, by (48, −25, −36)/65, and the same rolled by
+/// the angle of cosine 3/5. The horizon is above the pixels that are asked for.
 #[test]
 fn rational_arithmetic_agrees() {
     let (width, height) = (64u32, 48u32);

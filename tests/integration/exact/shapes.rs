@@ -22,7 +22,8 @@ fn is_share(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_planes() {
-    // The pixel is 2 wide at distance 1; the box's right side is seen at x/4, or at x/5 where its side face is seen, too.
+    // The pixel is 2 wide at distance 1; the box's right side is seen at x/4, or at x/5 where its
+    // side face is seen, too.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
@@ -43,7 +44,8 @@ fn half_planes() {
     }
 }
 
-/// The silhouette of a sphere is an ellipse of area πR²√C/(z² − R²)^(3/2), C = c·c − R², z the centre's depth; on the axis, it is a circle.
+/// The silhouette of a sphere is an ellipse of area πR²√C/(z² − R²)^(3/2), C = c·c − R², z the
+/// centre's depth; on the axis, it is a circle.
 #[test]
 fn discs_and_ellipses() {
     for (x, y, z, radius) in [
@@ -65,7 +67,8 @@ fn discs_and_ellipses() {
 
 #[test]
 fn squares_from_above() {
-    // From height 1 the pixel shows [−1, 1]²: 2 × 2 squares of side 1, and what is left of larger ones.
+    // From height 1 the pixel shows [−1, 1]²: 2 × 2 squares of side 1, and what is left of larger
+    // ones.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
@@ -82,7 +85,8 @@ fn squares_from_above() {
 
 #[test]
 fn lines_that_are_vertical_but_for_roundings() {
-    // The camera looks at an edge of the box, which is the middle column's side, and a sphere's outline crosses it.
+    // The camera looks at an edge of the box, which is the middle column's side, and a sphere's
+    // outline crosses it.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
         eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }

@@ -18,7 +18,8 @@ fn four_quarters_are_the_pixel_of_generated_scenes_and_samples_agree() {
     }
 }
 
-/// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of them lie above each other.
+/// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of
+/// them lie above each other.
 #[test]
 fn objects_side_by_side_add_up() {
     let mut random = Random::new(71);
@@ -96,7 +97,8 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
     }
 }
 
-/// A sphere that goes through a face which the eye is hardly above: its circle there is seen as an ellipse that is hardly more than a line.
+/// A sphere that goes through a face which the eye is hardly above: its circle there is seen as an
+/// ellipse that is hardly more than a line.
 #[test]
 fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";

@@ -45,11 +45,13 @@ fn a_mean_is_that_of_long_division() {
 
 #[test]
 fn a_mean_is_rounded_once() {
-    // 3 · 0.1 + 7 · 0.3, of which 0.1 is 0.1000000000000000055511151231257827 and 0.3 is 0.299999999999999988897769753748: 0.24
-    // within 6e-18, a quarter of the distance between neighbours there.
+    // 3 · 0.1 + 7 · 0.3, of which 0.1 is 0.1000000000000000055511151231257827 and 0.3 is
+    // 0.299999999999999988897769753748: 0.24 within 6e-18, a quarter of the distance between
+    // neighbours there.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // 1 of 2^53 samples is half a unit in the last place of the others: exact, where a running sum would lose it.
+    // 1 of 2^53 samples is half a unit in the last place of the others: exact, where a running sum
+    // would lose it.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }

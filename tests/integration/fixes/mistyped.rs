@@ -1,4 +1,5 @@
-//! Slips made by a program in scenes that are right: each fix of a problem does away with it, and makes no new error.
+//! Slips made by a program in scenes that are right: each fix of a problem does away with it, and
+//! makes no new error.
 
 use std::ops::Range;
 

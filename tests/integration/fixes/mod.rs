@@ -52,7 +52,8 @@ struct Trial {
 }
 
 impl Trial {
-    /// Types in every fix of the problems that are meant, and complains where its problem stays or another one comes.
+    /// Types in every fix of the problems that are meant, and complains where its problem stays or
+    /// another one comes.
     fn type_in(
         &mut self,
         before_sources: &Sources,

@@ -15,7 +15,8 @@ pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
     vec(one_of(gaps, '|'), 200)
 }
 
-/// A text of tokens, which are apart by blanks, with these gaps. A blank comes first where two tokens would be one, or the start of a comment.
+/// A text of tokens, which are apart by blanks, with these gaps. A blank comes first where two
+/// tokens would be one, or the start of a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');

@@ -8,7 +8,8 @@ use pinhole::{
 use super::{all_scenes, formatted};
 use crate::{diagnostics::found, syntax::tokens};
 
-/// Tokens and comments in their order, without the white space at the ends of the lines of comments.
+/// Tokens and comments in their order, without the white space at the ends of the lines of
+/// comments.
 fn words(text: &str) -> Vec<String> {
     let tidy = |token: &str| {
         let lines = token.lines();

@@ -19,7 +19,8 @@ fn code(found: &Diagnostic) -> String {
     found.code.replace("pinhole::", "")
 }
 
-/// What is wrong, its argument (counted from 1; 0 is the file), the text of its first label, and what to do.
+/// What is wrong, its argument (counted from 1; 0 is the file), the text of its first label, and
+/// what to do.
 fn place(sources: &Sources, found: &Diagnostic) -> String {
     let span = found.labels[0].span;
     let argument = sources.sets().position(|(id, _)| id == span.source);
@@ -39,7 +40,8 @@ fn said(_: &Sources, found: &Diagnostic) -> String {
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// The text without what stands in brackets, which is what is removed, and what is told of comments.
+/// The text without what stands in brackets, which is what is removed, and what is told of
+/// comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

@@ -33,7 +33,8 @@ fn a_warning_is_never_false_and_comes_often_enough() {
         warned += u32::from(is_warned);
         black += u32::from(is_black);
     }
-    // Bounds are larger than what they bound, and what is left of the window may be below the pixels' own.
+    // Bounds are larger than what they bound, and what is left of the window may be below the
+    // pixels' own.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }
 

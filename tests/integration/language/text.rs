@@ -15,8 +15,8 @@ proptest! {
     }
 }
 
-/// Items of which a scene can be made in any order. Their names are often those of kinds, and the values of the definitions
-/// end in every way that there is.
+/// Items of which a scene can be made in any order. Their names are often those of kinds, and the
+/// values of the definitions end in every way that there is.
 fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
     let items = vec![
         "let a = 2",

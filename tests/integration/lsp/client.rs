@@ -123,7 +123,8 @@ pub const PATIENCE: Duration = Duration::from_secs(30);
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    /// The texts of its messages, which a thread of its own reads, so that none is waited for without end.
+    /// The texts of its messages, which a thread of its own reads, so that none is waited for
+    /// without end.
     said: Receiver<String>,
 }
 

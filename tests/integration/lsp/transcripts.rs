@@ -1,8 +1,10 @@
-//! Conversations, as `tests/lsp` has them: what is said to the server, and below it what the server says.
+//! Conversations, as `tests/lsp` has them: what is said to the server, and below it what the server
+//! says.
 //!
-//! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other message; the document is added to their parameters. What
-//! stands without an empty line between has come before the server begins to work. `#` begins a remark.
-//! `PINHOLE_BLESS=1 cargo test` writes anew what the server answers, `<`, and what its log says, `?`.
+//! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other
+//! message; the document is added to their parameters. What stands without an empty line between
+//! has come before the server begins to work. `#` begins a remark. `PINHOLE_BLESS=1 cargo test`
+//! writes anew what the server answers, `<`, and what its log says, `?`.
 
 use std::path::Path;
 
@@ -14,7 +16,8 @@ use super::{
 };
 use crate::{program::names, snapshot::assert_file};
 
-/// A message in a line: whole, but for what is the same in each, for pictures and for the version of the program.
+/// A message in a line: whole, but for what is the same in each, for pictures and for the version
+/// of the program.
 fn line(message: &str) -> String {
     let mut message: Value = serde_json::from_str(message).expect("JSON");
     let members = message.as_object_mut().expect("a message");

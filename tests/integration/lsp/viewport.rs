@@ -1,4 +1,5 @@
-//! What a hand does in the picture: what it is shown of the objects, what it adds, and what it drags.
+//! What a hand does in the picture: what it is shown of the objects, what it adds, and what it
+//! drags.
 
 use serde_json::{Value, json};
 

@@ -30,12 +30,14 @@ fn the_median_is_the_middle_one() {
 
 #[test]
 fn the_slopes_standard_error_is_that_of_the_textbook() {
-    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 has x̄ = 1.5, ȳ = −1, S = 5, b = −3/5, residuals −0.1, 0.3, −0.3, 0.1
-    // but for signs, Σr² = 0.2, and the standard error √(0.2 / 2 / 5) = √0.02.
+    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 has x̄ = 1.5, ȳ = −1, S = 5, b = −3/5,
+    // residuals −0.1, 0.3, −0.3, 0.1 but for signs, Σr² = 0.2, and the standard error √(0.2 / 2
+    // / 5) = √0.02.
     let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // Few points have a line and next to nothing to judge it by, one has none, and an error of 0 has no logarithm.
+    // Few points have a line and next to nothing to judge it by, one has none, and an error of 0
+    // has no logarithm.
     let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
     for few in [&few[..], &few[1..]] {
         let few = PowerLaw::fit(few).unwrap();
@@ -71,7 +73,8 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Rows of points, and of errors with the samples and the CPU time that each takes, as far as they are known, and whether they are extrapolated.
+/// Rows of points, and of errors with the samples and the CPU time that each takes, as far as they
+/// are known, and whether they are extrapolated.
 #[test]
 fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
     for [points, expected] in rows("
@@ -167,7 +170,8 @@ fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
 }
 
-/// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2 and 0.1.
+/// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2
+/// and 0.1.
 fn measured(methods: &str) -> Measurement {
     let timed = |times: &str, share: f64, error: f64| -> Vec<_> {
         let run = |time: f64| Run {

@@ -40,8 +40,8 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
-/// An edge: its normal, its distance from the pixel's middle, and the area on its inner side. Where strata hold one point each that is unbiased,
-/// edges parallel to them tell nothing more.
+/// An edge: its normal, its distance from the pixel's middle, and the area on its inner side. Where
+/// strata hold one point each that is unbiased, edges parallel to them tell nothing more.
 type Edge = (DVec2, f64, f64);
 
 /// For each edge the error of the share of points on its inner side, each in a pixel of its own.
@@ -66,7 +66,8 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// The area of the part of the pixel where normal · p < distance: of four quadrants beyond its corners, cut off by the edge.
+/// The area of the part of the pixel where normal · p < distance: of four quadrants beyond its
+/// corners, cut off by the edge.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -95,7 +96,8 @@ fn independent(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// The variance of one point in each of n square cells, of which only those count that the edge cuts.
+/// The variance of one point in each of n square cells, of which only those count that the edge
+/// cuts.
 fn one_in_each_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
@@ -119,13 +121,15 @@ fn squared_errors_are_what_theory_says() {
         assert!(off.abs() < 4.0, "{n}: {off}");
         let off = beyond(Method::Jittered, &|edge| one_in_each_cell(n, edge));
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // A Latin hypercube is no worse than one point less of independent ones (Owen 1997, "Monte Carlo variance of scrambled net quadrature").
+        // A Latin hypercube is no worse than one point less of independent ones (Owen 1997, "Monte
+        // Carlo variance of scrambled net quadrature").
         let off = beyond(Method::NRooks, &|edge| independent(n - 1, edge));
         assert!(off < 4.0, "{n}: {off}");
     }
 }
 
-/// Where cells hold one point each, the error falls with a slope of −3/4 (Mitchell 1996), as it does for scrambled nets (He and Owen 2014).
+/// Where cells hold one point each, the error falls with a slope of −3/4 (Mitchell 1996), as it
+/// does for scrambled nets (He and Owen 2014).
 #[test]
 fn errors_fall_as_fast_as_they_should() {
     let edges = edges();
@@ -135,7 +139,8 @@ fn errors_fall_as_fast_as_they_should() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // The slope of the least squares line through five equidistant logarithms, and its standard error.
+        // The slope of the least squares line through five equidistant logarithms, and its standard
+        // error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

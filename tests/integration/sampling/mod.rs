@@ -89,7 +89,8 @@ fn seeds_and_pixels_have_points_of_their_own() {
 
 #[test]
 fn points_stay_where_they_are() {
-    // The eighth point of a pixel, for the pictures that exist already, and for machines other than the one these come from.
+    // The eighth point of a pixel, for the pictures that exist already, and for machines other than
+    // the one these come from.
     let expected = [
         DVec2::new(0.375, -0.125),
         DVec2::new(-0.48383530042028894, -0.350440702956024),

@@ -74,7 +74,8 @@ fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
 
 #[test]
 fn scattered_points_fall_like_rain() {
-    // 40 × 25 pixels with 20 points each on average: χ² with 999 degrees of freedom, for some seeds.
+    // 40 × 25 pixels with 20 points each on average: χ² with 999 degrees of freedom, for some
+    // seeds.
     let area = Area::whole(40, 25);
     let mut empty = 0;
     for seed in 0..20 {

@@ -79,7 +79,8 @@ fn the_page_may_use_what_is_its_own_and_nothing_else() {
         ("/studio.css", "text/css"),
         ("/x", "text/plain; charset=utf-8"),
     ] {
-        // Whatever other servers of this machine have set, it says nothing here, and nothing is added to it.
+        // Whatever other servers of this machine have set, it says nothing here, and nothing is
+        // added to it.
         let response = studio.get(path, &format!("Cookie: token={}\r\n", studio.token));
         for (name, value) in [
             ("content-type", kind),
@@ -310,7 +311,8 @@ fn what_is_no_request_does_no_harm() {
         b"GET\r\n\r\n",
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        // A reserved operation, a frame without a mask, a frame that goes on without a start, a text that is no UTF-8.
+        // A reserved operation, a frame without a mask, a frame that goes on without a start, a
+        // text that is no UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
         &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),
@@ -333,7 +335,8 @@ fn what_is_no_request_does_no_harm() {
     a_page_works(&studio);
 }
 
-/// All of 127.0.0.0/8 leads to this machine, where Linux is concerned, and what listens at any address is found there.
+/// All of 127.0.0.0/8 leads to this machine, where Linux is concerned, and what listens at any
+/// address is found there.
 #[cfg(target_os = "linux")]
 #[test]
 fn only_one_address_is_listened_at() {

@@ -1,5 +1,5 @@
-//! The tracer against the oracle, above all within the last bits of every boundary: what is beside the catalogue of hard cases, all of which
-//! the tests of `numerics` ask.
+//! The tracer against the oracle, above all within the last bits of every boundary: what is beside
+//! the catalogue of hard cases, all of which the tests of `numerics` ask.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
@@ -63,7 +63,8 @@ impl Random {
     }
 }
 
-/// Whether a camera does not look along its up vector, where a rule decides that knows the world's axes.
+/// Whether a camera does not look along its up vector, where a rule decides that knows the world's
+/// axes.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -111,8 +112,9 @@ impl Both {
     }
 }
 
-/// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides of the boundaries that
-/// random segments within pixels cross. Returns how many boundaries it found, so that a test can say that there were some.
+/// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides
+/// of the boundaries that random segments within pixels cross. Returns how many boundaries it
+/// found, so that a test can say that there were some.
 #[track_caller]
 fn agrees(scene: &Scene, points: usize) -> usize {
     let both = Both::new(scene);
@@ -240,7 +242,8 @@ fn lenses_have_all_ranges_of_numbers() {
     }
 }
 
-/// The two halves of a square, in front of red, beside the diagonal that crosses the middles of pixels.
+/// The two halves of a square, in front of red, beside the diagonal that crosses the middles of
+/// pixels.
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
     for other in [

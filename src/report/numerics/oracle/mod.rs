@@ -1,8 +1,9 @@
 //! What is seen at a sample point by the formulas of a textbook, in arithmetic of hundreds of bits.
 //!
-//! Nothing here is shared with the tracer: world coordinates instead of the view plane, the quadratic formula, signed areas and
-//! slabs with divisions. What is smaller than its terms by 5/14 of the bits counts as zero (2^−500 with 1400 bits, 2^−182 with
-//! 512): far beyond the 2^−90 where the language's ties begin, and far before the last bits.
+//! Nothing here is shared with the tracer: world coordinates instead of the view plane, the
+//! quadratic formula, signed areas and slabs with divisions. What is smaller than its terms by 5/14
+//! of the bits counts as zero (2^−500 with 1400 bits, 2^−182 with 512): far beyond the 2^−90 where
+//! the language's ties begin, and far before the last bits.
 
 mod number;
 
@@ -21,7 +22,8 @@ use crate::{
 /// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
 pub const ALL_SIZES: usize = 1400;
 
-/// Enough bits for views so wide or narrow that a step of one pixel and the distance of the view plane differ by some 2^1000 in size.
+/// Enough bits for views so wide or narrow that a step of one pixel and the distance of the view
+/// plane differ by some 2^1000 in size.
 pub const ALL_VIEWS: usize = 3000;
 
 /// Enough bits for scenes whose numbers differ by some 2^100 in size.
@@ -48,7 +50,8 @@ pub struct Oracle {
 enum Surface {
     /// f = eye − centre, f·f and f·f − radius².
     Sphere { f: V, square: N, c: N },
-    /// The vertices, the normal n, n·(centroid − eye), which is zero if the eye is in the plane, and the scale of areas.
+    /// The vertices, the normal n, n·(centroid − eye), which is zero if the eye is in the plane,
+    /// and the scale of areas.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
@@ -114,12 +117,14 @@ impl Oracle {
         }
     }
 
-    /// The direction of the ray through an offset from the centre of the pixel in column `x` and row `y`.
+    /// The direction of the ray through an offset from the centre of the pixel in column `x` and
+    /// row `y`.
     pub fn direction(&self, x: u32, y: u32, offset: DVec2) -> V {
         self.direction_through(dvec2(f64::from(x), f64::from(y)) + 0.5, offset)
     }
 
-    /// The direction of the ray through an offset from a point so many pixels from the picture's top left corner.
+    /// The direction of the ray through an offset from a point so many pixels from the picture's
+    /// top left corner.
     pub fn direction_through(&self, pixels: DVec2, offset: DVec2) -> V {
         let n = |x| self.number.exact(x);
         let half = |pixels: u32| n(f64::from(pixels) / 2.0);
@@ -248,7 +253,8 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// The order of two numbers, which are equal if they are equal up to a certain part of the larger one.
+    /// The order of two numbers, which are equal if they are equal up to a certain part of the
+    /// larger one.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
     }

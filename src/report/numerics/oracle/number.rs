@@ -33,7 +33,8 @@ impl Number {
         v.to_array().map(|x| self.exact(x))
     }
 
-    /// The sign of the result of operands of a certain size, which is none up to a certain part of it.
+    /// The sign of the result of operands of a certain size, which is none up to a certain part of
+    /// it.
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal

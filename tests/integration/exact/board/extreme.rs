@@ -1,4 +1,5 @@
-//! The board in views of nearly 180 degrees, and in those of less than a millionth of a degree: the bound is honest there, however large it is.
+//! The board in views of nearly 180 degrees, and in those of less than a millionth of a degree: the
+//! bound is honest there, however large it is.
 
 use super::*;
 

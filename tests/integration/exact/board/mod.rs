@@ -1,4 +1,5 @@
-//! The board at its horizon, and with squares of any size; in ordinary views, and in views of any width.
+//! The board at its horizon, and with squares of any size; in ordinary views, and in views of any
+//! width.
 
 mod extreme;
 mod ordinary;

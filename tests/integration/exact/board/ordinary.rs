@@ -1,4 +1,5 @@
-//! Ordinary views: a field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's height. There the bound is at most 1e-9.
+//! Ordinary views: a field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's
+//! height. There the bound is at most 1e-9.
 
 use std::fmt::Write;
 
@@ -50,7 +51,8 @@ fn view(random: &mut Random) -> String {
 
 sampled_and_exhaustive!(every_pixel_is_known_to_a_thousand_millionth);
 
-/// 384 000 pixels, against bounds and against samples, and the first ones against their quarters; says how many bounds are above 1e-11.
+/// 384 000 pixels, against bounds and against samples, and the first ones against their quarters;
+/// says how many bounds are above 1e-11.
 fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
     let mut random = Random::new(31);
     let (mut pixels, mut above) = (0, 0);
