@@ -1,5 +1,5 @@
-// Builds the page: `node build.mjs` for the served host into dist/, `node build.mjs static FOLDER` for a site. The bytes depend on the sources and the
-// lock file alone.
+// Builds the page: `node build.mjs` for the served host into dist/, `node build.mjs static FOLDER` for
+// a site. The bytes depend only on the sources and the lock file.
 
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -10,7 +10,7 @@ const [host = "served", folder = "dist"] = process.argv.slice(2);
 if (host !== "served" && host !== "static") throw new Error(`there is no host ${host}: it is served or static`);
 mkdirSync(folder, { recursive: true });
 
-/** What the menu has beside the host's file: the gallery's scenes, in its order, and one to build from. */
+/** Scenes of the menu: the gallery's, in its order, and an empty one to build from. */
 const gallery = readFileSync("../../examples/README.md", "utf8");
 const examples = [...gallery.matchAll(/^\|.*\]\((\w+)\.scn\)/gm)].map(([, name]) => [name, readFileSync(`../../examples/${name}.scn`, "utf8")]);
 const EMPTY = `image { width 1280  height 720  background black }
@@ -23,7 +23,7 @@ sampler { method multi_jittered  per_pixel 16  seed 1 }
 const { metafile } = await build({
   // The served host runs the engine itself; a site has it in a worker.
   entryPoints: { studio: "src/main.ts", ...(host === "static" ? { engine: "src/worker.ts" } : {}) },
-  // What `npm run site` makes of the engine.
+  // Made by `npm run site` from the engine.
   alias: { "pinhole-engine": "./engine/pinhole.js" },
   bundle: true,
   format: "esm",
@@ -37,7 +37,8 @@ const { metafile } = await build({
 });
 await build({ entryPoints: ["src/studio.css"], bundle: true, minify: true, logLevel: "warning", outdir: folder });
 
-// A site sends no headers of its own, so its policy stands in the page. The served host sends a stricter one with a nonce for the styles of the editor.
+// A site sends no headers of its own, so the page contains its policy. The served host sends a stricter
+// one, with a nonce for the editor's styles.
 const policy = [
   "default-src 'none'",
   "script-src 'self' 'wasm-unsafe-eval'",
@@ -48,12 +49,11 @@ const policy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-// The reference of the language, without links, which would lead out of the page.
+// The reference of the language, without links, which would leave the page.
 const renderer = new Renderer();
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-// Its end is left out: overrides and columns are for the command line, and Shift-Alt-F shows the
-// layout.
+// Without its end: overrides and columns are for the command line, and Shift-Alt-F formats.
 const [reference, ...end] = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").split("\n## Overrides\n");
 if (end.length !== 1) throw new Error("the reference has no section on overrides to end before");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));
@@ -61,19 +61,18 @@ if (host === "static") {
   page = page
     .replace('<meta name="pinhole-host" content="served">', `<meta http-equiv="Content-Security-Policy" content="${policy}">\n    <meta name="pinhole-host" content="static">`)
     .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "")
-    // A link to a site leads everybody to it.
+    // A link to a site works for everybody.
     .replace('<p id="share-local">', '<p id="share-local" hidden>')
-    // A site has no port of its own choice.
+    // A site cannot choose its port.
     .replace('<span id="kept-served">', '<span id="kept-served" hidden>')
     // The engine in the browser writes no EXR.
     .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>')
-    // Lines that begin with a tag need no indentation. Scenes have none: their `<` is written
-    // `&lt;`.
+    // Indentation before a tag is not needed. Scenes have no tags, as their `<` is written `&lt;`.
     .replace(/^ +</gm, "<");
 }
 writeFileSync(path.join(folder, "index.html"), page);
 
-// The licences of what the bundle contains.
+// Licences of the packages in the bundle.
 const folders = new Set(Object.keys(metafile.inputs).map(file => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0]).filter(Boolean));
 const texts = [...folders].sort().map(folder => {
   const { name, version } = JSON.parse(readFileSync(path.join(folder, "package.json"), "utf8"));

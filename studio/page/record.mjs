@@ -1,5 +1,5 @@
-// Records the README's moving picture, examples/studio.gif, from the real page: the ball is dragged, and its number changes. Wants `npm ci` before; PINHOLE and
-// CHROMIUM as for the tests.
+// Records the README's animation, examples/studio.gif, from the real page: the ball is dragged, and its
+// numbers change. Needs `npm ci`; PINHOLE and CHROMIUM are as for the tests.
 
 import { writeFileSync } from "node:fs";
 import gifenc from "gifenc";
@@ -9,10 +9,10 @@ import { finished, host, open } from "./test/helpers.mjs";
 
 const WIDTH = 960;
 const HEIGHT = 520;
-/** How long a picture is shown, in milliseconds, while something moves and at rest. */
+/** Durations of a frame during a movement and at rest, in milliseconds. */
 const MOVING = 60;
 const RESTING = 1200;
-/** A pixel of this colour of the palette stays as it was. */
+/** Palette index of pixels that stay as they were. */
 const SAME = 255;
 
 const cleaning = [];
@@ -27,7 +27,7 @@ try {
   await page.mouse.move(x, y);
   await shoot(page, RESTING);
   await page.mouse.down();
-  // To the right past the sail, up, and back to where it was.
+  // To the right past the sail, up, and back.
   const way = [[0, 0], [0.34, 0], [0.17, -0.32], [0, 0]].map(([right, down]) => [x + right * 380, y + down * 380]);
   for (const [index, from] of way.slice(0, -1).entries()) {
     const to = way[index + 1];
@@ -46,14 +46,14 @@ encoder.finish();
 writeFileSync(new URL("../../examples/studio.gif", import.meta.url), encoder.bytes());
 console.log(`examples/studio.gif: ${encoder.bytes().length} bytes`);
 
-/** Where a handle of an object is in the window. */
+/** Returns the position of an object's handle in the window. */
 async function seen(page, handle, object) {
   await page.getByRole("combobox").first().selectOption({ label: `${object} (sphere)` });
   const box = await page.locator(`[data-handle="${handle}"]`).first().boundingBox();
   return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
 }
 
-/** A browser's pictures have no pointer: this draws one. */
+/** Draws a pointer, which screenshots lack. */
 function drawPointer() {
   const pointer = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   pointer.setAttribute("viewBox", "0 0 16 16");
@@ -69,7 +69,7 @@ async function shoot(page, shown) {
   add(png.PNG.sync.read(await page.screenshot()), shown);
 }
 
-/** Makes a GIF whose pictures hold only what differs from the one before; all of them have the palette of the first. */
+/** Makes a GIF whose frames hold only changed pixels and share the first frame's palette. */
 function recorder() {
   const encoder = gifenc.GIFEncoder();
   let palette;
@@ -78,7 +78,7 @@ function recorder() {
     palette ??= gifenc.quantize(data, SAME);
     const indexed = gifenc.applyPalette(data, palette);
     const changes = before ? indexed.map((index, at) => (index === before[at] ? SAME : index)) : indexed;
-    // A palette of 256, of which the last colour is not used.
+    // A palette of 256 colours, the last of which is unused.
     const colors = [...palette, ...Array.from({ length: 256 - palette.length }, () => [0, 0, 0])];
     encoder.writeFrame(changes, width, height, { palette: before ? undefined : colors, delay, transparent: before !== undefined, transparentIndex: SAME, dispose: 1 });
     before = indexed;

@@ -1,4 +1,5 @@
-// Builds the static site, studio/site: the page with the engine as WebAssembly. Wants Rust with the target wasm32-unknown-unknown, and `npm ci` before.
+// Builds the static site, studio/site: the page with the engine as WebAssembly. Needs Rust with the
+// target wasm32-unknown-unknown, and `npm ci`.
 
 import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, readFileSync, rmSync } from "node:fs";
@@ -7,7 +8,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
-/** The most bytes that the site may have, each file packed by itself as a server would send it. */
+/** Maximum size of the site in bytes, with each file compressed as a server sends it. */
 const LIMIT = 900_000;
 
 const page = path.dirname(fileURLToPath(import.meta.url));
@@ -18,10 +19,11 @@ const target = path.resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
 const wasm = "wasm32-unknown-unknown";
 const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio: "inherit" });
 
-// Where size comes first, hardly anything is inlined; a little of it makes frames about twice as fast, and the engine 1 % larger.
+// Optimizing for size inlines hardly anything; a little inlining makes frames about twice as fast, and
+// the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=4"];
-// Panics name the files that they are in. Without this machine's folders these names are short, and
-// the site is as large on every machine.
+// Panics contain paths of source files. Without this machine's folders they are short, and the site has
+// the same size on every machine.
 const sources = path.join(process.env.CARGO_HOME ?? path.join(homedir(), ".cargo"), "registry/src");
 const registries = existsSync(sources) ? readdirSync(sources) : [];
 const short = registries.map(registry => `--remap-path-prefix=${path.join(sources, registry)}/=`);
@@ -31,9 +33,9 @@ execFileSync("cargo", ["rustc", "--locked", "--profile", "site", "--target", was
 run("cargo", "run", "--locked", "--quiet", "--config", "profile.dev.debug=false", "--package", "pinhole-studio-bindgen", "--", path.join(target, wasm, "site/pinhole_studio_engine.wasm"), engine);
 rmSync(site, { recursive: true, force: true });
 run("node", "build.mjs", "static", site);
-// At this level what it makes is the smallest once it is packed; higher ones write less code that packs worse.
+// This level gives the smallest compressed size; higher ones write less code that compresses worse.
 const optimizer = path.join(page, "node_modules/binaryen/bin/wasm-opt");
-// The lowest thousand bytes of memory are the stack's last ones, so what is added to an address can stand in the load itself.
+// The lowest thousand bytes of memory are the end of the stack, so offsets can be folded into loads.
 const adding = ["--low-memory-unused", "--optimize-added-constants-propagate"];
 const passes = ["-O1", "--dae-optimizing", "--rse", "--precompute-propagate", "--code-folding", "--converge", ...adding, "--reorder-locals", "--merge-blocks"];
 run("node", optimizer, ...passes, path.join(engine, "pinhole_bg.wasm"), "-o", path.join(site, "pinhole_bg.wasm"));

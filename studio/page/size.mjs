@@ -1,4 +1,4 @@
-// Holds the page's TypeScript to what one can read: 3600 lines of at most 100 characters.
+// Limits the page's TypeScript to 3600 lines of at most 100 characters.
 
 import { readdirSync, readFileSync } from "node:fs";
 

@@ -1,5 +1,5 @@
-//! The report's page in a real browser, which has to be there: `cargo test -- --ignored browser`,
-//! with Chromium on the path.
+//! The report's page in a real browser. Needs Chromium on the path: `cargo test -- --ignored
+//! browser`.
 
 use std::{path::Path, process::Command};
 
@@ -12,11 +12,11 @@ const SCENE: &str =
 sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// What the browser is asked: the end of the page.
-const QUESTIONS: &str = include_str!("../browser.html");
+/// Script that measures the page; it is appended to the page and prints its findings as JSON.
+const SCRIPT: &str = include_str!("../browser.html");
 
-/// The answers in a window so wide, in a dark one or not.
-fn asked(page: &Path, width: u32, is_dark: bool) -> Value {
+/// Returns what the script measures in a window of a width in pixels, with a dark or a light theme.
+fn measured(page: &Path, width: u32, is_dark: bool) -> Value {
     let profile = page.with_extension("profile");
     let mut browser = Command::new("chromium");
     browser
@@ -40,17 +40,18 @@ fn asked(page: &Path, width: u32, is_dark: bool) -> Value {
 
 #[test]
 #[ignore = "needs Chromium"]
-fn a_browser_shows_the_whole_page() {
+fn the_report_page_fits_the_window_and_shows_every_picture() {
     let folder = Folder::with([("a.scn", SCENE)]);
     let reported = folder.run("report a.scn -o out --runs 2 --budget 3");
     assert_eq!(reported.status, 0, "{}", reported.errors);
     let html = folder.text("out/index.html");
-    folder.write("asked.html", html.replacen("</body>", QUESTIONS, 1));
+    folder.write("asked.html", html.replacen("</body>", SCRIPT, 1));
     for (width, is_dark) in [(1280, false), (420, false), (1280, true)] {
-        let found = asked(&folder.path("asked.html"), width, is_dark);
-        let (ink, paper) = match is_dark {
-            false => ("rgb(17, 17, 17)", "rgb(255, 255, 255)"),
-            true => ("rgb(221, 221, 221)", "rgb(24, 24, 24)"),
+        let found = measured(&folder.path("asked.html"), width, is_dark);
+        let (ink, paper) = if is_dark {
+            ("rgb(221, 221, 221)", "rgb(24, 24, 24)")
+        } else {
+            ("rgb(17, 17, 17)", "rgb(255, 255, 255)")
         };
         for (path, expected) in [
             ("/wide", json!(0)),

@@ -17,7 +17,7 @@ fn axes(camera: &Camera) -> [DVec3; 3] {
     [&basis.u, &basis.v, &basis.w].map(|v| DVec3::from(v.each_ref().map(Big::to_f64)))
 }
 
-/// A camera at the origin that looks along −z, rolled.
+/// Returns a camera at the origin that looks along −z, with a roll.
 fn rolled(roll: Angle) -> Camera {
     Camera {
         roll,
@@ -25,10 +25,10 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// Along (1, 1, 1), u and v have in x the ratio that the sine and the cosine of 60 degrees have:
-/// equal products take each other away, and not all but a rounding of each other.
+/// Along (1, 1, 1), the x components of u and v have the ratio of sin 60° and cos 60°. The products
+/// in the rotated u cancel exactly; computed separately they would leave a rounding error.
 #[test]
-fn a_roll_that_ends_in_a_plane_of_the_axes_is_in_it() {
+fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
         let mut camera = along(DVec3::ZERO, dvec3(x, 1.0, 1.0));
         camera.roll = Angle::from_degrees(degrees);
@@ -38,7 +38,7 @@ fn a_roll_that_ends_in_a_plane_of_the_axes_is_in_it() {
 }
 
 #[test]
-fn straight_up_and_down_read_like_a_map() {
+fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     // (direction, up) to (right, top)
     let cases = [
@@ -46,7 +46,7 @@ fn straight_up_and_down_read_like_a_map() {
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // The same rule about the other axes.
+        // The same rule for up vectors along the other axes.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),
@@ -61,14 +61,14 @@ fn straight_up_and_down_read_like_a_map() {
     }
 }
 
-/// A positive roll dips the right side.
+/// A positive roll lowers the right side.
 #[test]
-fn quarter_rolls_are_exact_however_many() {
+fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);
     for turns in [0.0, 4.0, -4.0, 4e20] {
         for (quarter, right, top) in [(0.0, x, y), (1.0, -y, x), (2.0, -x, -y), (3.0, y, -x)] {
             if turns > 1e15 && quarter > 0.0 {
-                continue; // 90 is lost in the sum of such degrees
+                continue; // Adding 90 to such a number of degrees does not change it.
             }
             let roll = Angle::from_degrees(turns * 90.0) + Angle::from_degrees(quarter * 90.0);
             assert_eq!(axes(&rolled(roll)), [right, top, DVec3::Z]);
@@ -79,7 +79,7 @@ fn quarter_rolls_are_exact_however_many() {
 }
 
 #[test]
-fn the_field_of_view_is_the_windows_height() {
+fn fov_spans_the_height_of_the_window() {
     for (degrees, d) in [(90.0, 1.0), (179.999_999, 8.726_646_259_971_647e-9)] {
         let mut camera = rolled(Angle::default());
         camera.lens = Lens::Fov(Angle::from_degrees(degrees));

@@ -1,5 +1,5 @@
-//! What nobody wants any more is given up: reading a long text, in each way that there is to read
-//! one, and preparing many objects.
+//! Cancellation: reading a long text, in each way in which a text is read, and building a world of
+//! many objects end soon after they are cancelled.
 
 use std::{
     fmt::Write,
@@ -24,7 +24,7 @@ use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
-/// A text of many spheres, 55 bytes each.
+/// Returns a scene of many spheres, of about 55 bytes each.
 pub fn spheres(count: usize) -> String {
     let mut text = CAMERA.to_owned();
     for index in 0..count {
@@ -37,11 +37,11 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Does something to the end, and has it given up at two early moments by another thread: what is
-/// left then takes at least three quarters of the time, and it has to end long before that is done.
-/// Other work on the machine may delay either, so one of five tries is enough.
+/// Runs some work to its end, and cancels it from another thread after 1/16 and after 1/4 of that
+/// time. At least three quarters of the work are left then, and it must end within half the whole
+/// time. Other load on the machine may delay either, so one of five tries is enough.
 #[track_caller]
-fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
+fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {
         let mut tries = (0..5).map(|_| {
             let start = Instant::now();
@@ -67,7 +67,7 @@ fn check<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Syn
 }
 
 #[test]
-fn a_reading_is_given_up_whichever_way_it_goes() {
+fn reading_stops_soon_after_cancellation_in_every_mode() {
     let good = spheres(1_000);
     let lets = (0..1_500).map(|index| format!("let a_{index} = 1 + 2 * {index}\n"));
     let lets: String = lets.collect();
@@ -84,12 +84,12 @@ fn a_reading_is_given_up_whichever_way_it_goes() {
         ),
     ] {
         let sources = sources(&text).with_sets(set);
-        check(what, |cancel| scene::read_unless(&sources, cancel));
+        assert_stops_early(what, |cancel| scene::read_unless(&sources, cancel));
     }
 }
 
 #[test]
-fn the_preparation_of_objects_is_given_up() {
+fn building_a_world_stops_soon_after_cancellation() {
     let mut scene = read(&spheres(1));
     let mut objects = vec![scene.objects[0].clone(); 200_000];
     for (index, object) in (0u32..).zip(&mut objects) {
@@ -99,13 +99,13 @@ fn the_preparation_of_objects_is_given_up() {
         }
     }
     scene.objects = Arc::new(objects);
-    check("a world", |cancel| World::new_unless(&scene, cancel));
+    assert_stops_early("a world", |cancel| World::new_unless(&scene, cancel));
     let unwanted = World::new_unless(&scene, &AtomicBool::new(true));
     assert_eq!(unwanted.err(), Some(Cancelled));
 }
 
 #[test]
-fn what_is_unwanted_is_not_begun_or_ends_there() {
+fn a_cancelled_reading_does_not_start_or_stops_at_the_next_part() {
     let sources = sources(&format!("// Spheres.\n{}", spheres(100)));
     for parts in [0, 1] {
         let cancel = AtomicBool::new(parts == 0);

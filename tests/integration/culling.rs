@@ -1,5 +1,5 @@
-//! A picture is the same to the bit whether its samples are culled and traced many at a time, or
-//! one by one, as the oracle has judged them.
+//! A picture has the same bits whether its samples are culled and traced in batches, or one by one,
+//! which the tests of `tracer` compare with the oracle.
 
 use std::{
     collections::BTreeSet,
@@ -27,12 +27,12 @@ pub use self::one_by_one::one_by_one;
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
+    random::Random,
     scenes::{example, example_names, read, sampled, sampling, whole, with_samples},
     table::rows,
-    tracer::Random,
 };
 
-/// Compares a picture with the one made sample by sample; answers how many colours it has.
+/// Compares a picture with the one traced sample by sample, and returns its number of colours.
 #[track_caller]
 fn compare(scene: &Scene, method: Method, count: Count) -> usize {
     let scene = with_samples(scene, method, count);
@@ -54,9 +54,9 @@ fn compare(scene: &Scene, method: Method, count: Count) -> usize {
     colors.collect::<BTreeSet<_>>().len()
 }
 
-sampled_and_exhaustive!(every_example_by_every_method);
+sampled_and_exhaustive!(culling_is_exact_for_every_example_and_method);
 
-fn every_example_by_every_method(effort: Effort) {
+fn culling_is_exact_for_every_example_and_method(effort: Effort) {
     for name in effort.first(6, example_names()) {
         let scene = example(&name, 43, 29);
         for method in Method::SAMPLED {
@@ -74,7 +74,7 @@ fn every_example_by_every_method(effort: Effort) {
 }
 
 #[test]
-fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
+fn culling_is_exact_for_sample_counts_around_chunk_sizes() {
     let scene = example("figure_9_9", 11, 7);
     for n in [3, 4, 5, 7, 8, 63, 64, 65, 130, 4095, 4096, 4097, 9000] {
         assert!(compare(&scene, Method::Sobol, Count::PerPixel(n)) > 10);
@@ -82,7 +82,7 @@ fn many_samples_at_a_time_fill_their_chunks_and_end_them_early() {
 }
 
 #[test]
-fn boards_of_small_and_large_squares() {
+fn culling_is_exact_for_boards_of_small_and_large_squares() {
     for [view, boards, counts, colors] in rows(
         "
         -- A pixel's side on the floor is 1/32 when the eye looks down, so corners of pixels lie on every edge of a square: in each pixel beside one it is not certain by corners alone what is seen.
@@ -110,34 +110,34 @@ fn boards_of_small_and_large_squares() {
 }
 
 #[test]
-fn scenes_of_all_kinds() {
+fn culling_is_exact_for_generated_scenes() {
     for wild in [0, 5, 30] {
         let scenes = generated(Numbers::Wild(wild), [24, 18], 2024).take(100);
         let scenes = scenes.zip(Method::SAMPLED.into_iter().cycle());
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // A picture of ordinary numbers has ten colours on an average at least: edges mix them.
+        // A picture of ordinary numbers has at least ten colours on average, as edges mix them.
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
 
-sampled_and_exhaustive!(scenes_full_of_ties);
+sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 
-fn scenes_full_of_ties(effort: Effort) {
+fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // Offsets of odd eighths, and with one sample the centres: on edges and in planes.
+        // The offsets are odd eighths, or the centre for one sample: on edges and in planes.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Triangles that lie in one tilted plane or on the board and overlap, more than are kept in higher
-/// precisions.
+/// Overlapping triangles in one tilted plane or on the board, more than the cache of higher
+/// precisions holds.
 #[test]
-fn very_many_in_one_plane() {
+fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
     let mut place = || (random.bits() % 512) as f64 / 64.0 - 4.0;
     let mut few =
@@ -145,7 +145,8 @@ fn very_many_in_one_plane() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Of each plane by several normals. The tilted one is y = −z/3, the other the board's.
+        // Each plane is given by several normals. The tilted one is y = −z/3, the other the
+        // board's.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -161,7 +162,7 @@ fn very_many_in_one_plane() {
         }
     }
     few += "checkerboard {}\n";
-    // Once more each, with other normals and colours: what comes first in the file is seen.
+    // Each triangle once more, with another normal and colour: the first one in the file is seen.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
     assert!(compare(&few, Method::Jittered, Count::PerPixel(4)) > 100);
@@ -170,7 +171,7 @@ fn very_many_in_one_plane() {
     assert_eq!(few.pixels(), many.pixels());
 }
 
-/// Spheres of a colour each, their centres in a cube about the origin.
+/// Returns spheres of different colours with their centres in a cube about the origin.
 pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
     let sphere = |index| {
         let DVec3 { x, y, z } = random.vector(reach);
@@ -183,11 +184,11 @@ pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2
 }
 
 #[test]
-fn layers_near_and_far() {
+fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // In no order, and one of three a second time, which is not seen.
+            // The layers are shuffled, and one of three has a hidden duplicate.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -208,11 +209,12 @@ fn layers_near_and_far() {
 }
 
 #[test]
-fn crowds_of_objects_as_small_as_pixels() {
+fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture a few objects are nearby, which are told apart for several samples.
+    // In the larger picture only a few objects share a pixel, so several samples are compared
+    // together.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),
@@ -236,7 +238,8 @@ fn crowds_of_objects_as_small_as_pixels() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // Two equal ones, of which the first is seen, one that touches them, and very large ones.
+        // Two equal spheres, of which the first is seen, one that touches them, and very large
+        // ones.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }
@@ -246,10 +249,10 @@ fn crowds_of_objects_as_small_as_pixels() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // Some of them twice: the first is seen.
+        // Duplicates of some objects, which are hidden by the first ones.
         objects.extend_from_within(3500..4500);
-        // One sample a pixel is traced by itself where objects are dense, of which many samples are
-        // asked together.
+        // Where objects are dense, samples are traced one by one if there is one per pixel, and
+        // together if there are many.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

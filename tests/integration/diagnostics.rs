@@ -1,9 +1,9 @@
-//! Every diagnostic, as the fixtures in `tests/diagnostics` say, and whole reports as people see
-//! them.
+//! Every diagnostic, compared with the fixtures in `tests/diagnostics`, and whole reports as people
+//! see them.
 //!
 //! A fixture is a scene with the expectations in its own comments, below the line that they are
-//! about: `^^^` stands under the place to jump to, and `---` under every other label. A line `//
-//! --set TARGET=VALUE` is an argument, and what stands below it is about the argument. `//! …` is
+//! about: `^^^` stands below the primary label, and `---` below every other label. A line `// --set
+//! TARGET=VALUE` is an argument, and the expectations below it are about the argument. `//! …` is
 //! about the start of the text. `PINHOLE_BLESS=1 cargo test` writes them anew.
 
 use std::{collections::BTreeSet, fs, path::Path};
@@ -16,19 +16,19 @@ use pinhole::{
 
 use crate::{scenes::scenes, snapshot::assert_file};
 
-/// What is wrong with a text and the arguments that are given with it.
-pub fn found(text: &str, sets: &[&str]) -> Vec<Diagnostic> {
+/// Returns the diagnostics of a text with `--set` arguments.
+pub fn diagnose(text: &str, sets: &[&str]) -> Vec<Diagnostic> {
     let sources = Sources::new(Source::from_text("a.scn", text));
     scene::read(&sources.with_sets(sets)).diagnostics
 }
 
-/// The codes of that, without `pinhole::`.
+/// Returns the codes of the diagnostics of a text with `--set` arguments, without `pinhole::`.
 pub fn codes(text: &str, sets: &[&str]) -> Vec<String> {
-    let found = found(text, sets).into_iter();
+    let found = diagnose(text, sets).into_iter();
     found.map(|d| d.code.replace("pinhole::", "")).collect()
 }
 
-/// A line of a fixture that is an expectation, not a part of the scene.
+/// Returns whether a line of a fixture is an expectation and not part of the scene.
 fn is_expectation(line: &[u8]) -> bool {
     let Some(rest) = line.strip_prefix(b"//") else {
         return false;
@@ -42,14 +42,14 @@ fn is_expectation(line: &[u8]) -> bool {
 
 const SET: &str = "// --set ";
 
-/// The text of a fixture with the arguments that it gives.
+/// Returns the text of a fixture with its `--set` arguments.
 fn read(name: &str, bytes: &[u8]) -> Sources {
     let file = Source::from_bytes(name, bytes.to_vec());
     let sets: Vec<String> = sets(&file).map(|(_, set)| set.to_owned()).collect();
     Sources::new(file).with_sets(sets)
 }
 
-/// The fixtures by their names.
+/// Returns the fixtures with their names.
 pub fn fixtures() -> impl Iterator<Item = (String, Sources)> {
     scenes("tests/diagnostics").into_iter().map(|path| {
         let name = path.file_stem().expect("a name").to_string_lossy();
@@ -58,14 +58,14 @@ pub fn fixtures() -> impl Iterator<Item = (String, Sources)> {
     })
 }
 
-/// The lines that give an argument, counted from 1, with the arguments.
+/// Returns the `--set` arguments of a fixture with their line numbers, counted from 1.
 fn sets(file: &Source) -> impl Iterator<Item = (usize, &str)> {
     let lines = file.text().lines().enumerate();
     lines.filter_map(|(index, line)| Some((index + 1, line.strip_prefix(SET)?)))
 }
 
-/// The expectations that a fixture should have, each with the line that it stands below (0: the
-/// first).
+/// Returns the expectations that a fixture should have, each with the number of the line above it;
+/// 0 stands for the start of the text.
 fn expectations(sources: &Sources) -> Vec<(usize, String)> {
     let mut expected = Vec::new();
     for diagnostic in scene::read(sources).diagnostics {
@@ -75,14 +75,14 @@ fn expectations(sources: &Sources) -> Vec<(usize, String)> {
                 0 => (&first, "^"),
                 _ => (&label.message, "-"),
             };
-            let (line, drawn) = under(sources, label, sign);
+            let (line, drawn) = underlined(sources, label, sign);
             expected.push((line, format!("{drawn} {words}\n")));
         }
     }
     expected
 }
 
-fn under(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
+fn underlined(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
     let Span { source, start, end } = label.span;
     if source == SourceId::File && start == 0 && end == 0 {
         return (0, "//!".to_owned());
@@ -95,16 +95,17 @@ fn under(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
     };
     let column = from.column - 1 + shift;
     assert!(column >= 2, "{label:?}: indent the scene by two columns");
-    let last = match to.line == from.line {
-        true => to.column,
-        false => from.column + text.line_range(from.line).end - start,
+    let last = if to.line == from.line {
+        to.column
+    } else {
+        from.column + text.line_range(from.line).end - start
     };
     let width = (last - from.column).max(1);
     let blanks = " ".repeat(column - 2);
     (line, format!("//{blanks}{}", sign.repeat(width)))
 }
 
-/// The fixture with the expectations that it should have in place of those that it had.
+/// Returns a fixture with its expectations replaced by the correct ones.
 fn annotated(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     // A message can name a line, and a new expectation moves lines.
@@ -126,7 +127,7 @@ fn annotated(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn fixtures_say_what_they_produce() {
+fn diagnostic_fixtures_match_their_annotations() {
     for path in scenes("tests/diagnostics") {
         let bytes = fs::read(&path).expect("the fixture can be read");
         let annotated = annotated(&bytes);
@@ -139,7 +140,7 @@ fn fixtures_say_what_they_produce() {
     }
 }
 
-/// The codes that the stages have, without `pinhole::`: where they are written.
+/// Returns every code that the source of the stages mentions, without `pinhole::`.
 pub fn all_codes() -> BTreeSet<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut codes = BTreeSet::new();
@@ -161,7 +162,7 @@ pub fn all_codes() -> BTreeSet<String> {
 }
 
 #[test]
-fn every_code_has_its_fixture_and_every_report_stands_alone_and_helps() {
+fn every_code_has_a_fixture_and_every_diagnostic_has_help_and_labels() {
     let mut names = BTreeSet::new();
     for (name, sources) in fixtures() {
         let found = scene::read(&sources).diagnostics;
@@ -192,7 +193,7 @@ fn report(sources: &Sources, drawing: Drawing) -> String {
 }
 
 #[test]
-fn whole_reports() {
+fn whole_reports_match_their_snapshots() {
     for path in scenes("tests/diagnostics/report") {
         let name = path.file_name().expect("a name").to_string_lossy();
         let sources = read(&name, &fs::read(&path).expect("the scene can be read"));
@@ -209,7 +210,7 @@ fn whole_reports() {
 }
 
 #[test]
-fn colour_is_only_added_where_it_is_wanted() {
+fn reports_are_coloured_only_on_request() {
     let sources = Sources::new(Source::from_text("a.scn", "sphere { radus 2 }"));
     let diagnostics = scene::read(&sources).diagnostics;
     let style = Style {
@@ -218,10 +219,12 @@ fn colour_is_only_added_where_it_is_wanted() {
     };
     let colored = Report::new(&sources, style).human(&diagnostics);
     assert!(colored.contains("\x1b["));
+    let plain = Report::new(&sources, Style::default()).human(&diagnostics);
+    assert!(!plain.contains('\x1b'));
 }
 
 #[test]
-fn a_long_line_is_cut() {
+fn long_source_lines_are_cut_in_reports() {
     let long = format!(
         "sphere {{ center (0, 1, 0) {} radus 2 }}",
         "é".repeat(100_000)
@@ -235,7 +238,7 @@ fn a_long_line_is_cut() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // As some programs write it, without a mark; a comment need not be ASCII.
+    // Some programs write UTF-16 without a mark. A comment need not be ASCII.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {
@@ -252,8 +255,8 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal excerpts are cut around a label, and all else is wrapped at words. (Several
-/// labels in a line may need more room.)
+/// In a narrow terminal, excerpts are cut around the label and all other lines wrap at words.
+/// Several labels in a line may need more room.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

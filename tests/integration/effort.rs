@@ -1,10 +1,9 @@
-//! Tests whose tables take long: a sample of each in every run, the whole table where somebody asks
-//! for it.
+//! Tests with long tables of cases: every run tries a sample, and an exhaustive run all of them.
 //!
-//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does; it wants
+//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does. It needs
 //! Neovim, QEMU and Chromium, too.
 
-/// How much of its tables a test tries.
+/// Share of its cases that a test tries.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
     /// The first case of each table.
@@ -14,12 +13,12 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// The cases of a table that are tried.
+    /// Returns the cases of a table to try: the first one for a sample.
     pub fn of<T>(self, table: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
         self.first(1, table)
     }
 
-    /// The cases of a table of which a sample has as many.
+    /// Returns the cases of a table to try: a given number of them for a sample.
     pub fn first<T>(
         self,
         sample: usize,
@@ -32,7 +31,7 @@ impl Effort {
         table.into_iter().take(count)
     }
 
-    /// How long a text is, or how often something is tried: a sample takes a 64th.
+    /// Scales a length or a number of repetitions: a sample takes 1/64 of it.
     pub fn part_of(self, whole: usize) -> usize {
         match self {
             Self::Sample => whole / 64,

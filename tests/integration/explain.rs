@@ -1,9 +1,9 @@
-//! The pages of the diagnostic codes: each has its form, its wrong scene has that mistake and no
-//! other, its right one none.
+//! The explain pages of the diagnostic codes: each has the common structure, its wrong scene has
+//! that mistake alone, and its right scene none.
 //!
-//! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` a
-//! character that would not be seen. The `--set` arguments of a command in a fence `console` apply
-//! to the scene above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
+//! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` an
+//! invisible character. The `--set` arguments of a command in a fence `console` apply to the scene
+//! above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
 
 use std::{collections::BTreeSet, path::Path};
 
@@ -22,19 +22,19 @@ use crate::{
     table::rows,
 };
 
-/// The pages of the codes, as files.
+/// Returns the folder of the pages.
 fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"))
 }
 
-/// What stands in a page below a heading of the second order.
+/// Returns the text of a page below a heading of the second level.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
     let start = format!("\n## {heading}\n");
     let (_, rest) = page.text.split_once(&start).expect("the heading");
     rest.split_once("\n## ").map_or(rest, |(own, _)| own)
 }
 
-/// The scene of a section, with the `--set` arguments of its command.
+/// Returns the scene of a section, with the `--set` arguments of its command.
 fn sources(section: &str) -> Sources {
     let plain = fenced(section, "scn").into_iter().map(Vec::from);
     let escaped = fenced(section, "scn escaped").into_iter().map(unescaped);
@@ -68,7 +68,7 @@ fn unescaped(text: &str) -> Vec<u8> {
 }
 
 #[test]
-fn every_code_has_its_page_and_every_page_its_code() {
+fn every_diagnostic_code_has_exactly_one_explain_page() {
     let mut files: Vec<String> = explain::pages()
         .map(|page| format!("{}.md", page.code))
         .collect();
@@ -84,7 +84,7 @@ fn every_code_has_its_page_and_every_page_its_code() {
 }
 
 #[test]
-fn the_wrong_scene_has_the_mistake_and_no_other_and_the_right_one_has_none() {
+fn the_wrong_scene_of_a_page_has_only_its_code_and_the_right_one_none() {
     for page in explain::pages() {
         let found = |section: &str| scene::read(&sources(section)).diagnostics;
         let wrong = found(section(page, "Wrong")).into_iter();
@@ -98,7 +98,7 @@ fn the_wrong_scene_has_the_mistake_and_no_other_and_the_right_one_has_none() {
 }
 
 #[test]
-fn the_pages_are_of_one_form_and_no_two_are_alike() {
+fn explain_pages_share_one_structure_and_no_title_or_reason() {
     let mut alike = BTreeSet::new();
     for page in explain::pages() {
         let (code, lines) = (page.code, page.text.lines());
@@ -118,7 +118,7 @@ fn the_pages_are_of_one_form_and_no_two_are_alike() {
 }
 
 #[test]
-fn the_index_lists_all_pages() {
+fn the_index_lists_every_explain_page() {
     let mut index = String::from(
         "# Every mistake that Pinhole reports\n\n\
          `pinhole explain CODE` prints a page of this folder.\n",
@@ -132,14 +132,14 @@ fn the_index_lists_all_pages() {
     assert_file(&folder().join("README.md"), &index);
 }
 
-/// What is told of a word, as it is typed.
+/// Returns the output of `explain` for a word.
 fn explained(word: &str) -> String {
     let said = Folder::with([]).done(&format!("explain {word}"));
     said.text().to_owned()
 }
 
 #[test]
-fn without_a_code_all_are_listed() {
+fn explain_without_a_code_lists_every_code() {
     let text = explained("");
     let mut lines = text.lines().filter_map(|l| l.strip_prefix("  "));
     let codes = lines
@@ -151,7 +151,7 @@ fn without_a_code_all_are_listed() {
 }
 
 #[test]
-fn words_of_the_language_are_explained() {
+fn explain_describes_blocks_fields_functions_and_colours() {
     for row in schema::BLOCKS {
         let page = explained(row.name);
         assert!(page.contains(row.help), "{page}");

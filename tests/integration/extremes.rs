@@ -1,8 +1,8 @@
-//! Scenes of numbers of all sizes: whatever can be said is rendered, and no channel is anything but
-//! a number from 0 to 1.
+//! Scenes of numbers of any size: every valid scene is rendered, and every channel is a number from
+//! 0 to 1.
 //!
-//! A run of the tests asks 150, and 1200 with those that are ignored; `PINHOLE_SCENES=10000000
-//! cargo test extremes` asks ten million, for some hours.
+//! A run of the tests renders 150 scenes, or 1200 with the ignored tests. `PINHOLE_SCENES=10000000
+//! cargo test extremes` renders ten million, which takes some hours.
 
 use std::num::NonZero;
 
@@ -19,22 +19,22 @@ use crate::{
     culling::one_by_one,
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
+    random::Random,
     scenes::{exact, one_thread, read, rendered, resized, sampling, scenes, whole, with_samples},
     table::list,
-    tracer::Random,
 };
 
-/// How many scenes are rendered unless the environment says otherwise.
+/// Number of scenes in an exhaustive run, unless the environment gives another one.
 const SCENES: usize = 1200;
 
-/// Samples a pixel, at random.
+/// Number of random samples per pixel.
 const SAMPLES: u64 = 64;
 
-/// How far a mean of the samples may be from what it estimates: farther at one of 10^13
-/// (Hoeffding's inequality for numbers from 0 to 1).
+/// Maximum distance of a mean of the samples from the exact mean. By Hoeffding's inequality for
+/// numbers from 0 to 1, one of 10^13 means is farther off.
 const FAR: f64 = 0.49;
 
-/// So many of a hundred numbers may have any size.
+/// Percentages of the numbers of a scene that may have any size.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -44,9 +44,9 @@ fn assert_light(film: &Film, text: &str) {
     }
 }
 
-/// Renders a scene culled, one by one and exactly. Whether the samples' squares are those that the
-/// exact picture sums up is decided but by hundreds of bits where squares and places are numbers of
-/// all sizes, and not asked then.
+/// Renders a scene culled, one by one and exactly, and compares the three pictures. If squares and
+/// positions have any size, hundreds of bits are needed to decide whether a sample sees the square
+/// that the exact picture sums up, so `is_decided` then turns the comparison with samples off.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -68,9 +68,9 @@ fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     }
 }
 
-sampled_and_exhaustive!(whatever_the_numbers_every_channel_is_light);
+sampled_and_exhaustive!(channels_stay_between_0_and_1_for_scenes_of_any_numbers);
 
-fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
+fn channels_stay_between_0_and_1_for_scenes_of_any_numbers(effort: Effort) {
     let asked = std::env::var("PINHOLE_SCENES").ok();
     let count = match effort {
         _ if asked.is_some() => asked.unwrap().parse().unwrap(),
@@ -90,8 +90,7 @@ fn whatever_the_numbers_every_channel_is_light(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// Whatever part of the picture is asked for, and by however many threads, a pixel's candidates are
-/// those of one grid.
+/// For any crop and any number of threads, the candidates of a pixel come from one grid.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let others = Control {
@@ -107,10 +106,10 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
         let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
         for (index, (_, mut scene)) in scenes.take(count).enumerate() {
             if index % 5 == 0 {
-                // So far away that of what lies about the origin nothing is left.
+                // So far away that coordinates near the origin vanish in differences.
                 scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
             }
-            // More than a square of the grid, but few pixels.
+            // Pictures of few pixels that extend over several cells of the grid.
             let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
             let scene = resized(scene, width, height);
             let mut below = |n: u32| random.bits() as u32 % n;
@@ -133,12 +132,14 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(scenes_at_the_ends_of_the_range_of_numbers);
+sampled_and_exhaustive!(scenes_at_the_limits_of_f64_render_alike_in_every_way);
 
-/// The scenes of `tests/extremes`.
-fn scenes_at_the_ends_of_the_range_of_numbers(effort: Effort) {
+/// Renders the scenes of `tests/extremes`.
+fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     for path in scenes("tests/extremes") {
-        if effort == Effort::Sample && path.ends_with("what_quarters_do_not_mend.scn") {
+        if effort == Effort::Sample
+            && path.ends_with("a_pixel_that_quartering_does_not_improve.scn")
+        {
             continue;
         }
         let text = std::fs::read_to_string(path).unwrap();
@@ -146,9 +147,9 @@ fn scenes_at_the_ends_of_the_range_of_numbers(effort: Effort) {
     }
 }
 
-/// Its conic's two branches, in front of the eye and behind it, are one line in any precision.
+/// The two branches of its conic, in front of the eye and behind it, coincide in any precision.
 #[test]
-fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
+fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
         let text = format!(
             "image {{ width 1 height 1 background black }}
@@ -157,8 +158,8 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // The horizon is √(2h/R) above the middle, with the eye h from the surface; the view plane
-        // is as far as it is high.
+        // The horizon is √(2h/R) above the middle, with the eye at a distance h from the surface.
+        // The view plane is as far away as it is high.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(
@@ -170,10 +171,10 @@ fn a_sphere_that_is_a_plane_fills_half_a_pixel() {
     }
 }
 
-/// There a ray's direction is next to nothing beside all others', and so are the numbers that its
-/// surfaces are compared by.
+/// At the centre, a ray's direction is tiny compared with all others, and so are the numbers by
+/// which its surfaces are compared.
 #[test]
-fn in_the_middle_of_the_widest_views_the_nearest_surface_is_seen() {
+fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [
         "direction (0, -1, 0) up (0, 0, -1)",
         "direction (0.3, -1, 0.2)",

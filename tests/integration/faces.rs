@@ -1,4 +1,4 @@
-//! Boxes whose faces have colours of their own, held against the same faces as triangles.
+//! Boxes whose faces have different colours, compared with the same faces as triangles.
 
 use glam::DVec3;
 use pinhole::{
@@ -7,13 +7,14 @@ use pinhole::{
 };
 
 use crate::{
-    scenes::{exact, read, sampled, sources, with_samples},
+    diagnostics::codes,
+    scenes::{exact, read, sampled, with_samples},
     table::rows,
 };
 
 const COLORS: [&str; 3] = ["red", "#00ff00", "blue"];
 
-/// The twelve triangles of a box's faces, those of each axis in one colour.
+/// Returns the twelve triangles of a box's faces, with one colour per axis.
 fn triangles(min: DVec3, max: DVec3) -> String {
     let mut text = String::new();
     for (axis, color) in COLORS.into_iter().enumerate() {
@@ -34,8 +35,8 @@ fn triangles(min: DVec3, max: DVec3) -> String {
     text
 }
 
-/// A camera, and the corners of a box: from outside, from inside, cut by the near plane, with the
-/// eye in the plane of a face, with an edge along the view, far away.
+/// Cameras and the corners of a box: seen from outside, from inside, cut by the near or far plane,
+/// with the eye in the plane of a face, with an edge along the view, from far away.
 const VIEWS: &[(&str, [f64; 3], [f64; 3])] = &[
     (
         "eye (4, 3, 8) lookat (0, 1, 0)",
@@ -80,7 +81,7 @@ const VIEWS: &[(&str, [f64; 3], [f64; 3])] = &[
 ];
 
 #[test]
-fn faces_are_seen_as_triangles_in_their_place_would_be() {
+fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     for (camera, min, max) in VIEWS {
         let [min, max] = [*min, *max].map(DVec3::from);
         let [x, y, z] = COLORS;
@@ -117,7 +118,7 @@ fn faces_are_seen_as_triangles_in_their_place_would_be() {
     }
 }
 
-/// What a ray meets is told by the places of objects in the file.
+/// Asserts that the hits of a ray name objects by their index in the file.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {
@@ -136,7 +137,7 @@ fn objects_keep_their_places(scene: &Scene) {
 }
 
 #[test]
-fn what_is_no_list_of_three_colours_is_reported() {
+fn a_wrong_list_of_face_colours_is_reported() {
     let table = "
         color red colors (red, gold, blue) -> conflicting_fields
         colors red -> wrong_type
@@ -153,11 +154,6 @@ fn what_is_no_list_of_three_colours_is_reported() {
         let text = format!(
             "camera {{ eye (4, 3, 8) lookat (0, 1, 0) }} box {{ center (0, 1, 0) {fields} }}"
         );
-        let found = pinhole::scene::read(&sources(&text)).diagnostics;
-        let codes: Vec<&str> = found
-            .iter()
-            .map(|it| it.code.trim_start_matches("pinhole::"))
-            .collect();
-        assert_eq!(codes.join(" "), expected.trim(), "{fields}");
+        assert_eq!(codes(&text, &[]).join(" "), expected.trim(), "{fields}");
     }
 }

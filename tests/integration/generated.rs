@@ -1,22 +1,22 @@
-//! Scenes of random numbers, for what holds of every scene.
+//! Scenes of random numbers, for properties of every scene.
 
 use std::iter;
 
 use pinhole::scene::{self, Scene};
 
-use crate::{scenes::sources, tracer::Random};
+use crate::{random::Random, scenes::sources};
 
-/// Which numbers a scene has.
+/// Kind of numbers in a generated scene.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
-    /// Multiples of a unit. Of 1/2, eyes are on surfaces, rays in planes, through corners and along
-    /// edges, faces in common planes and at the depth of the near and the far plane.
+    /// Multiples of a unit. With 1/2, eyes lie on surfaces, rays in planes, through corners and
+    /// along edges, and faces in common planes and at the depths of the near and far planes.
     MultiplesOf(f64),
-    /// Some whole, some round, some neither; but so many of a hundred have any size.
+    /// Whole, round and other numbers, of which the given percentage may have any size.
     Wild(u64),
 }
 
-/// Pictures of up to eleven objects in each other's way, as texts and as scenes, without end.
+/// Generates endless scenes of up to eleven overlapping objects, as text and as scene.
 pub fn generated(
     numbers: Numbers,
     size: [u32; 2],
@@ -28,41 +28,33 @@ pub fn generated(
         shared: [1.0; 3],
     };
     let texts = iter::repeat_with(move || generator.scene(size));
-    // Others have mistakes: a triangle's sides, a direction of length 0.
+    // Texts with mistakes are skipped, such as impossible sides of a triangle or a zero direction.
     texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
 }
 
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that several things of the scene have.
+    /// Numbers that several parts of the scene share.
     shared: [f64; 3],
 }
 
 impl Generator {
-    fn below(&mut self, n: u64) -> u64 {
-        self.random.bits() % n
-    }
-
-    fn choose<T: Copy>(&mut self, among: &[T]) -> T {
-        among[self.random.bits() as usize % among.len()]
-    }
-
-    /// A number of up to a size if it is not one of any size.
+    /// Returns a number of at most a given size, unless it is one of any size.
     fn number(&mut self, size: f64) -> f64 {
         let ordinary = self.random.within(-size, size);
         let wild = match self.numbers {
             Numbers::MultiplesOf(unit) => return (ordinary / unit).round() * unit,
-            Numbers::Wild(share) => self.below(100) < share,
+            Numbers::Wild(share) => (self.random.below(100) as u64) < share,
         };
         let sign = ordinary.signum();
-        match self.below(10) {
+        match self.random.below(10) {
             0 if wild => sign * 5e-324,
             1 if wild => sign * f64::MIN_POSITIVE,
             2 if wild => sign * f64::MAX,
             3 if wild => sign * 0.0,
-            4 if wild => sign * self.choose(&self.shared.clone()).next_up(),
-            5 if wild => sign * self.choose(&self.shared.clone()),
+            4 if wild => sign * self.random.one_of(&self.shared).next_up(),
+            5 if wild => sign * self.random.one_of(&self.shared),
             6 | 7 if wild => sign * libm::exp10(self.random.within(-20.0, 20.0)),
             _ if wild => sign * libm::exp10(self.random.within(-323.0, 308.0)),
             0 | 1 => ordinary.round(),
@@ -71,7 +63,7 @@ impl Generator {
         }
     }
 
-    /// A number above 0, as those of 0 are mistakes.
+    /// Returns a positive number, as a length of 0 is a mistake.
     fn length(&mut self, size: f64) -> f64 {
         match self.number(size).abs() {
             0.0 => size,
@@ -85,7 +77,7 @@ impl Generator {
     }
 
     fn color(&mut self) -> &'static str {
-        self.choose(&[
+        *self.random.one_of(&[
             "black", "white", "red", "olive", "#012345", "gold", "cyan", "lime",
         ])
     }
@@ -93,26 +85,28 @@ impl Generator {
     fn scene(&mut self, [width, height]: [u32; 2]) -> String {
         self.shared = [(); 3].map(|()| self.number(2.0));
         let (background, eye) = (self.color(), self.vector(6.0));
-        let view = self.choose(&["direction", "lookat", "lookat", "lookat", "lookat"]);
+        let view = *self
+            .random
+            .one_of(&["direction", "lookat", "lookat", "lookat", "lookat"]);
         let mut camera = format!("eye {eye} {view} {}", self.vector(1.0));
-        if self.below(3) == 0 {
+        if self.random.below(3) == 0 {
             camera += &format!(" up {}", self.vector(1.0));
         }
-        if self.below(3) == 0 {
+        if self.random.below(3) == 0 {
             camera += &format!(" roll {:?}deg", 90.0 * self.number(2.0));
         }
-        camera += &match self.below(5) {
+        camera += &match self.random.below(5) {
             0 => format!(" d {:?}", self.length(2.0)),
             1 | 2 => format!(" fov {:?}deg", 70.0 * self.length(2.0)),
             3 => format!(" hfov {:?}deg", 80.0 * self.length(2.0)),
             _ => " view_height 4".to_owned(),
         };
         for (clip, size) in [("near", 3.0), ("far", 12.0)] {
-            if self.below(5) == 0 {
+            if self.random.below(5) == 0 {
                 camera += &format!(" {clip} {:?}", self.length(size));
             }
         }
-        let objects: String = (0..self.below(12)).map(|_| self.object()).collect();
+        let objects: String = (0..self.random.below(12)).map(|_| self.object()).collect();
         format!(
             "image {{ width {width} height {height} background {background} }} camera {{ {camera} }}\n{objects}"
         )
@@ -121,7 +115,7 @@ impl Generator {
     fn object(&mut self) -> String {
         let [color, other] = [(); 2].map(|()| self.color());
         let center = self.vector(2.0);
-        let shape = match self.below(8) {
+        let shape = match self.random.below(8) {
             0 | 1 => format!("sphere {{ center {center} radius {:?}", self.length(1.25)),
             2 => format!(
                 "triangle {{ v0 {center} v1 {} v2 {}",
@@ -130,9 +124,9 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No longer than the other two together, and often just as long; or a triangle
-                // whose vertices are rational.
-                let sides = match self.below(4) {
+                // No side is longer than the other two together, and often one is just as long; or
+                // a triangle has rational vertices.
+                let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],
                     2 => [a, b, a.max(b)],

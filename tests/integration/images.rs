@@ -1,7 +1,7 @@
-//! The examples as small pictures, byte for byte, and the gallery that shows them.
+//! The examples as small pictures, compared byte for byte, and the gallery that shows them.
 //!
-//! `PINHOLE_BLESS=1 cargo test images` writes the real pictures into `examples/pictures`: look at
-//! them before they are kept.
+//! `PINHOLE_BLESS=1 cargo test images` writes the current pictures into `examples/pictures`: look
+//! at them before you keep them.
 
 use std::{fs, path::Path};
 
@@ -26,8 +26,8 @@ fn rendered(text: &str) -> image::RgbImage {
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 
-/// A PNG file of other programs. What `image` writes into memory would be compiled anew here, with
-/// all formats that it knows.
+/// Writes a PNG file of any colour type. `image`'s own encoder would be compiled anew for this
+/// module, with all formats that it knows.
 pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -40,7 +40,7 @@ pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &
 }
 
 #[test]
-fn the_examples_look_as_they_did() {
+fn the_examples_match_their_stored_pictures() {
     let bless = std::env::var_os("PINHOLE_BLESS").is_some();
     let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/pictures");
     let names = example_names();
@@ -85,9 +85,9 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
     assert_eq!(shown, example_names());
 }
 
-/// The course's scenes are short, without a mistake and laid out, and the sheet shows them.
+/// The course's scenes are short, correct and formatted, and the sheet shows them.
 #[test]
-fn the_course_is_short_and_its_sheet_shows_it() {
+fn the_course_is_short_valid_formatted_and_matches_its_sheet() {
     let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/course");
     let names = crate::program::names(&course);
     let scenes: Vec<&String> = names.iter().filter(|name| name.ends_with(".scn")).collect();

@@ -1,4 +1,4 @@
-//! `inspect` and `probe` as data: against hand-made numbers and the oracle.
+//! Data of `inspect` and `probe`, compared with numbers computed by hand and with the oracle.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
@@ -13,8 +13,9 @@ use pinhole::{
 use crate::{
     generated::{Numbers, generated},
     program::Folder,
+    random::Random,
     scenes::{example_text as example, json_of, read, sources},
-    tracer::{Random, camera, cuboid, floor, sphere, triangle},
+    tracer::{camera, cuboid, floor, sphere, triangle},
 };
 
 fn inspected(text: &str) -> Inspection {
@@ -43,7 +44,8 @@ fn the_default_triangle_has_the_sides_of_the_assignment() {
             ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
             0.0,
         ),
-        // Level base, apex above it, and right of left as seen from the tip of the normal.
+        // The base is level, the apex above it, and `right` to the right as seen from the normal's
+        // tip.
         (left.y, right.y),
         (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
     ] {
@@ -76,7 +78,7 @@ fn vanishing_points_are_where_far_points_are_seen() {
 }
 
 #[test]
-fn all_crossings_are_listed_and_one_is_seen() {
+fn probe_lists_all_intersections_and_marks_the_visible_one() {
     let text = "camera { eye (0, 0, 10) direction (0, 0, -1) near 10 }
         sphere A { center (0, 0, 0) radius 2 color teal }
         sphere B { center (0, 0, 0) radius 2 color red }
@@ -93,7 +95,7 @@ fn all_crossings_are_listed_and_one_is_seen() {
 }
 
 #[test]
-fn distances_and_points_are_right_to_the_last_bit() {
+fn probed_distances_and_points_are_correctly_rounded() {
     let mut random = Random::new(3);
     for _ in 0..60 {
         let eye = random.vector(5.0);
@@ -132,7 +134,7 @@ fn distances_and_points_are_right_to_the_last_bit() {
 }
 
 #[test]
-fn what_the_probe_sees_is_what_the_picture_shows() {
+fn probe_sees_the_colour_that_the_picture_shows() {
     let scene = read(&example("piercing"));
     let world = World::new(&scene);
     for y in (0..450).step_by(37) {
@@ -145,16 +147,16 @@ fn what_the_probe_sees_is_what_the_picture_shows() {
 }
 
 #[test]
-fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
+fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere is seen 10 times the eye's distance to the right: at x = 20 in the view plane, 225
-    // pixels a unit.
+    // The sphere is 10 times as far to the right as it is away: at x = 20 in the view plane, with
+    // 225 pixels per unit.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked case a floor point is twice its view plane point (1, −1.5), 160 pixels to the
-    // right of the middle and 240 above it.
+    // In the worked example, a floor point is twice its view plane point (1, −1.5), which is 160
+    // pixels to the right of the centre and 240 above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -175,20 +177,20 @@ fn points_far_away_and_the_widest_and_the_narrowest_views_are_probed() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view the box has less of the pixel than numbers can tell.
+        // In the widest view the box covers less of the pixel than a number can express.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
-    // What is beyond the range of numbers is shown at its end.
+    // Values beyond the range of numbers are shown as its largest number.
     let text = "camera { eye (0, 1.7e308, 0) direction (0, -1, -1) } checkerboard {}";
     let (hit, ..) = &probed(text, 400.0, 225.0).hits[0];
     assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
 }
 
-/// What is seen of each object, through the program's own answer.
+/// Visibility of each object in the program's own output.
 #[test]
-fn what_is_seen_of_each_object_is_told() {
+fn inspect_reports_what_is_visible_of_each_object() {
     let scene =
         "image { width 100 height 100 } camera { eye (0, 0, 10) lookat (0, 0, 0) fov 90deg near 1 far 100 }
          box Wall { min (-5, -5, -1) max (5, 5, 0) }
@@ -210,9 +212,9 @@ fn what_is_seen_of_each_object_is_told() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the middle. In a view plane
-        // at 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance
-        // c and depth z has the area π r² √(c² − r²) / (z² − r²)^1.5.
+        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the centre. In a view plane at
+        // 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance c and depth
+        // z has the area π r² √(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {
@@ -222,9 +224,9 @@ fn what_is_seen_of_each_object_is_told() {
     assert_eq!(hits["hits"][0]["indices"].to_string(), "[0]", "{hits}");
 }
 
-/// Two scenes are compared without noise, and each command line ends as it says.
+/// Two scenes are compared without noise, and each command line has its exit status and message.
 #[test]
-fn scenes_are_compared_exactly() {
+fn diff_compares_two_scenes_without_sampling_noise() {
     let folder = Folder::with([
         (
             "a.scn",
@@ -257,9 +259,9 @@ fn scenes_are_compared_exactly() {
     assert!(!folder.read("heat.png").is_empty());
 }
 
-/// A warning that an object is outside of the picture is never false: nothing of it is seen.
+/// A warning that an object is outside the picture is never false: no pixel shows it.
 #[test]
-fn nothing_is_seen_of_what_lies_outside_of_the_picture() {
+fn objects_reported_outside_the_picture_are_not_visible() {
     let mut outside = 0;
     for (text, _) in generated(Numbers::Wild(0), [12, 8], 3).take(300) {
         let Some(scene) = scene::read(&sources(&text)).scene else {
@@ -280,9 +282,9 @@ fn nothing_is_seen_of_what_lies_outside_of_the_picture() {
     assert!(outside > 50, "{outside}");
 }
 
-/// People see a hundred objects, and programs all.
+/// The text output lists a hundred objects, and the JSON output all of them.
 #[test]
-fn of_very_many_objects_the_first_ones_are_listed() {
+fn inspect_lists_100_objects_and_summarizes_the_rest() {
     let scene =
         "camera { eye (0, 0, 10) lookat (0, 0, 0) } sphere for i < 1100 { center (i, 0, 0) }";
     let folder = Folder::with([("a.scn", scene)]);
@@ -293,7 +295,7 @@ fn of_very_many_objects_the_first_ones_are_listed() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    // All but the first eight are beside the window, which is 17.8 m wide where they are.
+    // All except the first eight are beside the window, which is 17.8 m wide at their distance.
     let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
     assert!(said.contains(rest), "{said}");
     let json = folder.done("inspect a.scn --format json").json();
@@ -304,7 +306,7 @@ fn of_very_many_objects_the_first_ones_are_listed() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // In sum it is as much as it is one by one.
+    // The summary counts what the objects count one by one.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

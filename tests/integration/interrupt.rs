@@ -1,23 +1,31 @@
 //! Ctrl-C as a terminal sends it, and the signal by which a system ends a program.
 
 use std::{
-    process::{Command, Stdio},
+    process::{Child, Command, Stdio},
     thread,
     time::{Duration, Instant},
 };
 
-use crate::program::{Folder, Said};
+use crate::program::{Folder, Outcome};
 
-/// A command that is interrupted after so many milliseconds: long enough to have begun, and far
-/// from long enough to be done. What it says then.
-pub fn interrupted(command: &mut Command, after: u64) -> Said {
-    let (said, time) = ended_by("INT", command, after);
+/// Runs a command and interrupts it after some milliseconds, when it has begun and is far from
+/// done. Returns its output.
+pub fn interrupted(command: &mut Command, after: u64) -> Outcome {
+    let (said, time) = end_with_signal("INT", command, after);
     assert!(time < Duration::from_secs(5));
     said
 }
 
-/// The same by any signal, and how long it took to end.
-fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Said, Duration) {
+/// Sends a signal to a process.
+pub fn send_signal(signal: &str, child: &Child) {
+    let mut kill = Command::new("kill");
+    let sent = kill.args([format!("-{signal}"), child.id().to_string()]);
+    assert!(sent.status().unwrap().success());
+}
+
+/// Runs a command and sends it a signal after some milliseconds. Returns its output, and the time
+/// that it took to end.
+fn end_with_signal(signal: &str, command: &mut Command, after: u64) -> (Outcome, Duration) {
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     thread::sleep(Duration::from_millis(after));
@@ -25,20 +33,17 @@ fn ended_by(signal: &str, command: &mut Command, after: u64) -> (Said, Duration)
         child.try_wait().unwrap().is_none(),
         "it was over before it was interrupted"
     );
-    let killed = Command::new("kill")
-        .args([format!("-{signal}"), child.id().to_string()])
-        .status();
-    assert!(killed.unwrap().success());
+    send_signal(signal, &child);
     let start = Instant::now();
     let output = child.wait_with_output().unwrap();
     let time = start.elapsed();
-    let said = Said::from(output);
+    let said = Outcome::from(output);
     assert_eq!(said.status, 130, "{}", said.errors);
     (said, time)
 }
 
-/// A picture of one pixel, in which so many spheres are nearly the same that its exact mean takes
-/// more than a minute.
+/// Returns a scene of one pixel with so many nearly equal spheres that its exact mean takes more
+/// than a minute.
 pub fn long_pixel() -> String {
     let spheres = (0..150).map(|i| format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n"));
     format!(
@@ -49,7 +54,7 @@ pub fn long_pixel() -> String {
 }
 
 #[test]
-fn one_signal_ends_it_within_a_pixel() {
+fn a_signal_ends_a_command_within_one_pixel() {
     let folder = Folder::with([("long.scn", &*long_pixel())]);
     let black = image::RgbImage::new(1, 1);
     black.save(folder.path("black.png")).unwrap();
@@ -68,7 +73,7 @@ fn one_signal_ends_it_within_a_pixel() {
         #[cfg(feature = "report")]
         ("INT", "report long.scn"),
     ] {
-        let (_, time) = ended_by(signal, &mut folder.command(line), 500);
+        let (_, time) = end_with_signal(signal, &mut folder.command(line), 500);
         assert!(time < Duration::from_millis(900), "{line}: {time:?}");
         assert_eq!(folder.names(), ["black.png", "long.scn"], "{line}");
     }

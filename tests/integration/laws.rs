@@ -1,7 +1,7 @@
-//! Laws of pictures: what moving, turning, scaling and mirroring a world with its camera does to
-//! them, to the bit.
+//! Laws of pictures: the effect of moving, turning, scaling and mirroring a world together with its
+//! camera, to the bit.
 //!
-//! Coordinates are multiples of 1/128, so that moving and turning them is exact.
+//! Coordinates are multiples of 1/128, so moving and turning them is exact.
 
 use std::{collections::HashSet, sync::Arc};
 
@@ -14,23 +14,24 @@ use pinhole::{
 use crate::{
     exact::{difference, pixel},
     generated::{Numbers, generated},
+    random::Random,
     scenes::{exact, resized, sampled, whole, with_samples},
-    tracer::{Random, is_upright},
+    tracer::is_upright,
 };
 
-/// The scenes of which a law is asked, sampled by a method.
+/// Generates the scenes on which a law is tested, sampled by a method.
 fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
     let scenes = generated(Numbers::MultiplesOf(1.0 / 64.0), [24, 24], seed);
     let scenes = scenes.map(move |(_, scene)| {
         let mut scene = with_samples(&scene, method, Count::PerPixel(9));
-        // On no surface.
+        // The eye lies on no surface.
         scene.camera.eye.y += 1.0 / 128.0;
         for board in shapes(&mut scene).filter_map(board) {
             board.square = 1.0;
         }
         scene
     });
-    // A board, and more than its two colours, is seen.
+    // Selects scenes with a board and more than two colours in the picture.
     let is_full = |scene: &Scene| {
         let mut objects = scene.objects.iter();
         let has_board = objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)));
@@ -67,7 +68,7 @@ fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
     }
 }
 
-/// The same world with all places changed by one map, all directions and lengths by others.
+/// Maps all points of a scene by one function, all directions by another, and scales all lengths.
 fn mapped(
     scene: &Scene,
     place: impl Fn(DVec3) -> DVec3,
@@ -116,10 +117,10 @@ fn swap_colors(scene: &mut Scene) {
     }
 }
 
-/// The pictures of two scenes of one size are the same but for where their pixels go: sampled to
-/// the bit, and exactly as far as their bounds allow to say so.
+/// Asserts that the pictures of two scenes are equal except for the positions of their pixels:
+/// sampled pictures to the bit, and exact ones within their bounds.
 #[track_caller]
-fn agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
+fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
     let [one, other] = [before, after].map(sampled);
     for (x, y) in whole(before).iter() {
         let [other_x, other_y] = goes(one.width(), [x, y]);
@@ -138,7 +139,7 @@ fn agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // A rounding of each, besides.
+        // Each value has a rounding of its own, too.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");
@@ -151,8 +152,8 @@ fn quarter_turns_about_y_swap_the_boards_colours() {
         // The square at (i, j) becomes that at (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // A normal along the axis does not turn its triangle with it, whose base then is along the
-        // world's x: spin does.
+        // A triangle whose normal is along the axis does not turn with its normal, as its base
+        // stays along the world's x. Its spin turns it.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);
@@ -163,7 +164,7 @@ fn quarter_turns_about_y_swap_the_boards_colours() {
         if turns % 2 == 1 {
             swap_colors(&mut after);
         }
-        agree(&world, &after, |_, at| at);
+        assert_pictures_agree(&world, &after, |_, at| at);
     }
 }
 
@@ -177,7 +178,7 @@ fn moving_by_squares_swaps_the_boards_colours_if_they_are_odd() {
         if (x + z) % 2.0 != 0.0 {
             swap_colors(&mut after);
         }
-        agree(&world, &after, |_, at| at);
+        assert_pictures_agree(&world, &after, |_, at| at);
     }
 }
 
@@ -187,13 +188,13 @@ fn scaling_by_a_power_of_two_changes_nothing() {
     for world in worlds(3, Method::MultiJittered) {
         let scale = libm::exp2(random.within(-900.0, 900.0).round());
         let after = mapped(&world, |p| p * scale, |v| v * scale, scale);
-        agree(&world, &after, |_, at| at);
+        assert_pictures_agree(&world, &after, |_, at| at);
     }
 }
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // Of an even and an odd number of columns.
+    // Pictures with an even and an odd number of columns.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);
@@ -204,7 +205,7 @@ fn a_mirror_in_x_mirrors_the_picture() {
             triangle.spin = -triangle.spin;
         }
         swap_colors(&mut after);
-        agree(&world, &after, |width, [x, y]| [width - 1 - x, y]);
+        assert_pictures_agree(&world, &after, |width, [x, y]| [width - 1 - x, y]);
     }
 }
 
@@ -214,6 +215,6 @@ fn a_quarter_roll_turns_the_picture() {
         let mut after = world.clone();
         after.camera.roll.degrees += 90.0;
         // Rolled to the right, the camera sees the world turned counter-clockwise.
-        agree(&world, &after, |width, [x, y]| [y, width - 1 - x]);
+        assert_pictures_agree(&world, &after, |width, [x, y]| [y, width - 1 - x]);
     }
 }

@@ -38,6 +38,7 @@ mod parts;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod processors;
 mod program;
+mod random;
 mod random_scenes;
 mod readme;
 mod refine;

@@ -1,4 +1,4 @@
-//! The hard cases: none is decided wrongly, and each is hard.
+//! The hard cases of `report --numerics`: none is decided wrongly, and each is hard.
 
 use std::{
     collections::BTreeSet,
@@ -16,7 +16,7 @@ use pinhole::{
 
 use crate::effort::{Effort, sampled_and_exhaustive};
 
-/// The inputs of each case in every run.
+/// Number of inputs of each case in every run.
 const INPUTS: u64 = 1_000;
 
 fn run(inputs: u64, threads: Option<usize>) -> Table {
@@ -27,7 +27,7 @@ fn run(inputs: u64, threads: Option<usize>) -> Table {
     numerics::run(inputs, &control).unwrap()
 }
 
-/// The table, made once for all tests.
+/// Returns the table, which is made once for all tests.
 fn table() -> &'static Table {
     static TABLE: OnceLock<Table> = OnceLock::new();
     TABLE.get_or_init(|| run(INPUTS, None))
@@ -48,19 +48,19 @@ fn no_hard_case_is_decided_wrongly(effort: Effort) {
 }
 
 #[test]
-fn every_case_breaks_the_textbook_and_stays_within_the_bound_that_is_claimed() {
+fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // The last bit of a distance is a rounding's: were it never wrong, nothing would have
-            // been measured.
+            // A distance is rounded, so its last bit is sometimes wrong: an error of 0 would mean
+            // that nothing was measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
-            // Rays parallel to the board meet it nowhere.
+            // Rays parallel to the board never meet it.
             None => assert_eq!(id, "P2"),
         }
         if row.case.decides() {
             let share = tally.wrong[0] as f64 / INPUTS as f64;
-            // Equal spheres and their like are decided alike by the same formula, in any precision.
+            // Equal spheres are decided correctly by one formula, in any precision.
             let least = if id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{id}: {share}");
         } else {
@@ -77,7 +77,7 @@ fn the_table_is_the_same_for_any_number_of_threads() {
 }
 
 #[test]
-fn it_can_be_watched_and_cancelled() {
+fn the_numerics_report_shows_progress_and_can_be_cancelled() {
     let (done, cancel) = (AtomicU64::new(0), AtomicBool::new(false));
     let control = Control {
         progress: &|inputs| {
@@ -90,13 +90,13 @@ fn it_can_be_watched_and_cancelled() {
     let table = numerics::run(1_000_000, &control).unwrap();
     let done = done.load(Ordering::Relaxed);
     assert!((1..10_000).contains(&done));
-    // What was asked is there, and nothing else.
+    // The table holds the inputs tried so far, and no others.
     assert_eq!((table.inputs(), table.is_complete()), (done, false));
     assert!(table.rows.iter().all(|row| row.tally.inputs > 0));
 }
 
 #[test]
-fn the_table_fits_a_terminal_and_a_program() {
+fn the_numerics_table_fits_100_columns_and_has_a_json_form() {
     let text = table().to_string();
     assert!(text.lines().all(|line| line.chars().count() <= 100));
     assert!(!text.contains("incomplete"));

@@ -1,7 +1,7 @@
-//! A text that is read in parts means what it means as a whole: the same tree, the same scene, the
-//! same diagnostics.
+//! A text read in parts means the same as read as a whole: it has the same tree, scene and
+//! diagnostics.
 //!
-//! Parts of a single byte are taken apart at every brace, so that small texts have many.
+//! With a part size of one byte, texts are split at every brace, so small texts have many parts.
 
 use std::sync::atomic::AtomicBool;
 
@@ -13,9 +13,9 @@ use crate::{
     table::{lines, list},
 };
 
-/// Compares the two ways; answers whether the text was parsed in parts.
+/// Compares both ways of reading. Returns whether the text was parsed in parts.
 #[track_caller]
-pub fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
+pub fn assert_same_in_parts(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let sources = sources(text).with_sets(sets);
     let whole = syntax::parse(&sources.file, SourceId::File);
     let mut items = Vec::new();
@@ -37,16 +37,18 @@ pub fn check(text: &str, bytes: usize, sets: &[&str]) -> bool {
 }
 
 #[test]
-fn every_scene() {
+fn every_scene_means_the_same_when_read_in_parts() {
     let scenes = all_scenes().into_iter();
-    let in_parts = scenes.filter(|text| check(text, 1, &[])).count();
-    // Those of the examples alone; the others are there for their mistakes.
+    let in_parts = scenes
+        .filter(|text| assert_same_in_parts(text, 1, &[]))
+        .count();
+    // These are the examples; most other scenes have mistakes.
     assert!(in_parts >= 20, "{in_parts}");
 }
 
-/// What is one mistake at a brace, or two across a part's end.
+/// Mistakes at a brace, or on both sides of the end of a part.
 #[test]
-fn mistakes_at_the_end_of_a_part() {
+fn mistakes_at_a_part_boundary_are_reported_as_in_the_whole_text() {
     let camera = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
     for text in list(
         r#"
@@ -77,14 +79,14 @@ fn mistakes_at_the_end_of_a_part() {
             format!("{camera}{text}"),
             format!("{text}\n{camera}"),
         ] {
-            check(&text, 1, &[]);
-            check(&text, 20, &["image.width=64"]);
+            assert_same_in_parts(&text, 1, &[]);
+            assert_same_in_parts(&text, 20, &["image.width=64"]);
         }
     }
 }
 
 #[test]
-fn arguments() {
+fn set_arguments_mean_the_same_when_the_text_is_read_in_parts() {
     let text = "let a = 1 camera { eye (0, 2, 8) lookat (0, a, 0) } sphere Ball { center (0, a, 0) } let b = 2 sphere { center (b, 1, 0) }";
     for sets in lines(
         "
@@ -109,6 +111,6 @@ fn arguments() {
         Ball.radius=2 -> Ball.radius=b
     ",
     ) {
-        assert!(check(text, 1, &sets));
+        assert!(assert_same_in_parts(text, 1, &sets));
     }
 }

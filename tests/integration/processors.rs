@@ -1,8 +1,8 @@
-//! The same pictures on other processors, for which QEMU has to be there: `cargo test -- --ignored
-//! processors`, with `qemu-x86_64` on the path.
+//! The same pictures on other processors. Needs `qemu-x86_64` on the path: `cargo test -- --ignored
+//! processors`.
 //!
-//! Which vectors there are is asked at run time, so the same code goes other ways on a processor
-//! that has none.
+//! Vector instructions are detected at run time, so the same binary takes other paths on a
+//! processor that has none.
 
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 
@@ -17,8 +17,8 @@ use crate::{
     scenes::{example, rendered, whole, with_samples},
 };
 
-/// As QEMU calls them: one with the vectors that every processor of the kind has, two numbers wide,
-/// and one with four.
+/// Processors by their names in QEMU: one with only the baseline vectors of two doubles, and one
+/// with vectors of four.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
 
 const SCENES: [&str; 5] = [
@@ -29,11 +29,11 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Says where the test is to leave its pictures, and that it has no more to do.
+/// Environment variable with the folder for the pictures; if it is set, the test only draws them.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// The test runs itself on the others, once each: QEMU translates most of what it runs anew in each
-/// process.
+/// The test runs its own binary in QEMU once per processor, as QEMU translates most of the code
+/// anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
@@ -61,7 +61,7 @@ fn all_processors_make_the_same_pictures() {
     }
 }
 
-/// Small pictures of all scenes by all methods, as files of both formats.
+/// Writes small pictures of all scenes by all methods, in both formats.
 fn draw(folder: &Path) {
     for name in SCENES {
         let scene = example(name, 32, 24);

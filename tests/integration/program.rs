@@ -1,4 +1,4 @@
-//! The program as it is called from outside.
+//! The program, run from outside.
 
 use std::{
     ffi::OsStr,
@@ -11,7 +11,8 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The program in a folder, whatever the environment says of languages and terminals.
+/// Returns a command that runs the program in a folder, independent of the environment's language
+/// and terminal settings.
 pub fn command(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
     any_command(env!("CARGO_BIN_EXE_pinhole"), folder, arguments)
 }
@@ -28,7 +29,7 @@ fn any_command(program: &str, folder: &Path, arguments: &[impl AsRef<OsStr>]) ->
     command
 }
 
-/// The names of what is in a folder, sorted.
+/// Returns the sorted names of a folder's entries.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -37,8 +38,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The words of a line as a shell takes them: blanks are between them, but for those in single
-/// quotes.
+/// Splits a line into words as a shell does: at white space, except in single quotes.
 pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -57,19 +57,19 @@ pub fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// What a call came to.
-pub struct Said {
+/// Result of a command.
+pub struct Outcome {
     pub status: i32,
     pub output: Vec<u8>,
     pub errors: String,
 }
 
-impl Said {
+impl Outcome {
     pub fn text(&self) -> &str {
         std::str::from_utf8(&self.output).unwrap()
     }
 
-    /// The output's only line.
+    /// Parses the only line of the output.
     pub fn json(&self) -> Value {
         let text = self.text();
         assert!(text.ends_with('\n') && text.lines().count() == 1, "{text}");
@@ -77,7 +77,7 @@ impl Said {
     }
 }
 
-impl From<Output> for Said {
+impl From<Output> for Outcome {
     fn from(output: Output) -> Self {
         Self {
             status: output.status.code().expect("the process was not killed"),
@@ -87,7 +87,7 @@ impl From<Output> for Said {
     }
 }
 
-/// A folder of its own, in which the program is called by lines as one types them.
+/// Temporary folder in which the program is run by lines as one types them.
 pub struct Folder(TempDir);
 
 impl Folder {
@@ -103,11 +103,18 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Writes a file, in a folder that is made if there is none.
+    /// Writes a file, and makes its folder if there is none.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, content).unwrap();
+    }
+
+    /// Makes a pipe.
+    #[cfg(unix)]
+    pub fn make_pipe(&self, name: &str) {
+        let made = Command::new("mkfifo").arg(self.path(name)).status();
+        assert!(made.unwrap().success());
     }
 
     pub fn read(&self, name: &str) -> Vec<u8> {
@@ -126,40 +133,41 @@ impl Folder {
         command(self.0.path(), &words(line))
     }
 
-    /// What a shell does with a line in which the program is called `pinhole`.
-    pub fn shell(&self, line: &str) -> Said {
+    /// Runs a line in a shell, in which the program is called `pinhole`.
+    pub fn shell(&self, line: &str) -> Outcome {
         let program = Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
         let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
         let mut shell = any_command("sh", self.0.path(), &["-c", line]);
         shell.env("PATH", path).output().unwrap().into()
     }
 
-    pub fn run(&self, line: &str) -> Said {
+    pub fn run(&self, line: &str) -> Outcome {
         self.command(line).output().unwrap().into()
     }
 
-    /// What a command says that has something on its standard input.
-    pub fn run_reading(&self, line: &str, input: impl AsRef<[u8]>) -> Said {
+    /// Runs a command with a standard input.
+    pub fn run_reading(&self, line: &str, input: impl AsRef<[u8]>) -> Outcome {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // A command that does not read its input may be gone already.
+        // A command that does not read its input may have ended already.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }
 
-    /// The output of what has to be done without a word.
+    /// Runs a command that must succeed and print nothing on standard error.
     #[track_caller]
-    pub fn done(&self, line: &str) -> Said {
+    pub fn done(&self, line: &str) -> Outcome {
         let said = self.run(line);
         assert_eq!((said.status, said.errors.as_str()), (0, ""), "{line}");
         said
     }
 
-    /// What is told to people, and to nobody else, by what ends with this status.
+    /// Runs a command that must end with a status and print nothing on standard output. Returns its
+    /// standard error.
     #[track_caller]
     pub fn told(&self, line: &str, status: i32) -> String {
-        let Said {
+        let Outcome {
             status: found,
             output,
             errors,

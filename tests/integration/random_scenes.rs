@@ -1,5 +1,5 @@
-//! Random scenes of extreme cameras and objects in each other's way, as tiny pictures: every way to
-//! render one gives the same bytes, and what is computed is what samples see.
+//! Random scenes with extreme cameras and overlapping objects, as tiny pictures: every way to
+//! render one gives the same bits, and the exact picture agrees with samples.
 
 use std::{
     num::NonZero,
@@ -17,16 +17,16 @@ use pinhole::{
 use crate::{
     exact::pixel,
     fuzz::each,
+    random::Random,
     scenes::{one_thread, rendered, sources, whole, with_samples},
-    tracer::Random,
 };
 
-/// A text of random objects, and what they have in common.
+/// Generator of the text of random objects, with the points that they share.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Vertices, centres, points of surfaces.
+    /// Vertices, centres and points of surfaces.
     points: Vec<DVec3>,
-    /// Of how many numbers one is of any size; 0 for none.
+    /// One of this many numbers has any size; 0 for none.
     wild: u64,
 }
 
@@ -35,11 +35,7 @@ impl Text<'_> {
         n > 0 && self.random.bits().is_multiple_of(n)
     }
 
-    fn choose<T: Copy>(&mut self, among: &[T]) -> T {
-        among[self.random.bits() as usize % among.len()]
-    }
-
-    /// A positive number whose logarithm is uniform.
+    /// Returns a positive number whose logarithm is uniform, up to a number of decades from 1.
     fn any_size(&mut self, decades: f64) -> f64 {
         libm::exp10(self.random.within(-decades, decades))
     }
@@ -47,7 +43,7 @@ impl Text<'_> {
     fn number(&mut self, size: f64) -> f64 {
         let ordinary = self.random.within(-size, size);
         if self.one_in(self.wild) {
-            let decades = self.choose(&[3.0, 20.0, 300.0]);
+            let decades = *self.random.one_of(&[3.0, 20.0, 300.0]);
             return ordinary.signum() * self.any_size(decades);
         }
         match self.random.bits() % 4 {
@@ -64,14 +60,16 @@ impl Text<'_> {
         }
     }
 
-    /// A point that others know, or one beside it; else a new one.
+    /// Returns a point used by other objects, a point near one, or a new point.
     fn point(&mut self) -> DVec3 {
         let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
         if self.points.is_empty() || self.one_in(3) {
             return new;
         }
-        let known = self.choose(&self.points.clone());
-        let step = self.choose(&[0.0, 0.0, 1e-300, 1e-15, 1e-9, 1e-3, 0.5]);
+        let known = *self.random.one_of(&self.points);
+        let step = *self
+            .random
+            .one_of(&[0.0, 0.0, 1e-300, 1e-15, 1e-9, 1e-3, 0.5]);
         match self.random.bits() % 4 {
             0 => known,
             1 => known + step * new,
@@ -81,7 +79,7 @@ impl Text<'_> {
     }
 
     fn color(&mut self) -> &'static str {
-        self.choose(&[
+        *self.random.one_of(&[
             "black", "white", "red", "olive", "teal", "#0102fe", "orange",
         ])
     }
@@ -98,7 +96,7 @@ impl Text<'_> {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
                     // A sliver.
-                    let thickness = self.choose(&[1e-15, 1e-9, 1e-3]);
+                    let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }
                 self.points.extend([v1, p.lerp(v1, 0.5), p.lerp(v2, 0.25)]);
@@ -107,7 +105,9 @@ impl Text<'_> {
             }
             4 => {
                 let (a, b, normal) = (self.length(2.0), self.length(2.0), self.point());
-                let c = self.choose(&[a, b, a + b, (a - b).abs(), (a + b) * (1.0 - 1e-12)]);
+                let c = *self
+                    .random
+                    .one_of(&[a, b, a + b, (a - b).abs(), (a + b) * (1.0 - 1e-12)]);
                 let (p, normal, spin) = (vector(p), vector(normal), self.number(200.0));
                 format!(
                     "triangle {{ centroid {p} normal {normal} sides ({a:?}, {b:?}, {c:?}) spin {spin:?}deg"
@@ -136,13 +136,12 @@ impl Text<'_> {
 
     fn camera(&mut self) -> String {
         let (eye, at) = (self.point(), self.point());
-        let toward = match self.one_in(3) {
-            true => at,
-            false => at - eye,
-        };
+        let toward = if self.one_in(3) { at } else { at - eye };
         let mut camera = format!("eye {} direction {}", vector(eye), vector(toward));
-        let beside = self.choose(&[1e-300, 1e-15, 1e-6]) * self.point();
-        let up = self.choose(&[toward, -toward, toward + beside, self.points[0]]);
+        let beside = *self.random.one_of(&[1e-300, 1e-15, 1e-6]) * self.point();
+        let up = *self
+            .random
+            .one_of(&[toward, -toward, toward + beside, self.points[0]]);
         if self.one_in(3) {
             camera += &format!(" up {}", vector(up));
         }
@@ -162,10 +161,13 @@ impl Text<'_> {
         };
         for clip in ["near", "far"] {
             if self.one_in(4) {
-                // The depth of a point, as often as not.
+                // Often the depth of a point.
                 let point = self.point();
                 let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
-                let depth = self.choose(&[depth, depth.next_up(), self.points[0].x.abs() + 1.0]);
+                let depth =
+                    *self
+                        .random
+                        .one_of(&[depth, depth.next_up(), self.points[0].x.abs() + 1.0]);
                 camera += &format!(" {clip} {depth:?}");
             }
         }
@@ -177,7 +179,7 @@ fn vector(DVec3 { x, y, z }: DVec3) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
-/// A random scene without mistakes, and its text.
+/// Returns a random scene without mistakes, and its text.
 fn random_scene(random: &mut Random) -> (String, Scene) {
     loop {
         let most = [3, 3, 10, 60][random.bits() as usize % 4];
@@ -209,9 +211,9 @@ fn three_threads() -> Control<'static> {
     }
 }
 
-/// Compares a picture of one thread with the four parts, by three threads, into which a random
-/// column and row cut it.
-fn agrees_with_itself(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
+/// Compares a picture rendered by one thread with its four parts rendered by three threads. A
+/// random column and row divide the picture.
+fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
     let [column, row] = [area.width, area.height].map(|size| random.bits() as u32 % (size + 1));
@@ -226,17 +228,17 @@ fn agrees_with_itself(scene: &Scene, random: &mut Random, text: &str) -> Rendere
             if part.pixels() > 0 {
                 let crop = rendered(scene, part, &three_threads());
                 let what = format!("{part:?}, {:?}: {text}", scene.sampler.method);
-                same(&picture, part, &crop, &what);
+                assert_same_bits(&picture, part, &crop, &what);
             }
         }
     }
     picture
 }
 
-/// Asserts that a part of a picture has the bits of its crop, and so has how far each pixel is
-/// known.
+/// Asserts that an area of a picture has the bits of its crop, and so have the bounds of its
+/// pixels.
 #[track_caller]
-fn same(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
+fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
         let film: &Film = picture.film();
         let bound = match picture {
@@ -251,8 +253,8 @@ fn same(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Whether samples and the computed picture may be compared. Squares of less than 10⁻⁹⁸ of the
-/// eye's distance get one colour from samples, as the language says.
+/// Returns whether samples and the exact picture may be compared. Squares smaller than 10⁻⁹⁸ of the
+/// eye's distance get one colour from samples, as the language specifies.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -263,14 +265,14 @@ fn is_comparable(scene: &Scene) -> bool {
     })
 }
 
-/// Compares each pixel of a computed picture, and the whole, with the mean of independent samples.
+/// Compares each pixel of an exact picture, and the mean of all pixels, with independent samples.
 ///
-/// Light is from 0 to 1. Where its mean is at most b from m, its variance is at most m(1 − m) + b,
-/// as μ(1 − μ) has no slope above 1. By Bernstein's inequality the mean of N samples, the sum of
-/// whose variances is V, is farther off than √(2LV)/N + 2L/(3N) with a probability of at most
-/// 2e^−L. A picture has at most 97 · 3 comparisons, so among 10⁶ pictures one fails with a
-/// probability of at most 1e-9 if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
-fn agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
+/// Light is from 0 to 1. If its mean is within b of m, its variance is at most m(1 − m) + b, as μ(1
+/// − μ) has no slope above 1. By Bernstein's inequality, the mean of N samples with variances of
+/// sum V is farther off than √(2LV)/N + 2L/(3N) with a probability of at most 2e^−L. A picture has
+/// at most 97 · 3 comparisons, so among 10⁶ pictures one fails with a probability of at most 1e-9
+/// if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
+fn assert_agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();
     let sampled = with_samples(scene, Method::Random, Count::PerPixel(each));
@@ -301,7 +303,7 @@ fn agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
 }
 
 #[test]
-fn every_way_to_render_a_random_scene_gives_one_picture() {
+fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
     each(4, |random| {
         let (text, scene) = random_scene(random);
         let count = match random.bits() % 3 {
@@ -309,18 +311,19 @@ fn every_way_to_render_a_random_scene_gives_one_picture() {
             _ => Count::PerPixel(1 + random.bits() % 20),
         };
         for method in Method::SAMPLED {
-            agrees_with_itself(&with_samples(&scene, method, count), random, &text);
+            assert_parts_agree(&with_samples(&scene, method, count), random, &text);
         }
         let start = Instant::now();
         let computed = with_samples(&scene, Method::Exact, Count::PerPixel(1));
-        let Rendered::Exact(exact) = agrees_with_itself(&computed, random, &text) else {
+        let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // Twice a second a pixel, on a busy machine and hardly optimized.
+        // The picture and its parts take at most a second per pixel each if optimized, on an idle
+        // machine.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {
-            agrees_with_samples(&scene, &exact, &text);
+            assert_agrees_with_samples(&scene, &exact, &text);
         }
     });
 }

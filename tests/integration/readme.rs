@@ -1,19 +1,19 @@
-//! The documents say what happens: their commands are run and the outputs compared, their scenes
-//! are checked, and their links lead to files.
+//! The documents are correct: their commands are run and the outputs compared, their scenes are
+//! checked, and their links lead to files.
 //!
-//! `PINHOLE_BLESS=1 cargo test readme` writes the real outputs into the documents.
+//! `PINHOLE_BLESS=1 cargo test readme` writes the current outputs into the documents.
 
 use std::{fs, path::Path};
 
 use crate::{
-    diagnostics::found,
+    diagnostics::diagnose,
     format::formatted,
     program::{Folder, names},
     scenes::{examples, fenced},
     snapshot::assert_file,
 };
 
-/// The documents whose `console` blocks are run and whose `scn` blocks are checked.
+/// Documents whose `console` blocks are run and whose `scn` blocks are checked.
 const DOCUMENTS: [&str; 5] = [
     "README.md",
     "docs/accuracy.md",
@@ -30,7 +30,7 @@ fn read(document: &str) -> String {
     fs::read_to_string(root().join(document)).unwrap()
 }
 
-/// What a shell prints when it runs a command in a folder.
+/// Returns what a shell prints when it runs a command in a folder.
 fn run(command: &str, folder: &Folder) -> String {
     let said = folder.shell(&format!("{{ {command}; }} 2>&1"));
     match said.text() {
@@ -39,7 +39,7 @@ fn run(command: &str, folder: &Folder) -> String {
     }
 }
 
-/// A folder with the examples of a fresh clone.
+/// Returns a folder with the examples of a fresh clone.
 fn fresh_folder() -> Folder {
     let folder = Folder::with([]);
     for name in names(&root().join("examples")) {
@@ -51,7 +51,7 @@ fn fresh_folder() -> Folder {
     folder
 }
 
-/// The document with the real outputs of its commands.
+/// Returns a document with the current outputs of its commands.
 fn with_real_outputs(text: &str) -> String {
     let folder = fresh_folder();
     let mut real = text.to_owned();
@@ -74,14 +74,14 @@ fn the_commands_print_what_the_documents_say() {
 }
 
 #[test]
-fn the_scenes_of_the_documents_and_the_examples_are_right_and_canonical() {
+fn scenes_in_documents_and_examples_are_valid_and_formatted() {
     let mut texts: Vec<String> = DOCUMENTS.map(read).into();
     texts.push(read("grammar/language.md"));
     texts.push(read("grammar/left_handed.md"));
     let mut scenes: Vec<&str> = texts.iter().flat_map(|text| fenced(text, "scn")).collect();
     assert!(scenes.len() > 5, "{} scenes", scenes.len());
     for scene in &scenes {
-        assert_eq!(found(scene, &[]), [], "{scene}");
+        assert_eq!(diagnose(scene, &[]), [], "{scene}");
     }
     let examples = examples();
     scenes.extend(examples.iter().map(String::as_str));
@@ -116,7 +116,7 @@ fn relative_links_lead_to_files() {
     .to_vec();
     let (mut followed, mut missing) = (0, Vec::new());
     while let Some(path) = paths.pop() {
-        // Neither what is installed nor what is built.
+        // Installed and built files are left out.
         let is_made = ["node_modules", "dist"]
             .iter()
             .any(|name| path.ends_with(name));
@@ -124,7 +124,7 @@ fn relative_links_lead_to_files() {
             paths.extend(names(&path).into_iter().map(|name| path.join(name)));
         } else if path.extension().is_some_and(|ending| ending == "md") {
             let text = fs::read_to_string(&path).unwrap();
-            // A fenced block is code and has no links.
+            // A fenced block is code without links.
             let parts = text.split("```").step_by(2);
             let links = parts.flat_map(|part| part.split("](").skip(1));
             for link in links {

@@ -1,4 +1,4 @@
-//! Coarse pictures are true and become finer.
+//! Coarse pictures show the centres of their blocks, and become finer.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,7 +13,7 @@ use pinhole::{
 use crate::scenes::example;
 
 #[test]
-fn steps_become_finer_and_show_what_is_there() {
+fn coarse_steps_become_finer_and_show_the_centres_of_blocks() {
     let world = World::new(&example("figure_9_9", 101, 67));
     let part: Area = "3,2,97,61".parse().unwrap();
     for (finest, sides) in [
@@ -30,7 +30,8 @@ fn steps_become_finer_and_show_what_is_there() {
             assert_eq!(coarse.film.width(), 97_u32.div_ceil(coarse.side));
             assert_eq!(coarse.film.height(), 61_u32.div_ceil(coarse.side));
             for (pixel, block) in coarse.film.pixels().iter().zip(part.tiles(coarse.side)) {
-                // The centre, found in another way: from the middle of the block's first pixel.
+                // The block's centre, found in another way: from its middle pixel and an offset of
+                // half a pixel.
                 let (right, down) = (block.width - 1, block.height - 1);
                 let offset = dvec2(f64::from(right % 2), f64::from(down % 2)) / 2.0;
                 let (x, y) = (block.x + right / 2, block.y + down / 2);
@@ -42,7 +43,7 @@ fn steps_become_finer_and_show_what_is_there() {
 }
 
 #[test]
-fn a_preview_can_be_ended_at_every_step() {
+fn a_preview_can_be_cancelled_at_every_step() {
     let world = World::new(&example("figure_9_9", 64, 36));
     for end in 1..=SIDES.len() {
         let cancel = AtomicBool::new(false);

@@ -1,4 +1,4 @@
-//! A picture does not depend on how it was rendered.
+//! A picture does not depend on threads, crops or the type of its pixels.
 
 use std::num::NonZero;
 
@@ -15,7 +15,7 @@ use crate::scenes::{example, example_names, rendered, whole, with_samples};
 fn threads_and_crops_change_no_pixel() {
     let pictures =
         Method::SAMPLED.map(|method| ([61, 37], method, Count::Total(61 * 37 * 5 + 300)));
-    // Tiles of all sizes, and more than threads.
+    // Tiles of all sizes, and more tiles than threads.
     let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
     for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
         let scene = with_samples(&example("figure_9_9", width, height), method, count);
@@ -40,7 +40,7 @@ fn threads_and_crops_change_no_pixel() {
 }
 
 #[test]
-fn bytes_are_those_of_the_light() {
+fn rendered_bytes_equal_the_encoded_means() {
     let (encoder, control) = (Encoder::default(), Control::default());
     let part: Area = "3,9,66,40".parse().unwrap();
     for name in example_names() {

@@ -1,8 +1,7 @@
-//! Whatever the text, reading it ends soon, says something if there is no scene, and points into
-//! the text.
+//! Reading any text ends soon, reports an error if there is no scene, and points into the text.
 //!
-//! Texts of a megabyte and more are tried where tests that take long are wanted; each run of the
-//! tests tries a sample, of shorter texts.
+//! Exhaustive runs try texts of a megabyte and more; every other run tries a sample of shorter
+//! texts.
 
 use std::time::{Duration, Instant};
 
@@ -11,8 +10,8 @@ use crate::{
     format::{all_scenes, formatted},
     fuzz::ends_soon,
     parts,
+    random::Random,
     scenes::{examples, sources},
-    tracer::Random,
 };
 use pinhole::{
     diagnostic::{self, Diagnostic, Drawing, Edit, MOST_PROBLEMS, Report, Style},
@@ -26,13 +25,14 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads and reports a text; answers whether there is a scene.
+/// Reads a text and reports its diagnostics. Returns whether there is a scene.
 #[track_caller]
 pub fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// The same with `--set` arguments.
+/// Reads a text with `--set` arguments and reports its diagnostics. Returns whether there is a
+/// scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -41,13 +41,13 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
     let found = &reading.diagnostics;
-    // As many as `check` writes of a file.
+    // `check` writes at most as many diagnostics of a file.
     let written = &found[..found.len().min(1000)];
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // A second on an idle machine, and a busy one takes twice as long; hardly optimized, as tests
-    // are, up to four seconds.
+    // It takes a second on an idle machine, twice as long on a busy one, and up to four seconds
+    // without optimization.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -65,7 +65,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     reading.scene.is_some()
 }
 
-/// Labels and edits lie in the text, between characters, and the edits of a fix do not overlap.
+/// Asserts that labels and edits begin and end between characters of the text, and that the edits
+/// of a fix do not overlap.
 #[track_caller]
 fn assert_places(found: &[Diagnostic], sources: &Sources) {
     for diagnostic in found {
@@ -85,9 +86,9 @@ fn assert_places(found: &[Diagnostic], sources: &Sources) {
     }
 }
 
-sampled_and_exhaustive!(garbage);
+sampled_and_exhaustive!(random_bytes_are_read_soon_and_refused);
 
-fn garbage(effort: Effort) {
+fn random_bytes_are_read_soon_and_refused(effort: Effort) {
     let length = effort.part_of(MEGABYTE);
     let mut random = Random::new(1);
     let bytes: Vec<u8> = (0..=255).collect();
@@ -101,10 +102,10 @@ fn garbage(effort: Effort) {
     assert!(!read(many.collect::<String>()));
 }
 
-sampled_and_exhaustive!(few_words_in_any_order);
+sampled_and_exhaustive!(every_short_sequence_of_words_is_parsed_to_its_end);
 
-/// All texts of a few words, by themselves and within a block: what reads them always goes on.
-fn few_words_in_any_order(effort: Effort) {
+/// All sequences of a few words, alone and within a block: the parser always advances.
+fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
     let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
     let words: Vec<&str> = words.split(' ').collect();
     let length = if effort == Effort::Exhaustive { 4 } else { 3 };
@@ -120,7 +121,7 @@ fn few_words_in_any_order(effort: Effort) {
             let word = |place| words[number / words.len().pow(place) % words.len()];
             let most: Vec<&str> = (0..length - 1).map(word).collect();
             let most = format!("{before} {}", most.join(" "));
-            // A watch for a few texts together, as each is a thread.
+            // One watchdog for a few texts, as each watchdog is a thread.
             ends_soon(
                 || format!("{most} and one of {words:?}"),
                 || (words.iter()).for_each(|last| try_one(&format!("{most} {last}"))),
@@ -129,9 +130,9 @@ fn few_words_in_any_order(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(one_thing_many_times);
+sampled_and_exhaustive!(a_token_repeated_many_times_is_read_soon);
 
-fn one_thing_many_times(effort: Effort) {
+fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
     let length = effort.part_of(MEGABYTE / 4);
     let pieces = "{|}|(|)|[|-|+|/|/*|*/|//|\"|'|a |a\n|1 |1,|.|#|=|let |let a |a = |sphere |sphere {|sphere {}|a{|a(|a (1\n|let a = (|°|\u{feff}|\0|// nothing";
     for piece in pieces.split('|') {
@@ -140,7 +141,7 @@ fn one_thing_many_times(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
-    // Each field, misspelt, in a block that lacks it.
+    // Each field, misspelled, in its block.
     for block in BLOCKS {
         for field in block.field_names() {
             let piece = format!("x{field} 1\n");
@@ -150,10 +151,10 @@ fn one_thing_many_times(effort: Effort) {
     }
 }
 
-/// Of very many mistakes the first ten thousand are reported, and that there are others, however
-/// they are spread.
+/// The first ten thousand of many mistakes are reported, and that others are left out, wherever
+/// they stand.
 #[test]
-fn the_rest_of_very_many_mistakes_is_left_out() {
+fn reports_stop_at_the_maximum_number_of_problems() {
     let many = |piece: &str| piece.repeat(20_000);
     let names: String = (0..20_000)
         .map(|index| format!("let a = b{index}\n"))
@@ -177,7 +178,7 @@ fn the_rest_of_very_many_mistakes_is_left_out() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
-    // What was read before them is no mistake of its own.
+    // Correct text before the omitted mistakes is no mistake.
     let signs = format!(
         "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
         many(", ")
@@ -188,7 +189,7 @@ fn the_rest_of_very_many_mistakes_is_left_out() {
         codes,
         ["pinhole::needless_separator", "pinhole::unexpected"]
     );
-    // Signs are reported together, as far as they were read.
+    // Needless separators are reported together, up to the limit.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
     let signs = found
@@ -198,14 +199,14 @@ fn the_rest_of_very_many_mistakes_is_left_out() {
 }
 
 #[test]
-fn deep_values() {
+fn deeply_nested_values_are_refused_and_long_sums_accepted() {
     let deep = ["( 1 )", "- 1 ", "abs( 1 )", "(  ", "-(  "].map(|parts| {
         let [open, inner, close] = parts.split(' ').collect::<Vec<_>>()[..] else {
             panic!("{parts}");
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // In quotes nothing is closed.
+    // Quoted delimiters close nothing.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);
@@ -219,9 +220,9 @@ fn deep_values() {
     }
 }
 
-sampled_and_exhaustive!(ten_megabytes_in_a_line);
+sampled_and_exhaustive!(a_line_of_ten_megabytes_is_read_soon);
 
-fn ten_megabytes_in_a_line(effort: Effort) {
+fn a_line_of_ten_megabytes_is_read_soon(effort: Effort) {
     let ten = effort.part_of(10 * MEGABYTE);
     for (start, long, end, is_right) in [
         ("// ", "long ", "", true),
@@ -235,9 +236,10 @@ fn ten_megabytes_in_a_line(effort: Effort) {
     }
 }
 
-sampled_and_exhaustive!(many_mistakes_and_many_names);
+sampled_and_exhaustive!(many_mistakes_and_many_names_are_read_soon);
 
-/// As many lines; `N` is the number of each, `M` that of the next one.
+/// Returns a number of lines; `N` stands for the number of a line, and `M` for that of the next
+/// one.
 fn numbered(line: &str, count: usize) -> Vec<String> {
     let of = |n: usize| {
         let line = line.replace('N', &n.to_string());
@@ -246,7 +248,7 @@ fn numbered(line: &str, count: usize) -> Vec<String> {
     (0..count).map(of).collect()
 }
 
-fn many_mistakes_and_many_names(effort: Effort) {
+fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     let lines = |line: &str| numbered(line, effort.part_of(40_000)).concat();
     for wrong in [
         "let aN = bN\n",
@@ -257,16 +259,16 @@ fn many_mistakes_and_many_names(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // Each looks at what stands around it, and all of them on one line.
+    // Each mistake examines the text around it, and all of them are on one line.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");
     assert!(read(format!("{CAMERA}let a0 = 0\n{chain}")));
 }
 
-sampled_and_exhaustive!(many_overrides);
+sampled_and_exhaustive!(many_overrides_are_read_soon);
 
-fn many_overrides(effort: Effort) {
+fn many_overrides_are_read_soon(effort: Effort) {
     let lines = |line: &str| numbered(line, effort.part_of(4_000));
     for (line, set, is_right) in [
         ("let aN = N\n", "aN=2", true),
@@ -282,7 +284,7 @@ fn many_overrides(effort: Effort) {
 }
 
 #[test]
-fn what_is_said_of_parts_of_scenes_has_its_places() {
+fn diagnostics_of_truncated_scenes_point_into_the_text() {
     for text in all_scenes() {
         for (end, _) in text.char_indices().step_by(11) {
             let sources = sources(&text[..end]);
@@ -292,16 +294,16 @@ fn what_is_said_of_parts_of_scenes_has_its_places() {
 }
 
 #[test]
-fn windows_line_ends_and_a_byte_order_mark_make_no_mistake() {
+fn windows_line_ends_and_a_byte_order_mark_are_accepted() {
     for example in examples() {
         assert!(read(format!("\u{feff}{}", example.replace('\n', "\r\n"))));
     }
 }
 
-sampled_and_exhaustive!(random_slips_in_a_scene);
+sampled_and_exhaustive!(scenes_with_random_slips_are_read_soon_and_alike_in_parts);
 
-/// What is not laid out has a mistake, too; and what is read in parts means the same.
-fn random_slips_in_a_scene(effort: Effort) {
+/// A text that cannot be formatted has an error, and a text read in parts means the same.
+fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
     let mut scenes = all_scenes();
     scenes.retain(|text| (1..1000).contains(&text.len()));
     let slips = b"|(|)|{|}|}}|[|]|,|.|;|:|=|+|*|-|#ff|2.5.5| 2| x| radus | radius| let |let x = 1 |let x = |sphere {|sphere A { |'|\"|/*|*/|//|\xc2\xa0|\xc3\xa9|\xff|\r|\n|\0";
@@ -328,18 +330,18 @@ fn random_slips_in_a_scene(effort: Effort) {
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
-            // It has an error, or there would be no answer.
+            // `formatted` asserts that a refused text has an error.
             let _ = formatted(text);
-            parts::check(text, 1 + up_to(99), &[]);
+            parts::assert_same_in_parts(text, 1 + up_to(99), &[]);
         }
         read(bytes);
     }
 }
 
-sampled_and_exhaustive!(time_grows_with_the_text);
+sampled_and_exhaustive!(reading_time_grows_linearly_with_the_text);
 
-/// Whatever a line is, eight times as many of them take about eight times as long, not 64 times.
-fn time_grows_with_the_text(effort: Effort) {
+/// Eight times as many lines take about eight times as long, and not 64 times, for any line.
+fn reading_time_grows_linearly_with_the_text(effort: Effort) {
     let few = match effort {
         Effort::Sample => 1_000,
         Effort::Exhaustive => 2_000,
@@ -356,7 +358,7 @@ fn time_grows_with_the_text(effort: Effort) {
         "let name = 1 + 2\n".to_owned(),
         "spere {}\n".to_owned(),
     ];
-    // Names that are all different: of fields in one block, of blocks, of colours.
+    // Distinct names of fields in one block, of blocks and of colours.
     let numbered = [
         "eyf% (0, 0, 1)\n",
         "blok% { x 1 }\n",

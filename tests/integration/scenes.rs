@@ -1,4 +1,4 @@
-//! Scenes: those that stand beside the source, those of a text, and their pictures.
+//! Scenes of the repository, scenes of a text, and their pictures.
 
 use std::{
     fs,
@@ -17,7 +17,7 @@ use pinhole::{
     tracer::World,
 };
 
-/// The scenes in a folder, by name.
+/// Returns the paths of the scenes in a folder, sorted by name.
 pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder).expect("the folder is there");
@@ -28,13 +28,13 @@ pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     scenes
 }
 
-/// The texts of the examples.
+/// Returns the texts of the examples.
 pub fn examples() -> Vec<String> {
     let names = example_names().into_iter();
     names.map(|name| example_text(&name)).collect()
 }
 
-/// The names of the examples.
+/// Returns the names of the examples.
 pub fn example_names() -> Vec<String> {
     let paths = scenes("examples").into_iter();
     let name = |path: PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -46,7 +46,7 @@ pub fn example_text(name: &str) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// An example at another size.
+/// Returns an example with another size.
 pub fn example(name: &str, width: u32, height: u32) -> Scene {
     resized(read(&example_text(name)), width, height)
 }
@@ -72,7 +72,7 @@ pub fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// How a picture is rendered by the calling thread alone.
+/// Returns the control that renders a picture by the calling thread alone.
 pub fn one_thread() -> Control<'static> {
     Control {
         threads: NonZero::new(1),
@@ -84,12 +84,12 @@ pub fn sources(text: &str) -> Sources {
     Sources::new(Source::from_text("test.scn", text))
 }
 
-/// A scene without errors; its warnings may be some.
+/// Reads a scene without errors. It may have warnings.
 pub fn read(text: &str) -> Scene {
     read_with(text, [])
 }
 
-/// The same with overrides.
+/// Reads a scene with overrides, without errors.
 pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Scene {
     let reading = scene::read(&sources(text).with_sets(sets));
     let found = &reading.diagnostics;
@@ -98,27 +98,27 @@ pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Sce
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// A scene's picture by its own samples.
+/// Returns a scene's picture by its own sampler.
 pub fn sampled(scene: &Scene) -> Film {
     rendered(scene, whole(scene), &Control::default()).into_film()
 }
 
-/// A part of a scene's picture as its sampler asks for.
+/// Renders an area of a scene's picture by its own sampler.
 pub fn rendered<P: Pixel>(scene: &Scene, part: Area, control: &Control<'_>) -> Rendered<P> {
     render_as_asked(&World::new(scene), &sampling(scene), part, control).unwrap()
 }
 
-/// The samples that a scene asks for.
+/// Returns the samples that a scene asks for.
 pub fn sampling(scene: &Scene) -> Sampling {
     Sampling::new(&scene.sampler, scene.image.width, scene.image.height)
 }
 
-/// A scene's picture by exact means.
+/// Returns a scene's exact picture.
 pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// The contents of a document's fences of this kind.
+/// Returns the contents of a document's fenced blocks of a kind.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);
@@ -127,7 +127,7 @@ pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
         .collect()
 }
 
-/// What `inspect` says, as a program reads it.
+/// Returns an inspection in its JSON form.
 pub fn json_of(inspection: &Inspection) -> serde_json::Value {
     let mut text = Vec::new();
     inspection.write_json(&mut text).unwrap();

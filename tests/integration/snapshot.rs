@@ -1,4 +1,4 @@
-//! Expected outputs that are files; `PINHOLE_BLESS=1 cargo test` writes them anew.
+//! Expected outputs in files; `PINHOLE_BLESS=1 cargo test` writes them anew.
 
 use std::{fs, path::Path};
 
@@ -7,7 +7,7 @@ use crate::{
     table::{escaped, unescaped},
 };
 
-/// Checks that a file holds this, or writes it.
+/// Asserts that a file has this content, or writes it.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
     if std::env::var_os("PINHOLE_BLESS").is_some() {
@@ -20,11 +20,11 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Checks the texts of a folder, which have a question in each line, and below it what is answered,
-/// `<`.
+/// Asserts the answers in the text files of a folder, which have a question in each line, and below
+/// it its answer, `<`.
 ///
-/// The first word says what is asked of the text behind it; what else a question needs stands
-/// behind an arrow. `--` begins a remark.
+/// The first word is the question about the text behind it. A further argument stands behind an
+/// arrow. `--` begins a remark.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);

@@ -13,7 +13,8 @@ use pinhole::{
 
 use crate::{diagnostics::fixtures, scenes::scenes, snapshot::assert_file};
 
-/// A tree, an item or a field a line; chains stand in brackets. Then comments and problems.
+/// Prints a tree with an item or a field per line and chains in brackets, then comments and
+/// problems.
 fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     let under = |span: Span| {
         let words = source.slice(span.range()).split_whitespace();
@@ -77,7 +78,7 @@ fn printed_value(value: &Value<'_>, bad: &impl Fn(Span) -> String) -> String {
 }
 
 #[test]
-fn trees() {
+fn syntax_trees_match_the_files_in_tests_syntax() {
     for (folder, is_right) in [("tests/syntax/ok", true), ("tests/syntax/bad", false)] {
         for path in scenes(folder) {
             let source = &Source::from_bytes("test.scn", std::fs::read(&path).unwrap());
@@ -88,7 +89,7 @@ fn trees() {
     }
 }
 
-/// The tokens and comments of any text.
+/// Returns the tokens and comments of a text.
 pub fn tokens(text: &str) -> Vec<&str> {
     let mut lexer = Lexer::new(text, 0);
     let tokens = std::iter::from_fn(|| {
@@ -98,10 +99,10 @@ pub fn tokens(text: &str) -> Vec<&str> {
     tokens.collect()
 }
 
-/// A sign of two letters with something between them that is not seen, as `*` and `/` with a
-/// no-break space, is two signs: what comes behind them is read, and that ends.
+/// An operator of two characters with an invisible one in between, such as `*` and `/` with a
+/// no-break space, is two tokens. The rest of the text is read, and the parser ends.
 #[test]
-fn torn_signs_are_read_to_the_end() {
+fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
     let mut torn = 0;
     let mut is_read = |text: &str, at: usize| {
         let text = format!("{}\u{a0}{}", &text[..at], &text[at..]);
@@ -121,7 +122,7 @@ fn torn_signs_are_read_to_the_end() {
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let is_sign = |at: usize| line.as_bytes()[at].is_ascii_punctuation();
-            // Those that begin with `//` say what is expected.
+            // Lines that begin with `//` are expectations.
             let places = (1..line.len()).filter(|_| !line.starts_with("//"));
             for at in places.filter(|at| is_sign(at - 1) && is_sign(*at)) {
                 is_read(text, start + at);
@@ -133,7 +134,7 @@ fn torn_signs_are_read_to_the_end() {
 }
 
 #[test]
-fn tokens_of_any_text() {
+fn the_lexer_splits_any_text_into_tokens() {
     let text = "a1 .5 1e-3-2 30deg #fa0 “red” größe /* x */ ** '2 // e\r\n/* o";
     let expected = "a1|.5|1e-3|-|2|30deg|#fa0|“red”|größe|/* x */|**|'2|// e|/* o";
     assert_eq!(tokens(text).join("|"), expected);

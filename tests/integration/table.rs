@@ -1,21 +1,18 @@
-//! Tables of cases in one text: a line each, its cells apart by arrows.
+//! Tables of cases in one text, with a row per line and its cells separated by arrows.
 
-/// The cells of each line. White space around a cell is no part of it; `\n`, `\r`, `\t` and
-/// `\u{feff}` in one are what they are in a string of Rust. Empty lines and those that begin with
-/// `--` are not rows.
+/// Returns the cells of each line, without the white space around them. `\n`, `\r`, `\t` and
+/// `\u{feff}` in a cell are escapes as in a Rust string. Empty lines and those that begin with `--`
+/// are not rows.
 pub fn lines(table: &'static str) -> Vec<Vec<&'static str>> {
     let lines = table.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("--"));
-    // What is left over is kept until the tests end.
-    let cell = |cell: &'static str| match cell.contains('\\') {
-        true => unescaped(cell).leak(),
-        false => cell,
-    };
+    // The leaked cells live until the tests end.
+    let cell = |cell: &'static str| -> &'static str { unescaped(cell).leak() };
     let cells = |line: &'static str| line.split("->").map(move |text| cell(text.trim()));
     lines.map(|line| cells(line).collect()).collect()
 }
 
-/// The rows of a table that all have as many cells.
+/// Returns the rows of a table, which all have the same number of cells.
 pub fn rows<const CELLS: usize>(table: &'static str) -> Vec<[&'static str; CELLS]> {
     let rows = lines(table).into_iter();
     let row = |cells: Vec<_>| {
@@ -26,12 +23,12 @@ pub fn rows<const CELLS: usize>(table: &'static str) -> Vec<[&'static str; CELLS
     rows.map(row).collect()
 }
 
-/// The lines of a table with one cell each.
+/// Returns the lines of a table with one cell each.
 pub fn list(table: &'static str) -> Vec<&'static str> {
     rows(table).into_iter().map(|[cell]| cell).collect()
 }
 
-/// How a text of several lines stands in one.
+/// Escapes of characters in a cell.
 const ESCAPES: [(&str, &str); 4] = [
     ("\\n", "\n"),
     ("\\r", "\r"),

@@ -1,4 +1,4 @@
-//! Texts: places in them, what a terminal shows of them, and names of colours.
+//! Positions in texts, their form on a terminal, and names of colours.
 
 use pinhole::{
     diagnostic::visible,
@@ -7,7 +7,7 @@ use pinhole::{
 };
 
 #[test]
-fn places_count_characters_from_one() {
+fn line_and_column_count_characters_from_one() {
     let source = Source::from_text("a.scn", "\u{feff}aé\r\nb\n");
     let places = [0, 3, 4, 6, 8, 9, 10, 99].map(|offset| {
         let place = source.place(offset);
@@ -27,7 +27,7 @@ fn places_count_characters_from_one() {
 }
 
 #[test]
-fn what_acts_on_a_terminal_is_shown_as_its_code() {
+fn control_and_direction_characters_are_shown_as_escapes() {
     for (text, shown) in [
         ("a\tb\n", "a\tb\n"),
         ("\x1b]0;x\x07", "\\u{1b}]0;x\\u{7}"),
@@ -43,7 +43,7 @@ fn what_acts_on_a_terminal_is_shown_as_its_code() {
 }
 
 #[test]
-fn names_are_found_in_any_case() {
+fn css_colour_names_are_found_in_any_case() {
     assert_eq!(names().count(), 148);
     assert!(names().is_sorted());
     for name in names() {

@@ -1,4 +1,4 @@
-//! How many threads the program starts.
+//! Number of threads that the program starts.
 
 use std::{
     fs,
@@ -9,9 +9,9 @@ use std::{
 
 use crate::{cancel::spheres, program::Folder};
 
-/// The most threads that a process was seen with until it ended. It may have had more: one looks
-/// only now and then.
-fn most(command: &mut Command) -> usize {
+/// Runs a process to its end and returns the largest number of threads seen. It may have had more,
+/// as they are counted only now and then.
+fn peak_threads(command: &mut Command) -> usize {
     let command = command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut process = command.spawn().expect("the program");
     let tasks = format!("/proc/{}/task", process.id());
@@ -23,20 +23,21 @@ fn most(command: &mut Command) -> usize {
     most
 }
 
-/// Holds the program to one thread, and to six when it is asked for six, beside the first one and
-/// those that wait for Ctrl-C.
-fn hold_to_the_number_asked_for(folder: &Folder, line: &str) {
-    let most = |threads: u32| most(&mut folder.command(&format!("{line} --threads {threads}")));
+/// Asserts that the program uses one thread, and six when six are requested, besides the main
+/// thread and those that wait for Ctrl-C.
+fn assert_thread_limit(folder: &Folder, line: &str) {
+    let most =
+        |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));
     let one = most(1);
     assert!(one <= 4, "{one}");
-    // On a busy machine it may be over before all that it starts are seen.
+    // On a busy machine the program may end before all its threads are seen.
     assert!((0..20).any(|_| most(6) >= 6));
 }
 
 #[test]
-fn no_more_than_were_asked_for_prepare_objects_and_render() {
+fn rendering_uses_no_more_threads_than_requested() {
     let folder = Folder::with([("a.scn", spheres(30_000).as_str())]);
-    hold_to_the_number_asked_for(
+    assert_thread_limit(
         &folder,
         "render a.scn --set image.width=320 --set image.height=180",
     );
@@ -44,7 +45,7 @@ fn no_more_than_were_asked_for_prepare_objects_and_render() {
 
 #[test]
 #[ignore = "exhaustive"]
-fn no_more_than_were_asked_for_look_for_a_mistake() {
+fn diagnosing_a_picture_uses_no_more_threads_than_requested() {
     let text = "image { width 320 height 180 }
         camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 0deg d 2.75 }
         sampler { per_pixel 4 }
@@ -52,5 +53,5 @@ fn no_more_than_were_asked_for_look_for_a_mistake() {
         checkerboard {}";
     let folder = Folder::with([("a.scn", text)]);
     folder.done("render a.scn -o wrong.png --set camera.roll=7deg");
-    hold_to_the_number_asked_for(&folder, "diff wrong.png a.scn");
+    assert_thread_limit(&folder, "diff wrong.png a.scn");
 }

@@ -1,14 +1,14 @@
-//! `watch` from outside: an editor's ways to save, broken texts, bursts, and the end.
+//! `watch` from outside: an editor's ways to save, broken texts, bursts of saves, and Ctrl-C.
 //!
-//! Every step waits for what it is to bring about, with a patience that a busy machine does not
-//! exhaust; fixed times pass only where nothing is to happen.
+//! Every step waits for its effect, with a timeout that a busy machine does not exceed. Fixed times
+//! pass only if nothing should happen.
 
 use std::{
     cell::RefCell,
     fs,
     os::unix::fs::symlink,
     path::PathBuf,
-    process::{Child, Command},
+    process::Child,
     thread,
     time::{Duration, Instant},
 };
@@ -16,11 +16,15 @@ use std::{
 use pinhole::schema::css;
 use tempfile::NamedTempFile;
 
-use crate::{cancel::spheres, interrupt::long_pixel, program::Folder};
+use crate::{
+    cancel::spheres,
+    interrupt::{long_pixel, send_signal},
+    program::Folder,
+};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A picture of one colour.
+/// Returns a scene whose picture has one colour.
 fn scene(color: &str) -> String {
     format!(
         "image {{ width 8  height 6  background {color} }}\ncamera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}\n\
@@ -28,12 +32,12 @@ fn scene(color: &str) -> String {
     )
 }
 
-/// A scene in red, in `a.scn`.
+/// Returns a folder with a red scene in `a.scn`.
 fn red() -> Folder {
     Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// A running `watch` in a folder of its own.
+/// Running `watch` in a folder of its own.
 struct Watch {
     folder: Folder,
     child: RefCell<Child>,
@@ -41,7 +45,7 @@ struct Watch {
 }
 
 impl Watch {
-    /// Of a red picture, which is there.
+    /// Starts watching a red scene, and waits for its picture.
     fn of_red() -> Self {
         let watch = Self::start(red(), "a.scn");
         watch.shows("red");
@@ -67,13 +71,13 @@ impl Watch {
         self.folder.write("a.scn", text);
     }
 
-    /// Puts a file with such a text in the scene's place.
+    /// Replaces the scene by a new file, which is renamed to it.
     fn replace(&self, text: &str) {
         self.folder.write("new", text);
         fs::rename(self.path("new"), self.path("a.scn")).unwrap();
     }
 
-    /// Saves a picture of one colour, and waits for it.
+    /// Saves a scene of one colour, and waits for its picture.
     #[track_caller]
     fn becomes(&self, color: &str) {
         self.save(&scene(color));
@@ -85,7 +89,7 @@ impl Watch {
         String::from_utf8_lossy(&said).into_owned()
     }
 
-    /// How often something was said.
+    /// Returns how often some words were printed.
     fn count(&self, words: &str) -> usize {
         self.said().matches(words).count()
     }
@@ -100,19 +104,19 @@ impl Watch {
         }
     }
 
-    /// Waits until something is said so often.
+    /// Waits until some words have been printed a number of times.
     #[track_caller]
     fn says(&self, words: &str, times: usize) {
         self.wait(words, || self.count(words) == times);
     }
 
-    /// Waits for a colour of the picture.
+    /// Waits until the picture has a colour.
     #[track_caller]
     fn shows(&self, color: &str) {
         self.wait(color, || self.has("a.png", color));
     }
 
-    /// Whether a picture, which is whole if it is there, has this colour in its first pixel.
+    /// Returns whether a picture, which is complete if it exists, has a colour in its first pixel.
     fn has(&self, name: &str, color: &str) -> bool {
         fs::read(self.path(name)).is_ok_and(|bytes| {
             let picture = image::load_from_memory(&bytes).expect("a picture is always whole");
@@ -120,13 +124,10 @@ impl Watch {
         })
     }
 
-    /// Interrupts it: it ends as an interrupted program does, and leaves nothing but the picture.
+    /// Interrupts the program, which ends with the status of an interrupted program and leaves only
+    /// the picture.
     fn end(&self) {
-        let mut kill = Command::new("kill");
-        let sent = kill
-            .args(["-INT", &self.child.borrow().id().to_string()])
-            .status();
-        assert!(sent.unwrap().success());
+        send_signal("INT", &self.child.borrow());
         let ended = || self.child.borrow_mut().try_wait().unwrap();
         self.wait("it ends", || ended().is_some());
         assert_eq!(ended().unwrap().code(), Some(130));
@@ -158,20 +159,19 @@ fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
 }
 
 #[test]
-fn editors_that_save_by_renaming_are_seen() {
+fn saves_by_renaming_and_a_pipe_in_between_are_noticed() {
     let watch = Watch::of_red();
-    // A new file is written and takes the place of the old one.
+    // A new file is written and replaces the old one.
     watch.replace(&scene("blue"));
     watch.shows("blue");
     // The old file is renamed to a backup, and a new one is written.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
     watch.becomes("lime");
-    // And once more, for what was watched may be the file that is the backup now.
+    // Once more, as the watched file may be the backup now.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
-    // A pipe in the file's place is waited out.
-    let made = Command::new("mkfifo").arg(watch.path("pipe")).status();
-    assert!(made.unwrap().success());
+    // A pipe in place of the file is reported and waited out.
+    watch.folder.make_pipe("pipe");
     fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
     watch.wait("it says so", || watch.count("it is a pipe, not a file") > 0);
     watch.replace(&scene("blue"));
@@ -179,7 +179,7 @@ fn editors_that_save_by_renaming_are_seen() {
 }
 
 #[test]
-fn a_file_or_folder_that_is_gone_may_come_back() {
+fn a_deleted_file_or_folder_is_watched_again_when_it_returns() {
     let folder = Folder::with([("scenes/a.scn", scene("red").as_str())]);
     let watch = Watch::start(folder, "scenes/a.scn -o a.png");
     watch.shows("red");
@@ -208,8 +208,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // Nobody watches the folder of the link in the middle: what no event tells is seen, however
-    // much else happens.
+    // The folder of the middle link is not watched: its change gives no event and is noticed
+    // nevertheless, whatever other events occur.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {
@@ -245,7 +245,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // Nothing older comes after it.
+    // No older picture follows.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -254,8 +254,8 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
 }
 
 #[test]
-fn what_is_superseded_is_given_up_and_so_is_what_ctrl_c_ends() {
-    // It takes seconds to read, and something is said of it then.
+fn a_new_save_or_ctrl_c_cancels_the_picture_in_progress() {
+    // The text takes seconds to read, and has an error.
     let long = format!("{}sphere {{ radus 2 }}", spheres(400_000));
     for slow in [long_pixel(), long] {
         let watch = Watch::start(red(), "a.scn --threads 1");
@@ -274,15 +274,15 @@ fn what_is_superseded_is_given_up_and_so_is_what_ctrl_c_ends() {
 }
 
 #[test]
-fn what_is_no_save_makes_no_picture() {
+fn other_files_permissions_and_reads_trigger_no_picture() {
     let watch = Watch::of_red();
     watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
-    // As editors do behind a save, and whoever reads the file.
+    // Editors set permissions after a save, and other programs read the file.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // Longer than the quiet that ends a burst.
+    // This is longer than the pause that ends a burst of events.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -290,13 +290,13 @@ fn what_is_no_save_makes_no_picture() {
 }
 
 #[test]
-fn a_save_of_the_text_that_was_there_is_a_save() {
+fn saving_an_unchanged_text_renders_it_again() {
     let watch = Watch::of_red();
     watch.says("after the start", 1);
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // By another file in its place.
+    // The save is another file in its place.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");
@@ -305,12 +305,12 @@ fn a_save_of_the_text_that_was_there_is_a_save() {
         watch.save(&scene("red").replace("width", "widht"));
         watch.says("1 error\n", times);
     }
-    // Each save is one rendering, in however many events it comes.
+    // Each save is rendered once, however many events it causes.
     assert_eq!(watch.count("wrote"), 3, "{}", watch.said());
 }
 
 #[test]
-fn the_picture_is_that_of_render() {
+fn watch_writes_the_same_picture_as_render() {
     let arguments = "a.scn --set image.width=32 --threads 2";
     for name in ["a.png", "b.exr"] {
         let watch = Watch::start(red(), &format!("{arguments} -o {name}"));
@@ -323,7 +323,7 @@ fn the_picture_is_that_of_render() {
 }
 
 #[test]
-fn a_picture_that_cannot_be_written_is_no_end() {
+fn watch_continues_after_a_picture_cannot_be_written() {
     let folder = red();
     folder.write("out/kept", "");
     let watch = Watch::start(folder, "a.scn -o out/a.png");

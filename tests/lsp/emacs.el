@@ -1,7 +1,6 @@
 ;; -*- lexical-binding: t; -*-
-;; What Emacs does: it opens the scene, has the server started by eglot or lsp-mode, which CLIENT
-;; names, and writes down what it is told, what it completes, and what the text is after a fix, a
-;; renaming and formatting.
+;; Script for Emacs: opens the scene, starts the server by eglot or lsp-mode, as CLIENT says, and
+;; records the diagnostics, the completions, and the text after a fix, a renaming and formatting.
 
 (require 'package)
 (package-initialize)
@@ -61,7 +60,7 @@ in batch."
       (if (eq client 'eglot) (eglot-code-actions (point) (point) "quickfix" t)
         (lsp-execute-code-action-by-kind "quickfix"))
       (wait-for (lambda () (string-search "radius" (buffer-string))))
-      ;; The timer that tells the server of changes does not run in batch.
+      ;; The timer that sends changes to the server does not run in batch mode.
       (if (eq client 'eglot) (eglot--signal-textDocument/didChange))
       (goto-char (point-min))
       (search-forward "let ")

@@ -1,4 +1,4 @@
--- What Neovim does: it opens the scene, waits for the server, asks, edits, and writes down what came of it.
+-- Script for Neovim: opens the scene, waits for the server, sends requests, edits, and records the results.
 
 local found = {}
 local wrong = {}
@@ -33,7 +33,7 @@ end
 local function lines() return vim.api.nvim_buf_get_lines(buffer, 0, -1, false) end
 
 found.broken = diagnostics(1)
--- Type the missing letter; the change goes to the server as it does when somebody types.
+-- Types the missing letter; the change is sent to the server as in normal typing.
 vim.api.nvim_win_set_cursor(0, { 4, 0 })
 vim.cmd("normal! fdai")
 found.mended = diagnostics(0)
@@ -50,8 +50,8 @@ local edit = ask("textDocument/rename", vim.tbl_extend("force", vim.lsp.util.mak
 vim.lsp.util.apply_workspace_edit(edit, client.offset_encoding)
 found.renamed = lines()
 
--- Many changes at once, in a text with characters of every width; then a mistake, whose place shows that both still have the
--- same text.
+-- Many changes at once, in a text with characters of every width; then a mistake, whose position shows that both sides still
+-- have the same text.
 for _ = 1, 10 do
   vim.cmd("silent 2move 4")
   vim.cmd("silent 4move 1")
@@ -68,7 +68,7 @@ vim.wait(10000, function() return client.is_stopped() end, 10)
 found.stopped = client.is_stopped()
 end
 
--- Whatever fails is said in the answers; an editor without a window must not wait for a key.
+-- Failures are recorded in the answers, as a headless editor must not wait for a key.
 vim.opt.more = false
 local fine, failure = pcall(run)
 found.failure = not fine and tostring(failure) or nil

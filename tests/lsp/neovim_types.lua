@@ -1,6 +1,6 @@
--- Keys are typed into a second Neovim one after another, as a person types them, and the line that
--- comes of each row is written down. A row of `rows.json` is the text, with `$0` for the cursor,
--- and its keys; `menu` among them waits until completions are shown.
+-- Types keys into a second Neovim one after another, as a person does, and records the resulting
+-- line of each row. A row of `rows.json` is a text, with `$0` for the cursor, and its keys; the key
+-- `menu` waits until completions are shown.
 
 local found = { lines = {} }
 
@@ -27,7 +27,7 @@ local function run()
     open(before .. after)
     local lines = vim.split(before, "\n")
     lua("vim.api.nvim_win_set_cursor(0, { ... })", #lines, #lines[#lines])
-    -- Behind the last character of a line there is no place to insert before.
+    -- Behind the last character of a line, text is appended.
     vim.rpcrequest(inner, "nvim_input", after:match("^[^\n]") and "i" or "A")
     for _, key in ipairs(row.keys) do
       if key == "menu" then
@@ -37,7 +37,7 @@ local function run()
         vim.wait(30)
       end
     end
-    -- What is accepted is put in by the editor's next step.
+    -- The editor inserts an accepted completion in its next step.
     vim.wait(200)
     found.lines[index] = lua("return vim.api.nvim_get_current_line()")
     vim.rpcrequest(inner, "nvim_input", "<Esc><Esc>")

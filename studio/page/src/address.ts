@@ -1,21 +1,21 @@
-// The part of the page's address behind #: `key=value`, joined by `&`. Browsers send it to nobody.
-// This module comes before all others, so that nothing else ever sees the token there.
+// The fragment of the page's address: `key=value`, joined by `&`. Browsers do not send it. This
+// module is loaded before all others, so that none of them sees the token in the address.
 
 import { remember, remembered } from "./dom";
 
-/** What has the token in the address, and in what the tab remembers. */
+/** Key of the token in the address and in the tab's storage. */
 const TOKEN = "token";
 const parts = () => new URLSearchParams(location.hash.slice(1));
 
-/** The value of a key; null if it is not there. */
+/** Returns the value of a key, or null if the address does not have it. */
 export function inAddress(key: string): string | null { return parts().get(key); }
 
-/** The page's address with this value of a key, and nothing else behind #. */
+/** Returns the page's address with a fragment of one key and its value. */
 export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Takes the token, and nothing else, out of the address; null if there is none. */
+/** Removes the token alone from the address and returns it, or null if there is none. */
 export function takeToken(): string | null {
   const rest = parts();
   const token = rest.get(TOKEN);
@@ -26,16 +26,16 @@ export function takeToken(): string | null {
   return token;
 }
 
-/** What the host knows this tab by. Reloading keeps it, and another tab has its own. */
+/** Token by which the host knows this tab. Reloading keeps it; another tab has its own. */
 export const session = {
   token: remembered(TOKEN, "sessionStorage"),
-  /** Whether the token comes from an address that was just opened. */
+  /** Whether the token comes from an address opened just now. */
   isFresh: false,
 
-  /** Keeps the token that the host has given, or that an address has. */
+  /** Stores the token given by the host or by an address. */
   keep(token: string, from: "host" | "address"): void {
     Object.assign(this, { token, isFresh: from === "address" });
-    // A browser that forbids it wants the printed address after reloading.
+    // A browser without storage needs the printed address after reloading.
     remember(TOKEN, token, "sessionStorage");
   },
 };

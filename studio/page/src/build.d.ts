@@ -1,4 +1,4 @@
-// What the page is built with: the module that `npm run site` makes of studio/engine, and scenes.
+// What the build adds: the module that `npm run site` makes from studio/engine, and scenes.
 
 declare module "pinhole-engine" {
   export class Engine {
@@ -10,7 +10,7 @@ declare module "pinhole-engine" {
   export default function init(options: { module_or_path: URL }): Promise<unknown>;
 }
 
-/** The scenes of Pinhole's folder of examples: names and texts, put in when the page is built. */
+/** Names and texts of the example scenes, inserted when the page is built. */
 declare const EXAMPLES: [string, string][];
-/** The scene that one starts from. */
+/** Text of a new scene. */
 declare const EMPTY: string;

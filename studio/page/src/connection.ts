@@ -1,46 +1,46 @@
 // The connection to the engine: a web socket to the host, or a web worker, with a JSON-RPC message
-// a text. A lost one is opened anew after growing pauses, unless the host refuses this page.
+// per text. A lost one is reopened after growing pauses, unless the host refuses this page.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
 import { meta } from "./dom";
 import { Refusal } from "./protocol";
 
-/** Something that carries texts. */
+/** Carrier of texts. */
 interface Wire { send(text: string): void }
 
-/** Why there is no connection. After `lost`, `ended` (the host's own word) and `failed` (a worker)
- *  it is tried again; after the others not before an address of the host is opened. */
+/** Why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker), the
+ *  page connects again; after the others, only when an address of the host is opened. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** `silent` is a connection that is lost for long. */
+/** State of the connection; `silent` is one that has been lost for long. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
-/** Opens a wire; the three functions are called as it opens, brings a text, and closes. */
+/** Opens a wire, and calls the functions when it opens, receives a text, and closes. */
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
-/** Pauses before attempts to connect anew, in milliseconds; the last one repeats. */
+/** Pauses before attempts to reconnect, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** After so much silence the server is asked whether it lives, and has so long to answer, in ms. */
+/** Silence after which the server is asked for a sign of life, and the time to answer, in ms. */
 const QUIET = 700;
 const HANGING = 1200;
 
-/** What the numbers of the page's own requests begin with. */
+/** Prefix of the identifiers of the page's own requests. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
-/** What the codes say with which the host closes a web socket. */
+/** Meanings of the codes with which the host closes a web socket. */
 const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
 
 class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
-  /** Told when nothing has come back for long, and when something has again. */
+  /** Called when the server has been silent for long, and when it answers again. */
   onHang: (isHanging: boolean) => void = () => {};
-  /** Resolves once the server has been told who we are and all that was sent before. */
+  /** Resolves when the client is initialized and all earlier messages are sent. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
@@ -50,20 +50,20 @@ class Connection implements Transport {
   private requests = 0;
   private attempts = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** Counts attempts to connect: of an older one nothing is heard any more. */
+  /** Number of attempts to connect; events of older ones are ignored. */
   private current = 0;
-  /** When something was heard last, when the server was asked, and whether it was given up. */
+  /** Times of the last message and of the pending question, and whether it is overdue. */
   private heard = 0;
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // A browser stops the clocks of pages that nobody sees.
+    // A browser stops the timers of hidden pages.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
-  /** Asks a silent server whether it lives. */
+  /** Asks a silent server for a sign of life. */
   private listen(): void {
     const now = performance.now();
     if (this.wire === null || document.hidden) return;
@@ -84,7 +84,7 @@ class Connection implements Transport {
     }, text => isCurrent() && this.receive(text), why => isCurrent() && this.lose(why));
   }
 
-  /** Tries at once, for a caller without a connection who has a new reason to hope for one. */
+  /** Connects at once; for a caller with a new reason to try, such as a new token. */
   retry(): void {
     clearTimeout(this.timer);
     this.attempts = 0;
@@ -97,18 +97,18 @@ class Connection implements Transport {
     this.wire.send(text);
   }
 
-  /** The language client hears of all but the answers to `request`. */
+  /** The language client gets all messages except the answers to `request`. */
   subscribe(handler: (text: string) => void): void { this.handle = handler; }
   unsubscribe(): void { this.handle = () => {}; }
 
-  /** Asks the server. Rejects with a `Refusal`, or otherwise if it is lost, or not wanted more. */
+  /** Asks the server. Rejects with its `Refusal`, or with an `Error` if lost or aborted. */
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
-    // Without a server nobody is ever ready.
+    // Without a server, `ready` would never resolve.
     if (this.wire === null) throw new Error(NO_CONNECTION);
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      // Before anybody is ready, the connection may be lost, or the answer not wanted any more.
+      // Until then, the connection may be lost or the request aborted.
       this.ready().then(() => {
         if (!this.waiting.has(id)) return;
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -122,7 +122,7 @@ class Connection implements Transport {
   }
 
   private receive(text: string): void {
-    // What opens and closes at once has not come back.
+    // Only a message, not an open wire, shows that the server is back.
     this.attempts = 0;
     this.heard = performance.now();
     this.asked = 0;
@@ -143,7 +143,7 @@ class Connection implements Transport {
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (!TRIED_AGAIN.includes(why)) return this.enter(why);
-    // What the host has said holds until it answers again.
+    // The state `ended` holds until the host answers again.
     const isSilent = why === "lost" && this.attempts >= PAUSES.length;
     if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
@@ -157,7 +157,7 @@ class Connection implements Transport {
   }
 }
 
-/** A web socket. Its first message is the token; the host's first one is that for the next time. */
+/** A web socket. Its first message is the token, and the host's first one the next token. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
@@ -174,7 +174,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** A web worker that runs the engine, whose first word opens it. One that fails is replaced. */
+/** A web worker with the engine, open at its first message. One that fails is replaced. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

@@ -1,4 +1,4 @@
-// What is wrong with the text: the server's diagnostics in the editor, with their fixes as buttons.
+// Problems of the text: the server's diagnostics in the editor, with their fixes as buttons.
 
 import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
@@ -9,22 +9,22 @@ import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
-/** Shows diagnostics with their fixes, at once: new diagnostics would close an open tooltip. */
+/** Shows diagnostics and fixes in one update, as another one would close an open tooltip. */
 export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // A drag is told of every text that nothing is wrong with it.
+  // During a drag, every text gets a list of diagnostics, mostly an empty one.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
     { range: editor.range(), context: { diagnostics: [] } });
-  // Without an answer they are shown without fixes.
+  // Without an answer, diagnostics are shown without fixes.
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-/** Whether there may be marks of mistakes, also of such whose text is gone. */
+/** Whether the editor may have marks of problems, including ones whose text is gone. */
 let hasMarks = false;
 
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -36,7 +36,7 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    // What mends all stands once, by the first that it mends.
+    // An action for all problems is listed once, with the first problem that has fixes.
     const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
@@ -49,20 +49,20 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-/** What is the same of a diagnostic and of that which an action names. */
+/** Key that a diagnostic has in common with the one that an action names. */
 const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
-  // Values that are made up are told of in the text of the first edit.
+  // Range of a placeholder value within the text of the first edit.
   const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
-      // The edits are for the text that was judged; a newer one is being judged now.
+      // The edits are for the text that was checked; a newer one is being checked.
       if (view.state.doc !== doc) return;
-      // A made-up value is selected, to type over. What is made up is ASCII.
+      // A placeholder is selected, to type over. It is ASCII.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);
@@ -72,7 +72,7 @@ function fix(action: CodeAction): Action {
   };
 }
 
-/** Problems are shown anew where an update of the editor brings others, or moves them. */
+/** Shows the problems again when an update of the editor changes or moves them. */
 export const problemsFollow = EditorView.updateListener.of(({ docChanged, transactions }) => {
   const areOther = transactions.some(it => it.effects.some(it => it.is(setDiagnosticsEffect)));
   if (docChanged || areOther) showProblems();
@@ -85,14 +85,14 @@ button.addEventListener("click", () => {
   showProblems();
 });
 
-/** What is wrong, with its places. */
+/** Returns the diagnostics with their ranges. */
 function diagnosed(): [Diagnostic, number, number][] {
   const found: [Diagnostic, number, number][] = [];
   forEachDiagnostic(editor.view.state, (...it) => found.push(it));
   return found;
 }
 
-/** Shows what is wrong under the text: the first of it, or all. */
+/** Shows the problems below the text: the first one, or all. */
 export function showProblems(): void {
   const found = diagnosed();
   const { length } = found;
@@ -103,11 +103,11 @@ export function showProblems(): void {
   const isWhole = isOpen();
   list.hidden = length === 0;
   list.toggleAttribute("data-all", isWhole);
-  // What is not shown is not made: a drag changes the text many times a second.
+  // Hidden items are not created, as a drag changes the text many times a second.
   list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
 }
 
-/** A message, which leads to its place, with its fixes. */
+/** Creates the item of a problem: a link to its place, and its fixes. */
 function item({ severity, message, actions }: Diagnostic, from: number, to: number): HTMLElement {
   const { view } = editor;
   const item = create("li", severity);
@@ -121,7 +121,7 @@ function item({ severity, message, actions }: Diagnostic, from: number, to: numb
   return item;
 }
 
-/** Applies the first fix of the diagnostic at the cursor, or else of the first one that has any. */
+/** Applies the first fix of the diagnostic at the cursor, or else of the first fixable one. */
 export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {

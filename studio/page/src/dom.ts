@@ -1,20 +1,20 @@
-// Elements of the page, made and found.
+// Elements of the page: finding and creating them, pointers, downloads and storage.
 
 import { setText } from "./visible";
 
-/** The element with this id, which stands in index.html. */
+/** Returns an element of index.html by its id. */
 export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`the page has no element #${id}`);
   return element as E;
 }
 
-/** What the host has written into the page's head. */
+/** Returns a value that the host has written into the page's head. */
 export function meta(name: string): string | undefined {
   return document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
 }
 
-/** A new element with a class, and a text that is never read as HTML. */
+/** Creates an element with a class and a text, which is never read as HTML. */
 export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "",
   text = ""): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
@@ -23,7 +23,7 @@ export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className 
   return element;
 }
 
-/** A button, which may have another name than its text. */
+/** Creates a button, which may have another name than its text. */
 export function createButton(text: string, className: string, press: () => void,
   name: string | null = null): HTMLButtonElement {
   const button = create("button", className, text);
@@ -40,11 +40,11 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Hears of a pointer until it is let go, or given up: by Escape, or by what this returns. */
+/** Follows a pointer until it is released, or cancelled by Escape or the returned function. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
   end: () => void, cancel: () => void): () => void {
   const following = new AbortController();
-  // In the capture phase, so that the key is not taken for a command as well.
+  // In the capture phase, so that the key is not also a command.
   const how = { capture: true, signal: following.signal };
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
     act: (event: PointerEvent) => void) => document.addEventListener(type,
@@ -64,7 +64,7 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   return () => over(cancel);
 }
 
-/** Does one thing after the other: of those that come while one is done, the newest alone. */
+/** Runs one task after the other; while one runs, only the newest of the others waits. */
 export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<void> {
   let next: { it: T } | null = null;
   let work: Promise<void> | null = null;
@@ -91,15 +91,15 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Browsers that read base64 themselves do it many times faster. */
+/** Native decoding of base64, which is many times faster. */
 const native = Uint8Array as unknown as { fromBase64?(text: string): Uint8Array<ArrayBuffer> };
 
-/** The bytes that a text in base64 stands for. */
+/** Decodes base64. */
 export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** A setting that this browser remembers, or this tab; browsers that forbid it start anew. */
+/** Returns a stored setting of the browser or the tab, or null without storage. */
 export function remembered(key: string, where: Store = "localStorage"): string | null {
   try {
     return window[where].getItem(`pinhole-${key}`);

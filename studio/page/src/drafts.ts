@@ -1,6 +1,6 @@
-// Drafts: what is written and not saved, kept while one writes, and offered again after a reload, a
-// crash, or a host that was lost. Each page has a key of its own, or that of the draft that it goes
-// on with without a host. This browser keeps them until the host has them, or where there is none.
+// Drafts: unsaved texts, stored while one types and offered again after a reload, a crash, or the
+// loss of the host. Each page has its own key, or that of the draft that it continues without a
+// host. The browser stores drafts until the host has them, or for good if there is no host.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -11,11 +11,11 @@ import { Refusal, type Draft } from "./protocol";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** How long a text waits until it is kept, in milliseconds, however fast one types. */
+/** Delay before a changed text is stored, in milliseconds, however fast one types. */
 const BEHIND = 500;
-/** So many drafts are in the browser. */
+/** Maximum number of drafts in the browser. */
 const MOST = 10;
-/** So many are offered at once. */
+/** Maximum number of drafts offered at once. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");
@@ -23,13 +23,13 @@ const store = createStore("pinhole-drafts", "drafts");
 let timer = 0;
 const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
-/** Whether something is kept under this key. */
+/** Whether a draft is stored under this page's key. */
 let isKept = false;
-/** What is to be kept under which key, or forgotten for null, as soon as that can be done. */
+/** Drafts still to be stored, by key; null for one to be deleted. */
 const due = new Map<string, Draft | null>();
-/** What was restored last: it is kept until it is saved, so that Undo does not lose it. */
+/** The draft restored last, kept until it is saved, so that Undo does not lose it. */
 let restored: Draft | null = null;
-/** What is offered and not answered yet, the newest first. */
+/** Drafts offered and not answered yet, the newest first. */
 let offers: Draft[] = [];
 const bar = byId("draft-bar");
 const kept = byId("connection-kept");
@@ -40,10 +40,10 @@ for (const type of ["beforeunload", "pagehide"]) addEventListener(type, () => vo
 files.onLeave = leave;
 files.onSaved = text => void keepDraft(text);
 
-/** The text has changed. */
+/** Schedules storing the changed text. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
 
-/** The text is what there is to keep, if it is not saved. What is saved, or there, is no offer. */
+/** Stores the text unless it is saved. Drafts equal to it or to a saved text are deleted. */
 async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;
@@ -53,7 +53,7 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // What is shown before there is a scene is still a draft.
+  // A text shown before there is a scene is still a draft.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
@@ -63,7 +63,7 @@ async function keepDraft(saved?: string): Promise<void> {
       due.delete(id);
       if (isServed) await del(id, store);
     } catch (error) {
-      // Without a connection the host gets it when there is one.
+      // Without a connection, the host gets the draft later.
       if (error instanceof Refusal) say(`No draft is kept: ${error.message}`, "warning");
     }
   }));
@@ -74,7 +74,7 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers what other pages have kept: here, which is newer, or with the host. */
+/** Offers the drafts of other pages: those in this browser, which are newer, and the host's. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
   offers = hosts;
   show();
@@ -106,7 +106,7 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // The host may have it, too: it is told when there is a connection.
+    // The host may have the draft, too, and is told when there is a connection.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
@@ -120,7 +120,7 @@ function forget(draft: Draft): void {
   show();
 }
 
-/** Something else comes in the place of what is written: that is offered, unless it is undone. */
+/** Offers the unsaved text as a draft, because another scene replaces it. */
 function leave(): void {
   if (!files.isUnsaved) return void keepDraft();
   const left = files.textToSave === restored?.text ? restored : newDraft();
@@ -133,9 +133,9 @@ function leave(): void {
 
 const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.time);
 
-/** Keeps a draft under its key, or forgets what is kept there. */
+/** Stores a draft under its key, or deletes it. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
-  // A browser that forbids it, or takes its time, is no reason not to tell the host.
+  // The host gets the draft even if this browser refuses it, or is slow.
   const here = storedHere(id, draft).catch(error => { if (!isServed) throw error; });
   await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
 }

@@ -1,5 +1,5 @@
-// A drag of an object's handle, or of the camera. It depends on the text at the press, which the
-// server has under an address of its own, and on where the hand was then and is now: on no way.
+// A drag of an object's handle or of the camera. It depends on the text at the press, which the
+// server has under a URI of its own, and on the first and the latest point, not on the path.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -10,15 +10,15 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** What is held, and where it was seen at the press; without an object it is the camera. */
+/** Held handle with its point at the press; without an object, it is the camera's. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
-const SLOW = 400; // how long an answer may take before that is said, in milliseconds
+const SLOW = 400; // delay of an answer until a note says so, in milliseconds
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
-// What a drag says stands where the hand is, while it lasts.
+// The note of a drag stands beside the pointer while the drag lasts.
 const note = byId("drag-note");
 
 function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
@@ -31,33 +31,33 @@ function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void 
 }
 
 const clearNote = () => showNote("", "plain", [0, 0]);
-// Why a drag could not be done stays readable until something else is done.
+// The reason of a refused drag stays readable until the next action.
 for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
   if (!(frames.dragging instanceof Drag)) clearNote();
 }, { capture: true });
 
 let count = 0;
-/** Settles when the drags before have come to their ends. */
+/** Settles when all earlier drags have ended. */
 let ended: Promise<unknown> = Promise.resolve();
 
-/** Asks for one edit at a time, always about the newest place of the hand. */
+/** Drag that requests one edit at a time, for the newest point of the pointer. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
-  /** Where the hand is. */
+  /** Newest point of the pointer. */
   private target: Point;
   private isOpen = false;
   private slow = 0;
   private over = false;
   private gesture = new Gesture(editor.view);
   private readonly holding: Promise<Held | null>;
-  /** Settles when the last place of the hand has been reached. */
+  /** Settles when the edit for the last point has been made. */
   private work: Promise<unknown>;
   private settle: () => void = () => {};
   private letGo: () => void = () => {};
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** What is held may be found out only after the press. */
+  /** `hold` may find out only after the press what is held. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;
@@ -80,7 +80,7 @@ export class Drag {
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
-  /** Ends when the last place of the hand has been reached: no picture is waited for any more. */
+  /** Ends after the edit for the last point, without waiting for pictures. */
   end(): void {
     this.letGo();
     void this.work.then(() => this.finish());
@@ -101,7 +101,7 @@ export class Drag {
     const { gesture, gesture: { base }, press, uri } = this;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
-    // An object's handle keeps its distance from the hand. Of the camera the hand's way counts.
+    // An object's handle keeps its distance from the pointer. The camera follows the movement.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
       step: tools.step };
@@ -120,7 +120,7 @@ export class Drag {
     } catch (error) {
       if (this.over || isSuperseded(error)) return;
       this.say((error as Error).message, "warning");
-      if (!(error instanceof Refusal)) this.finish(); // another server knows no text of this drag
+      if (!(error instanceof Refusal)) this.finish(); // a new server does not have the drag's text
     }
   }
 

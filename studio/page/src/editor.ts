@@ -1,4 +1,4 @@
-// The editor: CodeMirror with what the server gives through the language client.
+// The editor: CodeMirror with the features of the server, through the language client.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
@@ -20,13 +20,13 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** So long it may take to find out where two texts differ, in milliseconds. */
+/** Maximum time to compare two texts, in milliseconds. */
 const DIFF_TIME = 100;
 
 /** Halves of surrogate pairs, which no file and no message can hold. */
 const HALVES = /\p{Surrogate}/gu;
 
-/** Has the replacement character for such halves that are typed or pasted, as a file would. */
+/** Replaces typed or pasted surrogate halves by the replacement character. */
 const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   const changes: ChangeSpec[] = [];
   transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
@@ -36,7 +36,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces several lines itself: a browser would add styles, which the page's policy refuses. */
+/** Replaces several lines itself, as browsers would add styles, which the policy forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -51,7 +51,7 @@ const replacedLines = EditorView.domEventHandlers({
   },
 });
 
-/** A brace that is typed takes over the one that its block has already, behind space alone. */
+/** A typed brace replaces the closing brace of its block if only space is between them. */
 const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
   const { doc } = view.state;
   const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
@@ -65,7 +65,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
   return true;
 }));
 
-/** What hands elsewhere change is shown without moving the page, which they hold. */
+/** Scrolls changes into view without moving the page, while the focus is elsewhere. */
 function withinText(view: EditorView, { head }: SelectionRange): boolean {
   if (view.hasFocus) return false;
   const { scrollDOM, documentPadding } = view;
@@ -75,12 +75,12 @@ function withinText(view: EditorView, { head }: SelectionRange): boolean {
   return true;
 }
 
-/** A text with lines that end by LF, as the editor has them. */
+/** Returns a text with LF line ends, as the editor has them. */
 export function withLf(text: string): string {
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
 
-/** The language client. What is asked about a place of a text that has changed has no answer. */
+/** Language client that drops hover answers for an outdated text. */
 class SceneClient extends LSPClient {
   override async request<Params, Result>(method: string, params: Params): Promise<Result> {
     const { doc } = editor.view.state;
@@ -93,14 +93,14 @@ class SceneClient extends LSPClient {
 class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
-  /** The address by which the server knows the scene; empty until it has been told. */
+  /** URI of the scene at the server; empty until the server has the scene. */
   uri = "";
   onNotification: (method: string, params: any) => void = () => {};
   onUpdate: (update: ViewUpdate) => void = () => {};
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new SceneClient({
-      // A busy machine may take its time; a lost connection is told by the connection.
+      // A busy machine may be slow; a lost connection is reported by `connection`.
       timeout: 60_000,
       sanitizeHTML: sanitized,
       unhandledNotification: (_, method, params) => this.onNotification(method, params),
@@ -111,12 +111,12 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        // What is typed before the scene is there would be lost.
+        // Text typed before the scene is there would be lost.
         EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        // The tools above the text stay free.
+        // Tooltips do not cover the tools above the text.
         tooltips({ tooltipSpace: ({ dom }) => ({ left: 0, right: innerWidth, bottom: innerHeight,
           top: dom.getBoundingClientRect().top }) }),
         EditorView.scrollHandler.of(withinText),
@@ -132,7 +132,7 @@ class SceneEditor {
           ...searchKeymap, ...historyKeymap, ...defaultKeymap,
         ]),
         EditorView.updateListener.of(it => {
-          // Without a connection, the server hears of it later.
+          // Without a connection, the server gets the change later.
           if (it.docChanged && connection.state === "open") this.client.sync();
           this.onUpdate(it);
         }),
@@ -140,12 +140,12 @@ class SceneEditor {
     });
   }
 
-  /** What the page's other parts add, which goes before what the editor does by itself. */
+  /** Adds an extension of another part of the page, with precedence over the editor's own. */
   extend(extension: Extension): void {
     this.view.dispatch({ effects: StateEffect.appendConfig.of(Prec.high(extension)) });
   }
 
-  /** The text, with lines that end by LF. */
+  /** The text, with LF line ends. */
   get text(): string { return this.view.state.doc.toString(); }
 
   /** Asks the server about the scene, as `Connection.request` does. */
@@ -153,7 +153,7 @@ class SceneEditor {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** The same; null where no answer comes, as it is where the text has errors. */
+  /** Asks the server about the scene; null if there is no answer, as for a text with errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -163,25 +163,25 @@ class SceneEditor {
     }
   }
 
-  /** The same; null also where the text has changed meanwhile. */
+  /** Asks the server about the scene; null also if the text has changed meanwhile. */
   async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
     const { doc } = this.view.state;
     const answer = await this.ask<Result>(method, params);
     return this.view.state.doc === doc ? answer : null;
   }
 
-  /** The place of all the text, or of a part of it. */
+  /** Returns the range of the whole text, or of a part of it. */
   range(from = 0, to = this.view.state.doc.length): Range {
     return { start: this.position(from), end: this.position(to) };
   }
 
-  /** Puts a text in place that no undo takes away: it has a history of its own. */
+  /** Replaces the text and its history, so that Undo cannot remove the new text. */
   open(text: string): void {
     const changes = { from: 0, to: this.view.state.doc.length, insert: text };
     rewrite(this.view, { changes, selection: { anchor: 0 } });
   }
 
-  /** Tells the server about a text beside the scene's, under an address of its own. */
+  /** Opens another text at the server, under its own URI. */
   openAside(uri: string, doc: Text): void {
     const file = { uri, languageId: "pinhole", version: 0, doc, getView: () => null };
     if (connection.state === "open") this.client.didOpen(file);
@@ -189,7 +189,7 @@ class SceneEditor {
 
   closeAside(uri: string): void { if (connection.state === "open") this.client.didClose(uri); }
 
-  /** Tells the server about the text, unless it was told already. */
+  /** Opens the scene at the server and makes the editor writable, once. */
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
@@ -197,8 +197,8 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Puts another text in place. No more changes than differs, so that the cursor stays, and what
-   *  is put in or taken away begins with its line if it can, so that blocks stay what they are. */
+  /** Replaces the text by changing only the differences, so that the cursor stays. Pure insertions
+   *  and deletions are moved to the start of their line if possible, so that blocks stay whole. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;
@@ -214,7 +214,7 @@ class SceneEditor {
     if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 
-  /** A server that is new knows nothing yet. */
+  /** Connects to a new server, which has no text yet. */
   connected(): void {
     this.client.workspace.syncFiles();
     this.client.connect(connection);
@@ -231,7 +231,7 @@ class SceneEditor {
     return { line: line.number - 1, character: offset - line.from };
   }
 
-  /** Edits of a text, which is the scene's unless another one is given, as changes. */
+  /** Converts LSP edits of a text, by default of the scene, to changes. */
   changes(edits: readonly TextEdit[], doc = this.view.state.doc): ChangeSet {
     const change = ({ range: { start, end }, newText }: TextEdit) =>
       ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });

@@ -1,5 +1,5 @@
-// Where the scene is kept: the host's file, which other editors may change at the same time, or a
-// file of this computer that the browser opens and saves.
+// The scene's file: the host's, which other editors may change at the same time, or a local file
+// that the browser opens and saves.
 
 import { diffArrays } from "diff";
 import { invertedEffects, isolateHistory } from "@codemirror/commands";
@@ -11,56 +11,56 @@ import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say, unsay } from "./status";
 import { setText, visibleLine } from "./visible";
 
-/** The scene of a page without a file. */
+/** Scene of a page without a file. */
 const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
-/** Not every browser can save into files. */
+/** File pickers, which some browsers lack. */
 const pickers: Partial<Pick<typeof window, `show${"Open" | "Save"}FilePicker`>> = window;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn" as const } }] };
 
-/** A scene, and where it is kept. */
+/** A scene and its file. */
 class Scene {
-  /** What its file held when it was last seen; null where there was none. */
+  /** Content of the file when it was last seen; null if there was none. */
   seen: string | null = null;
-  /** What the page's text was made from: Save asks if the file holds something else. */
+  /** Text that the page's text is based on: Save asks if the file has another one. */
   base: string | null = null;
-  /** Whether the file has gone since. */
+  /** Whether the file has been removed since. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
-  copy: Scene | null = null; // what it was saved as, which has come in its place
-  /** Whether the host is still to make a file of it, under a name that Save asks for. */
+  copy: Scene | null = null; // the copy that has replaced it by Save as
+  /** Whether the host has no file of it yet; Save asks for a name then. */
   isNew = isServed;
-  /** What it starts with, which is not worth saving; null for a file. */
+  /** Initial text, which need not be saved; null for a file. */
   untouched: string | null = null;
 
-  /** Of a copy that is not saved yet, `of` is the scene in whose place it comes then. */
+  /** `of` is the scene that an unsaved copy replaces when it is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
-  /** The text of its file as far as it is known, or what it starts with. */
+  /** The known content of its file, or its initial text. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
 }
 
-/** Another scene comes in the place of one, and goes again by Undo. */
+/** Effect that replaces a scene by another one, and is reverted by Undo. */
 const turns = StateEffect.define<{ from: Scene; to: Scene }>();
 
 export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
   .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
 
-/** How long a save may take before it is said that it is not done, in milliseconds. */
+/** Time after which a pending save is reported, in milliseconds. */
 const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Of texts with more changed lines than these it is not said which ones stay. */
+/** Maximum number of changed lines for which unchanged ones are found. */
 const MOST_CHANGES = 3000;
 
-/** The host's file and others; a static page has local files alone. */
+/** The host's file and others; a static page has only local files. */
 class Files {
   onSaved: (text: string) => void = () => {};
-  /** Told before another scene comes in the place of one. */
+  /** Called before another scene replaces the current one. */
   onLeave: () => void = () => {};
-  /** Whether the host has said what scene it has. */
+  /** Whether the host has sent its scene. */
   isTold = false;
-  /** What a text was made from that was there before that. */
+  /** Text restored before the host has sent its scene, with its base. */
   private early: { base: string | null | undefined; text: string } | null = null;
   /** The host's scene, and the one that the page shows. */
   private hosts = new Scene();
@@ -84,7 +84,7 @@ class Files {
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
-  /** Puts another scene in place; Undo brings back the one before. */
+  /** Replaces the scene by another one; Undo brings it back. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.onLeave();
@@ -95,7 +95,7 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Follows the text to the scene that it belongs to. */
+  /** Switches to the scene that the text belongs to, after Undo or a new scene. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -111,10 +111,10 @@ class Files {
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
-  /** The text with its file's ends of lines. */
+  /** The text with its file's line ends. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Puts a draft in place, or the scene of a link, of which nobody knows what it was made from. */
+  /** Restores a draft, or the scene of a link, whose base is unknown. */
   restore(text: string, base?: string | null, name = this.at.name): void {
     if (!this.isTold) {
       this.early = { base, text };
@@ -126,11 +126,11 @@ class Files {
     this.show();
   }
 
-  /** The host says what file it has: at first, anew, when it has got a name, when it changes. */
+  /** Takes the host's file: at first, after reconnecting, when it is named, when it changes. */
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // What becomes of the host's file is told when its scene is there again, and is saved.
+    // Changes of the host's file are handled when its scene is shown again and saved.
     if (this.at !== this.hosts) return this.show();
     if (!this.isTold) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
@@ -143,7 +143,7 @@ class Files {
       if (this.early !== null) {
         this.restore(early, this.early.base);
         editor.view.dispatch({ selection });
-        // Who opens a link has the scene in it, whatever happens to the page.
+        // The link still has the scene, so it need not be saved.
         if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
@@ -155,14 +155,14 @@ class Files {
     this.show();
   }
 
-  /** The file was changed by somebody else, is gone, or is back. */
+  /** Handles a file that another program has changed, removed or restored. */
   private changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this.at;
     this.at.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
-      // It is again what the page was made from: there is nothing to decide any more.
+      // The file equals the page's base again, so there is nothing to decide.
       this.conflict.close();
       if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
@@ -175,7 +175,7 @@ class Files {
     this.show();
   }
 
-  /** A page cannot show the file as the language reads it: nothing is changed without a word. */
+  /** Warns of carriage returns alone, which the page cannot show and Save replaces. */
   private tellLone(): void {
     if (LONE.test(this.at.held)) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
@@ -204,7 +204,7 @@ class Files {
     });
   }
 
-  /** Says what kept a file from being saved or opened, unless that was the user. */
+  /** Reports why a file was not saved or opened, unless the user cancelled. */
   private async attempt(act: () => Promise<void>): Promise<void> {
     await act().catch(({ name, message }: Error) => {
       if (name !== "AbortError") say(message, "warning");
@@ -225,12 +225,12 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // Meanwhile another scene may have come in its place.
+      // Meanwhile another scene may have replaced this one.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
-      // A host that was started anew does not know what it has made: Save asks for another name.
+      // A restarted host does not know the files that it made, so Save asks for another name.
       scene.isNew ||= scene !== hosts && error instanceof Refusal && error.code !== 0;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
@@ -240,13 +240,13 @@ class Files {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
     if (scene.of === this.at) this.at = this.at.copy = scene;
-    // A host without a file has that one from now on.
+    // A host without a file takes this one.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);
     this.onSaved(text);
   }
 
-  /** Asks for the name of a new file, and saves it. While that fails, the dialog stays. */
+  /** Asks for the name of a new file and saves it. The dialog stays until that succeeds. */
   private askName(scene: Scene): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
@@ -277,7 +277,7 @@ class Files {
     scene.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
     if (scene.handle === null) download(scene.name, text, "text/plain");
     else {
-      // The browser writes into a copy, which takes the file's place as a whole on closing.
+      // The browser writes a copy, which replaces the file on closing.
       const file = await scene.handle.createWritable();
       await file.write(text);
       await file.close();
@@ -293,7 +293,7 @@ class Files {
 
   private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {
     try {
-      // Other encodings would come back from Save as another text.
+      // Save would change a text in another encoding.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
       const scene = new Scene(file.name);
@@ -305,7 +305,7 @@ class Files {
     this.show();
   }
 
-  /** Shows how page and file differ, and asks. Undo brings back what is not chosen. */
+  /** Shows how page and file differ, and asks which to keep. Undo restores the other one. */
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
@@ -314,7 +314,7 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // Saving will ask again, because the page's text is still made from an older one.
+      // The next save asks again, because the page's base is still the older text.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();
@@ -325,7 +325,7 @@ class Files {
   }
 }
 
-/** A text with the ends of lines that a file has; a new line ends as the one before it. */
+/** Returns a text with a file's line ends; a new line ends as the one before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -342,14 +342,14 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Where two texts differ, with up to two lines around. */
+/** Returns the lines that differ, with up to two lines of context. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";
   return lines.slice(Math.max(0, lines.findIndex(differs) - 2), lines.findLastIndex(differs) + 3);
 }
 
-/** The lines of two texts: those of the first alone by -, those of the second alone by +. */
+/** Compares the lines of two texts: - for lines of the first only, + of the second only. */
 function compared(a: string[], b: string[]): DifferenceLine[] {
   const parts = diffArrays(a, b, { maxEditLength: MOST_CHANGES })
     ?? [{ value: a, removed: true, added: false }, { value: b, removed: false, added: true }];

@@ -1,5 +1,5 @@
-// Pictures of the newest text: a coarse one at once, then finer ones, to what the scene asks for.
-// The newest text wins. While it has errors, the server has the pictures of the last good one.
+// Pictures of the newest text: a coarse one at once, then finer ones, up to the scene's samples.
+// A newer text supersedes older ones. While it has errors, the last good text has the pictures.
 
 import type { Text } from "@codemirror/state";
 import { connection } from "./connection";
@@ -7,56 +7,56 @@ import { fromBase64 } from "./dom";
 import { editor } from "./editor";
 import { isSuperseded, type Frame } from "./protocol";
 
-/** How fine a picture is. */
+/** Fineness of a picture. */
 export type Fineness = "coarse" | "sharp" | "final";
 
 export interface Shown {
   bitmap: ImageBitmap;
   size: [number, number];
   fineness: Fineness;
-  /** The version of the text that it shows. */
+  /** Version of the text that it shows. */
   version: number;
 }
 
 /** Maximum number of pixels of a coarse picture: a sixteenth of 1280 × 720. */
 const COARSE_PIXELS = 320 * 180;
 
-/** More than this a canvas cannot hold in every browser. */
+/** Largest canvas that every browser supports. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** While something is dragged, finer pictures wait so many milliseconds for the hand to rest. */
+/** Delay of finer pictures during a drag, in milliseconds. */
 const HAND_RESTS = 20;
-/** If finished pictures take fewer milliseconds, none comes between it and the coarse one. */
+/** If a finished picture takes less time, in milliseconds, the sharp one is skipped. */
 const SOON = 200;
 
-/** What pictures were asked of. */
+/** Text of a requested picture, and the number of the request. */
 interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Told whether the newest text has a picture, or what kept it from having one. */
+  /** Called with whether the newest text has a picture, or the error that prevented it. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
-  /** Told when what was dragged is let go of. */
+  /** Called when a drag ends. */
   onRest: () => void = () => {};
-  /** What is being dragged. */
+  /** Current drag. */
   dragging: object | null = null;
-  /** Settles when the newest text's coarse picture has come, or will not come. */
+  /** Settles when the newest text's coarse picture has arrived, or will not arrive. */
   coarse: Promise<unknown> = Promise.resolve();
 
-  /** The newest picture: of which text, and by which question; the text may have changed since. */
+  /** The newest picture with its request; the text may have changed since. */
   shown: Shown & Asked | null = null;
 
   private generation = 0;
-  /** Whether the newest text that has an answer has errors. */
+  /** Whether the newest answered text has errors. */
   private isBroken = false;
   private lastTook = Infinity;
 
-  /** What was dragged is no more, unless something else is dragged already. */
+  /** Ends a drag, unless another one has begun. */
   released(dragged: object): void {
     if (this.dragging === dragged) this.dragging = null;
     this.onRest();
   }
 
-  /** The text has changed, or the server: pictures are asked for. */
+  /** Requests pictures, as the text or the server has changed. */
   changed(): void {
     if (editor.uri === "" || connection.state !== "open") return;
     const answer = this.ask({ pixels: COARSE_PIXELS, samples: 1 });
@@ -82,7 +82,7 @@ class Frames {
     return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...how });
   }
 
-  /** Shows a picture that was asked for, and returns it if its text is still the newest. */
+  /** Shows a requested picture, and returns it if its text is still the newest. */
   private async present(asked: Asked, fineness: Fineness,
     answer: Promise<Frame | null>): Promise<Frame | null> {
     const isNewest = () => asked.generation === this.generation;
@@ -95,7 +95,7 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // What stood there before is finished all the same. More mistakes do not begin it anew.
+        // The last good picture is still finished. Further errors do not restart it.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }
@@ -119,7 +119,7 @@ class Frames {
   }
 }
 
-/** The picture in a PNG. A decoder has it some milliseconds sooner than other processes do. */
+/** Decodes a PNG. `ImageDecoder` is some milliseconds faster than `createImageBitmap`. */
 async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);

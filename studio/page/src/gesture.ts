@@ -1,5 +1,5 @@
-// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one undo
-// takes back. What it changes is marked, so that one sees which numbers move.
+// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one Undo
+// reverts. The changed numbers are highlighted.
 
 import { history, historyField, isolateHistory } from "@codemirror/commands";
 import { Annotation, ChangeSet, Compartment, EditorState, StateField, type ChangeSpec, type
@@ -9,11 +9,11 @@ import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 /** Marks a change that belongs to a gesture: its first one, or one that continues it. */
 const step = Annotation.define<"first" | "next">();
 
-/** A pause in typing, in milliseconds, after which an undo step begins. */
+/** Pause in typing after which a new undo step begins, in milliseconds. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 
-/** What the last change of a gesture wrote, until something else changes the text. */
+/** Highlights the last change of a gesture until another change of the text. */
 const touchedField = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(marks, transaction) {
@@ -28,14 +28,14 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** Where the history is kept, so that it can be put back as it was. */
+/** Compartment of the history, so that it can be restored. */
 const kept = new Compartment();
 
 function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // All is joined but what is isolated, whose time is 0: it is less than the time since 1970.
+      // Joins all changes except isolated ones, which have the time 0: longer ago than this.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -48,20 +48,20 @@ function grouped(past: Extension = []): Extension {
   ];
 }
 
-/** The history of changes: typing is grouped by pauses, gestures as a whole. */
+/** History of changes, which groups typing by pauses and a gesture as a whole. */
 export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
-/** Changes the text, and gives it the history that it had in the past, or a new one. */
+/** Changes the text and sets its history to a past one, or to a new one. */
 export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
   view.dispatch({ effects: kept.reconfigure([]) });
   view.dispatch(change);
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
-/** Depends on the text as it was at the beginning and on what was written last, but not on what was
- *  written between. Who else changes the text keeps that: then it does nothing more. */
+/** Depends on the text at the start and the last change, but not on the changes in between. After
+ *  a foreign change of the text, a gesture changes nothing more. */
 export class Gesture {
-  /** The text at the beginning, what has become of it, and by which changes. */
+  /** The text at the start, the current text, and the changes between them. */
   readonly base: Text;
   private current: Text;
   private written: ChangeSet;
@@ -75,10 +75,10 @@ export class Gesture {
     this.written = ChangeSet.empty(this.base.length);
   }
 
-  /** Whether nobody else has changed the text. */
+  /** Whether nothing else has changed the text. */
   get isAlone(): boolean { return this.view.state.doc === this.current; }
 
-  /** Puts a change of the text at the beginning in the place of the last one, and shows it. */
+  /** Replaces the last change by another change of the original text, and scrolls to it. */
   write(spec: ChangeSpec): void {
     if (this.over || !this.isAlone) return;
     const { base, current, view, written } = this;
@@ -94,7 +94,7 @@ export class Gesture {
     this.current = view.state.doc;
   }
 
-  /** Ends; what has come back to where it was has not been. */
+  /** Ends the gesture. One that has restored the original text leaves no history. */
   end(): void {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
@@ -102,7 +102,7 @@ export class Gesture {
     if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Ends as if nothing had happened: neither Undo nor Redo knows. */
+  /** Reverts the gesture, without a trace in Undo or Redo. */
   cancel(): void {
     if (this.over) return;
     if (!this.isAlone) return this.end();

@@ -1,4 +1,4 @@
-// Between the letters: values that the server works out, and a swatch before each colour.
+// Widgets in the text: values computed by the server, and a swatch before each colour.
 
 import { StateEffect, StateField, type Text } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
@@ -9,7 +9,7 @@ import { create, newestOf } from "./dom";
 import { editor } from "./editor";
 import { Gesture } from "./gesture";
 
-/** A colour as it is written. */
+/** A written colour. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
 const colorAt = (doc: Text, at: number) => COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
 const setHints = StateEffect.define<DecorationSet>();
@@ -25,7 +25,7 @@ class HintWidget extends WidgetType {
   constructor(private readonly text: string) { super(); }
   override eq(other: HintWidget): boolean { return other.text === this.text; }
   toDOM(): HTMLElement { return create("span", "hint", this.text); }
-  // A click at it is one at its place in the text.
+  // A click on the hint is a click at its position in the text.
   override ignoreEvent(): boolean { return false; }
 }
 
@@ -39,7 +39,7 @@ class SwatchWidget extends WidgetType {
   toDOM(view: EditorView): HTMLElement {
     const input = create("input", "swatch");
     input.type = "color";
-    // The text is one stop of the Tab key. From a colour, Alt-Enter leads here.
+    // The Tab key skips swatches, and Alt-Enter opens that of the colour at the cursor.
     input.tabIndex = -1;
     let gesture: Gesture | null = null;
     let work = Promise.resolve();
@@ -54,7 +54,7 @@ class SwatchWidget extends WidgetType {
     return input;
   }
 
-  // The picker belongs to the element: that stays while the colour changes.
+  // The open picker belongs to the element, which is therefore kept.
   override updateDOM(dom: HTMLElement): boolean {
     const input = dom as HTMLInputElement;
     input.value = this.color;
@@ -77,7 +77,7 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-/** The text has come to rest: it has new hints. */
+/** Requests the hints and swatches of a text at rest. */
 export async function refreshHints(): Promise<void> {
   const { doc } = editor.view.state;
   const [hints, colors] = await Promise.all([
@@ -98,7 +98,7 @@ export async function refreshHints(): Promise<void> {
   editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
 }
 
-/** Writes a picked colour over the one at an offset, in the way it is written there. */
+/** Replaces the colour at an offset by a picked one, in the same notation. */
 async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
   const written = colorAt(gesture.base, offset);
   const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
@@ -107,7 +107,7 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  // The first one is in the way that the colour is written.
+  // The first presentation has the notation of the written colour.
   const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });

@@ -1,4 +1,4 @@
-// What is under the pointer: it is named in the footer, and outlined.
+// The object under the pointer is named in the footer and outlined.
 
 import { newestOf } from "./dom";
 import { editor } from "./editor";
@@ -7,7 +7,7 @@ import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { point as tell } from "./status";
 
-/** Where the pointer is on the stage. */
+/** Position of the pointer on the stage. */
 let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
@@ -20,7 +20,7 @@ picture.stage.addEventListener("pointerleave", () => {
   void hover(null);
 });
 
-/** Something else may be seen where the pointer is. */
+/** Updates what is under the pointer, as the picture may have changed. */
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
 const hover = newestOf(async (at: Point | null) => {

@@ -1,4 +1,4 @@
-// The keys of the picture, which work wherever the focus is not in a text field.
+// Keys for the picture, which work unless the focus is in a text field.
 
 import { byId } from "./dom";
 import { Drag } from "./drag";
@@ -9,33 +9,33 @@ import { selection } from "./selection";
 import { say } from "./status";
 import { tools, type Tool } from "./tools";
 
-/** How far an arrow key moves, in pixels of the picture; with the control key a tenth of it. */
+/** Step of an arrow key, in pixels of the picture; with the control key, a tenth of it. */
 const KEY_STEP = 10;
-/** A pause after which the next arrow key, or turn of the wheel, begins another drag, in ms. */
+/** Pause after which an arrow key or a turn of the wheel begins a new drag, in ms. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Where keys mean something of their own: all of them, or those that arrows and Space are. */
+/** Elements with their own use of all keys, or of the arrow keys, Space and Escape. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work there, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
-/** A key as it stands at its control. */
+/** Returns a key in the notation of `data-key`. */
 function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   if (!ctrlKey && !metaKey) return key;
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** The control that a key presses; one that drags are held to already is let go. */
+/** Returns the control of a key; that of the current constraint releases it. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
   return found?.matches("[name=along]:checked") ? byId("free") : found;
 }
 
-/** Whether the space bar is held, which has drags shift the picture. */
+/** Whether the space bar is held, so that drags pan the picture. */
 export let space = false;
 let drag: Drag | null = null;
 let pause = 0;
@@ -48,7 +48,7 @@ picture.onDolly = turned => {
   rest();
 };
 picture.stage.addEventListener("focusout", event => {
-  // From handle to handle the hands stay on the picture.
+  // Moving the focus between handles does not end a drag.
   if (event.relatedTarget instanceof Node && picture.stage.contains(event.relatedTarget)) return;
   endKeys();
   freeSpace();
@@ -78,7 +78,7 @@ function down(event: KeyboardEvent): void {
     drag ??= begin(on);
     drag?.by([arrow[0] * step, arrow[1] * step]);
   } else if (whole === "Escape") {
-    // Also one that has been let go, and waits for Studio.
+    // Also a drag that is released and waits for the server.
     if (frames.dragging instanceof Drag) frames.dragging.cancel();
     else selection.select(null);
     drag = null;
@@ -99,7 +99,7 @@ function up(event: KeyboardEvent): void {
   if (event.key in ARROWS) rest();
 }
 
-/** Taps that follow each other are one drag. */
+/** Ends the drag after a pause, so that repeated keys are one drag. */
 function rest(): void {
   clearTimeout(pause);
   pause = setTimeout(endKeys, KEY_PAUSE);
@@ -112,12 +112,12 @@ function freeSpace(): void {
 
 function ofCamera(handle: Tool): Drag {
   const { size: [width, height] } = picture;
-  // Roll turns about the middle: one has to take hold beside of it.
+  // A roll turns about the centre, so it is held beside the centre.
   const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
   return new Drag(at, () => ({ object: null, handle, at }));
 }
 
-/** What an arrow key drags: the focused handle, else the selected object or the camera. */
+/** Begins a drag of the focused handle, or else of the selected object or the camera. */
 function begin(focused: Element): Drag | null {
   const { tool } = tools;
   const isHandle = focused.closest(".handle") !== null;

@@ -1,4 +1,4 @@
-// The scene language as the editor colours it. What names mean is the server's business.
+// Syntax highlighting of the scene language. The server knows the meaning of names.
 
 import { StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { classHighlighter } from "@lezer/highlight";
@@ -6,7 +6,7 @@ import { classHighlighter } from "@lezer/highlight";
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
 const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
 
-// The words of the language; a test of Pinhole compares them with its own.
+// The words of the language; a test compares them with the schema.
 const KINDS = words("image camera sampler sphere triangle box checkerboard");
 const FIELDS = words(
   "width height background",
@@ -65,5 +65,5 @@ export const sceneLanguage = StreamLanguage.define<State>({
     closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
-/** What has which colour is in editor.css. */
+/** Highlighting by classes, whose colours are in editor.css. */
 export const sceneHighlighting = syntaxHighlighting(classHighlighter);

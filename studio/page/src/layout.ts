@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** How much of the width, or of the height on narrow screens, the text may take up, in per cent. */
+/** Limits of the text's share of the width, or of the height on narrow screens, in per cent. */
 const LEAST = 20;
 const MOST = 80;
 
@@ -42,7 +42,7 @@ divider.addEventListener("keydown", event => {
   share(Number(divider.getAttribute("aria-valuenow")) + 2 * direction);
 });
 
-// A phone has room for one of the two.
+// A phone shows the text or the picture.
 const tabs = document.querySelectorAll<HTMLButtonElement>("#tabs button");
 const showTab = (tab: string) => {
   panes.dataset["tab"] = tab;
@@ -58,7 +58,7 @@ byId("zoom-actual").addEventListener("click", () => picture.actualSize());
 for (const id of ["keys", "language"]) byId(id).addEventListener("click", () =>
   byId<HTMLDialogElement>(`${id}-dialog`).showModal());
 
-// A menu closes by a click elsewhere, by Escape, and when something in it was chosen.
+// A menu closes by a click elsewhere, by Escape, and after a choice.
 const menus = [...document.querySelectorAll<HTMLDetailsElement>("details.menu")];
 const closeMenus = (except?: EventTarget | null) => {
   for (const menu of menus) if (!menu.contains(except as Node | null)) menu.open = false;
@@ -75,7 +75,7 @@ for (const menu of menus) {
   });
 }
 
-// Dark or light: as the system has it, until one chooses. All colours are variables of page.css.
+// The theme follows the system until one is chosen. Its colours are variables of page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
 const colors = () => remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");

@@ -1,4 +1,4 @@
-// Pinhole Studio's page: a text and its picture. This file puts its parts together.
+// Pinhole Studio's page: a text and its picture. This module connects the parts.
 
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
@@ -26,7 +26,7 @@ import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
-/** How long the text has to rest before hints, sliders and objects are asked for, in ms. */
+/** Delay after the last change before hints, sliders and objects are requested, in ms. */
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
@@ -72,14 +72,14 @@ function changed(): void {
   void refreshOutlines();
   files.show();
   draftChanged();
-  // Nobody looks at these while a hand moves.
+  // These are not needed during a drag.
   if (frames.dragging === null) rested();
   status.changed();
 }
 
 let resting: ReturnType<typeof setTimeout>;
 
-/** What a text at rest has comes a little later. */
+/** Requests hints, sliders and objects after a delay. */
 function rested(): void {
   clearTimeout(resting);
   resting = setTimeout(() => {
@@ -117,13 +117,13 @@ editor.onNotification = (method, params) => {
   if (method === "studio/file") void hosted(params);
 };
 
-/** What the host has said of its file while a hand moved something: it has to wait for that. */
+/** The host's file received during a drag, until the drag ends. */
 let waiting: HostedFile | null = null;
 
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // A number that is played would have it wait for ever.
+  // A number that is being played would delay the file for ever.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;
@@ -143,7 +143,7 @@ addEventListener("hashchange", async () => {
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
-// The editor has no more lines in the page than are seen.
+// The editor only has the visible lines in the page.
 addEventListener("beforeprint", () => {
   picture.fit();
   setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);

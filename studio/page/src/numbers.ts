@@ -1,4 +1,4 @@
-// Numbers in the text that one can turn: by a drag with the alt key, and by a slider below them.
+// Changing numbers in the text by a drag with the Alt key, and by a slider below them.
 
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type Extension } from "@codemirror/state";
@@ -10,13 +10,13 @@ import { Gesture } from "./gesture";
 import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
-/** A number literal, with the sign that belongs to it, and where its unit ends. */
+/** Number literal with its sign, and the end of its unit. */
 interface Literal { from: number; to: number; end: number; value: number }
 
-/** So many screen pixels of a drag are one step. */
+/** Screen pixels of a drag per step. */
 const DRAG_PIXELS = 4;
 
-/** A minus sign that belongs to the number, since it has nothing to subtract from. */
+/** Minus sign of a negative number, as opposed to a subtraction. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 export function literalAt(at: number): Literal | null {
@@ -34,32 +34,32 @@ export function literalAt(at: number): Literal | null {
     end: node.to, value };
 }
 
-/** Says how the number at an offset is turned; null if nobody knows. */
+/** Returns the limits of the number at an offset, or null if there are none. */
 function limitsOf(at: number): Promise<Limits | null> {
   return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
-/** Turns one number through a gesture, as far as its limits allow, which the server knows. */
+/** Changes one number by a gesture, within limits from the server. */
 export class Turn {
   readonly gesture = new Gesture(editor.view);
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** The value may depend on the step. */
+  /** Sets the value, which may depend on the step. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
     if (limits === null) return;
     const { least, most, step, decimals } = limits;
     const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
-    // No minus before a zero.
+    // Adding 0 turns −0 into 0.
     this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
   }
 
   end(): void { void this.limits.then(() => this.gesture.end()); }
 }
 
-/** A slider of a number, which may be gone. What it does until it is let go is one turn. */
+/** Slider of a number, which may be gone. Its changes until release are one `Turn`. */
 export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;
@@ -68,7 +68,7 @@ export class Dial {
   constructor(readonly literal: () => Literal | null) {
     const { range } = this;
     range.type = "range";
-    // After Escape the browser goes on with its drag until the pointer is let go.
+    // After Escape, the browser continues its drag until the pointer is released.
     let isOff = false;
     range.addEventListener("input", () => isOff ? this.show() : void this.set(Number(range.value)));
     range.addEventListener("change", () => this.end());
@@ -95,7 +95,7 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number between the ends of its limits, unless a hand holds it. */
+  /** Shows the number within its limits, unless it is being changed. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;
@@ -107,14 +107,14 @@ export class Dial {
 
 const openSlider = StateEffect.define<number | null>();
 
-/** Where the number begins whose slider is open. */
+/** Start of the number whose slider is open. */
 const sliderField = StateField.define<number | null>({
   create: () => null,
   update(open, transaction) {
     const { changes, docChanged, effects, selection } = transaction;
     const next = effects.findLast(it => it.is(openSlider));
     if (next !== undefined) return next.value;
-    // Typing closes it; what the slider itself writes does not.
+    // Typing closes the slider; its own changes do not.
     const isTyped = docChanged && transaction.isUserEvent("input");
     return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
@@ -124,10 +124,10 @@ const sliderField = StateField.define<number | null>({
 
 const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.of(pos) });
 
-/** The limits of the number whose slider was opened. */
+/** Limits of the number whose slider was opened. */
 let opened: Limits | null = null;
 
-/** Opens the slider of a number, if the cursor still stands there when its limits are known. */
+/** Opens the slider of a number if the cursor is still there when its limits are known. */
 async function open(at: number): Promise<void> {
   opened = await limitsOf(at + 1);
   if (opened !== null && atCursor()?.from === at) show(at);
@@ -162,7 +162,7 @@ function createSlider(): TooltipView {
   } };
 }
 
-/** Turns a number by the way of the pointer to the side, until it is let go. */
+/** Changes a number by the horizontal movement of the pointer until its release. */
 function scrub(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();
@@ -178,7 +178,7 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
   return true;
 }
 
-/** Turns a number by a step. Says whether there is one. */
+/** Changes a number by a step. Returns whether there is a number. */
 function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(literal);
@@ -197,7 +197,7 @@ export const numberControls: Extension = [
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
       return scrub(event, at === null ? null : literalAt(at));
     },
-    // With the alt key the editor would begin to select.
+    // With the Alt key, the editor would begin a selection.
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;
@@ -206,7 +206,7 @@ export const numberControls: Extension = [
     },
   }),
   keymap.of([
-    // Elsewhere than at a number these do what they do without.
+    // Away from a number, these keys keep their usual function.
     { key: "Alt-ArrowUp", run: () => turnOnce(atCursor(), 1) },
     { key: "Alt-ArrowDown", run: () => turnOnce(atCursor(), -1) },
     { key: "Alt-Enter", run: ({ dom }) => {

@@ -1,28 +1,28 @@
-// What is drawn over the picture: layers that can be switched on, and what is selected or hovered.
+// Drawings over the picture: optional layers, and the selected and the hovered object.
 
 import { byId, createSvg, remember, remembered } from "./dom";
 import { picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
-/** What can be switched on: the boxes of a menu have these names. */
+/** Optional layers, by the names of their checkboxes in the menu. */
 export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** From this zoom on a grid of pixels can be seen, and samples in a pixel. */
+/** Zooms from which the pixel grid and the samples of a pixel are drawn. */
 const GRID_ZOOM = 6;
 const SAMPLES_ZOOM = 4;
-/** So far from the stage's border arrows end, in screen pixels. */
+/** Distance of arrows from the stage's border, in screen pixels. */
 const EDGE = 14;
 
 class OverlayLayer {
-  /** The newest overlays; those of the last good text while there is none. */
+  /** The newest overlays, or those of the last good text. */
   data: Overlays | null = null;
-  /** Whether they are those of the text that is there. */
+  /** Whether the overlays are those of the current text. */
   isTrue = true;
   hovered: number | null = null;
-  /** Called when something is to be drawn that may not be known yet. */
+  /** Called when overlays are needed that may not be known yet. */
   onNeed: () => void = () => {};
   selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
@@ -41,10 +41,10 @@ class OverlayLayer {
 
   isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
-  /** Whether anything is switched on that the server has to be asked about. */
+  /** Whether a layer is on that needs data from the server. */
   get needsAny(): boolean { return this.needsAll || this.isOn("horizon") || this.isOn("near"); }
 
-  /** Whether something is switched on that all objects have. */
+  /** Whether a layer is on that needs all objects. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
 
   hover(hovered: number | null): void {
@@ -85,12 +85,12 @@ class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
-  /** Marks a point with its coordinates; outside of the stage it is an arrow at the border. */
+  /** Marks a point with its coordinates, or by an arrow at the border if it is outside. */
   private mark(point: Point, name: string, text: string): void {
     const [x, y] = picture.toScreen(point);
     const { clientWidth: width, clientHeight: height } = picture.stage;
     const [middleX, middleY] = [width / 2, height / 2];
-    // How far out it is: 1 is the border.
+    // Distance from the centre, where 1 is the border.
     const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
       Math.abs(y - middleY) / (middleY - EDGE));
     const part = Math.max(1, out);
@@ -106,7 +106,7 @@ class OverlayLayer {
     this.svg.append(...twice(shape, name), label);
   }
 
-  /** Why something that is switched on is not to be seen. */
+  /** Yields the reasons why layers that are on cannot be seen. */
   private *unseen(data: Overlays): Generator<string> {
     const { zoom } = picture;
     if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
@@ -134,12 +134,12 @@ class OverlayLayer {
   }
 }
 
-/** A light line over a dark one, which is seen on every ground. */
+/** Returns a light line over a dark one, which is visible on any background. */
 function twice(shape: Record<string, string>, name: string): SVGElement[] {
   return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
 }
 
-/** The lines between the pixels that can be seen. */
+/** Returns the lines between the visible pixels. */
 function grid(): Polyline[] {
   const { stage, size } = picture;
   const [left, top] = picture.toPicture([0, 0]);

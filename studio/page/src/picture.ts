@@ -1,19 +1,19 @@
-// The picture: a canvas in a stage, and the view of it, which can be zoomed into single pixels.
+// The picture: a canvas in a stage, with a view that zooms down to single pixels.
 
 import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
-/** From this zoom on, in screen pixels a pixel, pixels are shown as squares. */
+/** Zoom from which pixels are shown as squares, in screen pixels per pixel. */
 const SQUARES = 3;
 const MOST_ZOOM = 64;
-/** The space between the picture and the stage's border, in screen pixels. */
+/** Space between the picture and the stage's border, in screen pixels. */
 const MARGIN = 12;
 
 class Picture {
   /** Called when the view or the size of the picture has changed. */
   onView: () => void = () => {};
-  /** Called when the wheel is to move the camera: 1 is 300 pixels of it. */
+  /** Called when the wheel moves the camera; 1 is a turn of 300 pixels. */
   onDolly: (turned: number) => void = () => {};
   size: [number, number] = [1280, 720];
   zoom = 1;
@@ -31,7 +31,7 @@ class Picture {
     stage.addEventListener("wheel", event => {
       event.preventDefault();
       if (event.buttons !== 0) return; // a drag is under way
-      // With the shift key browsers turn the wheel to the side.
+      // With the Shift key, browsers scroll horizontally.
       const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
       if (event.shiftKey) this.onDolly(turned);
       else this.zoomBy(2 ** -turned, this.local(event));
@@ -57,23 +57,23 @@ class Picture {
       { bubbles: true, detail: { fineness, version } }));
   }
 
-  /** Whether there has been no picture yet. */
+  /** Whether no picture has been shown yet. */
   get isEmpty(): boolean { return this.canvas.dataset["fineness"] === undefined; }
 
-  /** A point of the stage, in screen pixels, from a point of the picture. */
+  /** Converts a point of the picture to one of the stage, in screen pixels. */
   toScreen([x, y]: Point): Point { return [this.left + x * this.zoom, this.top + y * this.zoom]; }
 
   toPicture([x, y]: Point): Point {
     return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
   }
 
-  /** Where on the stage an event is. */
+  /** Returns the point of the stage where an event is. */
   local(event: { clientX: number; clientY: number }): Point {
     const { left, top } = this.stage.getBoundingClientRect();
     return [event.clientX - left, event.clientY - top];
   }
 
-  /** The matrix that takes points of the picture to the stage, for SVG. */
+  /** The SVG matrix from the picture to the stage. */
   get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
   /** Shows the whole picture, as large as the stage allows. */
@@ -85,7 +85,7 @@ class Picture {
     this.fitted = true;
   }
 
-  /** Shows a pixel of the picture on each of the screen. */
+  /** Shows one pixel of the picture per pixel of the screen. */
   actualSize(): void { this.center(1 / devicePixelRatio); }
 
   zoomBy(factor: number, about?: Point): void {
@@ -103,7 +103,7 @@ class Picture {
     this.place();
   }
 
-  /** Shows the picture's middle in the middle of the stage. */
+  /** Centres the picture in the stage, with a zoom. */
   private center(zoom: number): void {
     const [width, height] = this.size;
     this.zoom = zoom;

@@ -1,5 +1,5 @@
-// Hands on the picture by mouse, pen and fingers: a press begins a drag, two fingers zoom, and with
-// the space bar a drag shifts the picture.
+// Mouse, pen and touch on the picture: a press begins a drag, two fingers zoom, and with the space
+// bar a drag pans the picture.
 
 import { followPointer } from "./dom";
 import { Drag, type Held } from "./drag";
@@ -10,15 +10,15 @@ import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
 
-/** So many screen pixels a pointer may wander before it is a drag. */
+/** Movement of a pointer from which a press is a drag, in screen pixels. */
 const CLICK = 4;
 
-/** What other buttons than the left one do. */
+/** Tools of the middle and the right button. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** Gives up what a button or a finger has begun. */
+/** Cancels the drag of a button or a finger. */
 let giveUp = (): void => {};
-/** Where each pointer is. */
+/** Position of each pressed pointer. */
 const places = new Map<number, Point>();
 const { stage } = picture;
 
@@ -32,9 +32,9 @@ function press(event: PointerEvent): void {
   const at = picture.local(event);
   places.set(event.pointerId, at);
   stage.setPointerCapture(event.pointerId);
-  stage.focus({ preventScroll: true }); // fingers would leave it in the text
+  stage.focus({ preventScroll: true }); // touch would leave the focus in the text
   endKeys();
-  // A second finger zooms: what the first one has begun does not count.
+  // A second finger zooms, and cancels the drag of the first one.
   if (places.size > 1) return giveUp();
   if (space) return;
   tools.held = event;
@@ -53,7 +53,7 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   const { zoom } = picture;
   const move = (next: PointerEvent) => {
     tools.held = next;
-    // The hand's way counts, wherever the page has the picture by now.
+    // The pointer's movement counts, even if the page has moved the picture meanwhile.
     const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
     moved ||= Math.hypot(dx, dy) > CLICK;
     if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
@@ -61,12 +61,12 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }
 
-/** Selects what is under the pointer, and holds it by its centre. */
+/** Selects the object at a point, and holds it by its centre. */
 async function grab(point: Point): Promise<Held | null> {
   const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });
   const object = pick?.object ?? null;
-  // What was chosen before the answer came stays chosen.
+  // A selection made before the answer is kept.
   if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
@@ -77,7 +77,7 @@ async function grab(point: Point): Promise<Held | null> {
   return { object: object.index, handle: middle.handle, at: middle.at };
 }
 
-/** Shifts and zooms the picture. */
+/** Pans and zooms the picture. */
 function shift(event: PointerEvent): void {
   const before = places.get(event.pointerId);
   if (before === undefined) return;

@@ -1,4 +1,4 @@
-// The picture alone in a window of its own, for a projector. This page feeds it: it asks no server.
+// The picture alone in a window for a projector. The page sends it pictures; it has no server.
 
 import { inAddress } from "./address";
 import { byId, remember, remembered } from "./dom";
@@ -9,14 +9,14 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Each tab of Studio has a channel of its own, also after it was loaded anew. */
+/** Name of this tab's channel, which reloading keeps. */
 const known = remembered(KEY, "sessionStorage");
 const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);
-/** Whether a window has ever asked for pictures. */
+/** Whether a projector window has requested pictures. */
 let isFed = known !== null;
 
-/** Hands a picture on, as long as anybody has asked for one. */
+/** Sends a picture to projector windows if one has requested pictures. */
 export function feedProjectors(shown: Shown): void { if (isFed) channel.postMessage(shown); }
 
 if (isProjector) {

@@ -12,13 +12,13 @@ export interface Frame { version: number; width: number; size: [number, number];
 
 export interface SceneObject {
   index: number; kind: string; name: string | null; range: Range; selection: Range;
-  label: string; // the name, or what tells it from others without one
-  indices?: number[]; // which one of its block it is, where that stands for many
+  label: string; // the name, or a description that is unique among unnamed objects
+  indices?: number[]; // indices of an object of a repeated block
 }
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
-/** An object and where in the picture it is seen, in words. */
+/** An object and its place in the picture, in words. */
 export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {
@@ -31,55 +31,55 @@ export interface Overlays {
 
 export interface Pick {
   object: SceneObject | null;
-  /** In which pixel it is, and what is seen, in words; null outside of the picture. */
+  /** The pixel and what it shows, in words; null outside the picture. */
   pixel: Point | null; text: string | null;
 }
 
-/** What a drag may be held to: an axis of the world, or the plane of equal y. */
+/** Constraint of a drag: an axis of the world, or the plane of equal y. */
 export type Along = "x" | "y" | "z" | "floor";
 
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
-  /** What else moves with it, as `camera.lookat`. */
+  /** Other fields that change, such as `camera.lookat`. */
   also?: string[];
 }
 
-/** How a number is turned, and between which `ends` on a slider. */
+/** Limits of a number, and the `ends` of its slider. */
 export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A `let`, and how a slider turns it, if it is a number or angle; `note` says why the comment
- *  behind it is no range. */
+/** A `let`, and the limits of its slider if it is a number or an angle; `note` says why the comment
+ *  behind it is not a range. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
-/** A block that is new: what writes it, and the offset at which it begins. */
+/** A new block: the edits that write it, and the offset of its start. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
-/** The file that a served page edits: its text is null while there is none. */
+/** The file that a served page edits; its text is null if there is none. */
 export interface HostedFile {
   name: string;
   text: string | null;
-  /** Why there is no text, where something else is there. */
+  /** Reason why the path has no text, if something else is there. */
   reason?: string | null;
   saved: boolean;
-  /** What was written and not saved, when a page comes that is new: the newest first. */
+  /** Unsaved drafts for a new page, the newest first. */
   drafts?: Draft[];
 }
 
-/** A text that was not saved, under its page's key, and what it was made from; in seconds. */
+/** Unsaved text with its page's key and its base; the time is in seconds. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
-/** Whether the file was saved; if not, what is in it now. */
+/** Whether the file was saved; if not, its current content. */
 export type Saved = { ok: true } | { ok: false; text: string | null };
 
-/** An error that the server answered with. */
+/** Error response of the server. */
 export class Refusal extends Error {
   constructor(readonly code: number, message: string) { super(message); }
 }
 
-/** Codes of answers that a newer question has made pointless. */
+/** Returns whether an error says that a newer request has superseded this one. */
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }

@@ -1,14 +1,14 @@
-// Documentation comes from the server as Markdown, which the language client turns into HTML.
-// Scenes can put any text into it, so nothing but plain formatting passes.
+// The language client turns the server's Markdown into HTML. It may quote any text of a scene, so
+// only plain formatting passes.
 
 import { visible } from "./visible";
 
 const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI",
   "BR", "HR"]);
 
-/** The HTML with plain formatting alone; of a link its text, of all others how they are written. */
+/** Reduces HTML to plain formatting: a link to its text, other elements to their source. */
 export function sanitized(html: string): string {
-  // The parsed document has no window: nothing in it runs or loads.
+  // The parsed document has no window, so nothing in it runs or loads.
   const { body } = new DOMParser().parseFromString(html, "text/html");
   const clean = document.createElement("div");
   copy(body, clean);

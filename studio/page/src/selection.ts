@@ -1,5 +1,5 @@
-// What is selected: the object that the cursor is in. It has handles over the picture, is named in
-// the menu of all objects, and can be duplicated and deleted as others can be added.
+// The selection: the object whose block has the cursor. It has handles over the picture, is in
+// the menu of all objects, and can be duplicated and deleted. New objects are added here, too.
 
 import { isolateHistory } from "@codemirror/commands";
 import type { ChangeDesc } from "@codemirror/state";
@@ -12,25 +12,25 @@ import { tools } from "./tools";
 import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
 import { say } from "./status";
 
-/** The least distance of two targets, in screen pixels, to the side or in height. */
+/** Minimum distance of two handles along x or y, in screen pixels. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
 
-/** Where a handle goes, from where it is, if that place is taken: the nearest first. */
+/** Offsets of a handle whose place is taken, the nearest first. */
 const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
-/** An object, and its block's place in the text, which follows changes. */
+/** An object and the range of its block in the text, which follows changes. */
 interface Placed { object: SceneObject; from: number; to: number }
 
 class Selection {
-  /** The object that is selected. */
+  /** The selected object. */
   selected: Placed | undefined;
   onChange: () => void = () => {};
-  /** How often something was chosen. */
+  /** Number of selections made. */
   choices = 0;
   private placed: Placed[] = [];
-  /** The one of its block that was chosen; null if nothing was, until the cursor moves. */
+  /** The chosen object of its block; null for none, until the cursor moves. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
@@ -57,7 +57,7 @@ class Selection {
     this.menu.replaceChildren(new Option("No object", ""), ...options);
   }
 
-  /** The text has changed: blocks are elsewhere, until the objects of the new text are known. */
+  /** Moves the blocks with a change of the text, until the new objects are known. */
   mapped(changes: ChangeDesc): void {
     for (const it of this.placed) {
       it.from = changes.mapPos(it.from, 1);
@@ -73,12 +73,12 @@ class Selection {
     this.follow(true);
   }
 
-  /** Selects an object and shows its line; nothing for null. */
+  /** Selects an object and shows its line, or selects nothing for null. */
   select(object: SceneObject | null): void {
     this.choices++;
     this.chosen = object;
     if (object === null) return this.follow();
-    // The list has the first objects alone.
+    // The list has only the first objects.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
     this.name();
@@ -92,14 +92,14 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** The selected block stays so wherever the text has brought it, until the cursor is moved. */
+  /** Keeps the selected block wherever it has moved, until the cursor moves. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);
     const { from = 0, to = 0 } = this.selected ?? {};
     const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
     const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
-    // At the border of two it is the second one; of a repeated block it is the one that was chosen.
+    // Between two blocks, the second is taken; of a repeated block, the chosen object.
     const first = touching.find(it => head < it.to) ?? touching[0];
     const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
       && String(indices) === String(this.chosen?.indices);
@@ -125,21 +125,21 @@ class Selection {
     tools.offer(this.index !== null, hasFloor);
   }
 
-  /** The selected object as it is drawn; none while that is not known of this text. */
+  /** The overlay of the selected object, if it is known for this text. */
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
-    // Until the objects of a new text are listed, another one may have this index.
+    // Until the objects of a new text are listed, another object may have this index.
     return isTrue ? data?.objects.find(it => it.index === this.index
       && it.range.start.line === line) : undefined;
   }
 
-  /** Puts the handles of the selected object where they are seen. */
+  /** Places the handles of the selected object over the picture. */
   draw(): void {
     const object = this.drawn;
     const shown = object?.handles.filter(it => it.at !== null) ?? [];
     const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
-    // What is held stays the same element.
+    // A handle that is held must stay the same element.
     if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
       ...shown.map(it => this.createHandle(object as DrawnObject, it)));
     this.handles.dataset["names"] = names;
@@ -160,7 +160,7 @@ class Selection {
     return button;
   }
 
-  /** The handle of the selected object that an element stands for; its first one for null. */
+  /** Returns the handle of the selected object for an element, or its first one for null. */
   held(element: Element | null): Held | null {
     const name = element?.closest<HTMLElement>(".handle")?.dataset["handle"];
     const object = this.drawn;
@@ -171,7 +171,7 @@ class Selection {
   }
 }
 
-/** Where a handle is put that would lie on others: beside them. */
+/** Moves a handle that would overlap others beside them. */
 function apart([x, y]: Point, taken: readonly Point[]): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
@@ -185,17 +185,17 @@ for (const button of document.querySelectorAll<HTMLElement>("[data-kind]"))
 byId("duplicate").addEventListener("click", () => void add({ object: selection.index }));
 byId("delete").addEventListener("click", remove);
 
-/** Adds a block, which the server writes: one of a kind, or a copy. */
+/** Adds a block written by the server: a new object of a kind, or a copy. */
 async function add(about: object): Promise<void> {
   const added = await editor.askCurrent<Added>("pinhole/add", about);
   if (added === null) return say("Nothing was added: the text has errors, or has changed.");
-  // The cursor in it has it selected, as soon as it is known as an object.
+  // The cursor within it selects it as soon as it is listed as an object.
   editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
     selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
   say(`${added.name ?? "A copy"} is added.`);
 }
 
-/** Takes the selected block away, with its line if nothing else is there. */
+/** Deletes the selected block, with its line if nothing else is on it. */
 function remove(): void {
   const { view, view: { state: { doc } } } = editor;
   const found = selection.selected;

@@ -1,4 +1,4 @@
-// Ways out of the page: a link that holds the scene itself, and downloads. Nothing is sent.
+// Sharing: a link that contains the scene, and downloads. Nothing is sent.
 
 import { addressWith, inAddress } from "./address";
 import { byId, download, fromBase64 } from "./dom";
@@ -8,7 +8,7 @@ import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** A scene in a link may have so many characters unpacked. */
+/** Maximum number of characters of a scene in a link. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
@@ -33,10 +33,10 @@ async function unpacked(text: string): Promise<string> {
   }
 }
 
-/** What stood in the address when its scene was read last. */
+/** Packed scene that was read last from the address. */
 let known: string | null = null;
 
-/** The scene in the page's own address; null if there is none, or none that is new. */
+/** Returns the scene in the page's address, or null if there is no new one. */
 export async function sceneInAddress(): Promise<string | null> {
   const held = inAddress(KEY);
   if (held === null || held === known) return null;
@@ -49,7 +49,7 @@ export async function sceneInAddress(): Promise<string | null> {
   }
 }
 
-/** Shows which part of a picture's file is made. */
+/** Shows the progress of a picture's file. */
 export function showProgress(share: number): void {
   byId<HTMLProgressElement>("progress").value = share;
   setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);

@@ -1,4 +1,4 @@
-// The numbers and angles that a `let` is, each with a slider; one of them may be played to and fro.
+// A slider for each number or angle defined by `let`; one of them can play to and fro.
 
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";
@@ -8,14 +8,14 @@ import { Dial, literalAt } from "./numbers";
 import type { Slider } from "./protocol";
 import { setText } from "./visible";
 
-/** How long it takes to play a number from one end to the other, in milliseconds. */
+/** Time to play a number from one end to the other, in milliseconds. */
 const PLAY = 4000;
 
 type Row = ReturnType<typeof createRow>;
 let rows: Row[] = [];
 let playing: Row | null = null;
 
-/** The text has changed: each slider follows its number. */
+/** Moves the sliders' numbers with a change of the text. */
 export function mapSliders(changes: ChangeDesc): void {
   for (const row of rows) {
     row.at = changes.mapPos(row.at, -1);
@@ -30,10 +30,10 @@ function show({ dial, value }: Row): void {
   value.title = written;
 }
 
-/** The text has come to rest: sliders are those of its definitions. */
+/** Requests the sliders of a text at rest. */
 export async function refreshSliders(): Promise<void> {
   const sliders = await editor.askCurrent<Slider[]>("pinhole/sliders", {});
-  // A hand that turns one keeps it.
+  // A slider that is being moved stays.
   if (sliders === null || rows.some(row => row.dial.turn)) return;
   if (sliders.some(({ name }, i) => rows[i]?.name !== name) || sliders.length < rows.length) {
     rows = sliders.map(({ name }) => createRow(name));
@@ -50,7 +50,7 @@ export async function refreshSliders(): Promise<void> {
   });
 }
 
-/** A definition's row, and where its number begins in the text. */
+/** Creates the row of a definition, with the start of its number in the text. */
 function createRow(name: string) {
   const dial: Dial = new Dial(() => literalAt(row.at + 1));
   dial.range.setAttribute("aria-label", name);
@@ -62,7 +62,7 @@ function createRow(name: string) {
   return row;
 }
 
-/** Has the number that is played rest. */
+/** Stops the number that is playing. */
 export function stop(): void {
   const row = playing;
   playing = null;
@@ -77,7 +77,7 @@ document.addEventListener("keydown", event => {
   stop();
 }, true);
 
-/** Moves a number to and fro until it is stopped; it begins where it is. */
+/** Moves a number to and fro, from its current value, until it is stopped. */
 function play(row: Row): void {
   const isNew = playing !== row;
   stop();
@@ -95,11 +95,11 @@ function play(row: Row): void {
     range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
     const next = Number(range.value);
     await dial.set(next);
-    // An error has it rest where there was none.
+    // On an error, the number returns to its last good value and stops.
     const isBroken = await frames.coarse === null;
     if (isBroken && playing === row) await dial.set(good);
     good = next;
-    // So does who drags something, changes the text otherwise, or undoes that.
+    // A drag, another change of the text or Undo stops it, too.
     if (isBroken || frames.dragging !== dial || !dial.turn?.gesture.isAlone) stop();
     else requestAnimationFrame(() => void go());
   };

@@ -1,4 +1,4 @@
-// The line at the bottom, and the bar that says what is wrong with the connection.
+// The status line, and the bar with the state of the connection.
 
 import type { ConnectionState } from "./connection";
 import { byId } from "./dom";
@@ -11,24 +11,24 @@ const FINENESS: Record<Fineness, string> =
 /** Names what is under the pointer. */
 export function point(text: string): void { setText(byId("pointed"), text); }
 
-/** Says what has happened. */
+/** Shows a message. */
 export function say(text: string, tone: "plain" | "warning" = "plain"): void {
   const said = byId("said");
   setText(said, visibleLine(text));
   said.dataset["tone"] = tone;
 }
 
-/** What was said is not so any more. */
+/** Removes a message if it is still shown. */
 export function unsay(text: string): void { if (byId("said").textContent === text) say(""); }
 
-/** The text has changed: what was said of the one before is not true any more. */
+/** Removes a message about an older text, unless it is a warning. */
 export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 
 export function picture([width, height]: [number, number], fineness: Fineness): void {
   setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
 }
 
-/** Marks the picture as one of an older text, or no longer. */
+/** Marks the picture as outdated with a reason, or as current for null. */
 export function stale(why: string | null): void {
   const note = byId("stale");
   note.hidden = why === null;
@@ -36,7 +36,7 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Says what is wrong with the connection, and what becomes of the text until it is not. */
+/** Shows what is wrong with the connection, and what happens to the text meanwhile. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

@@ -1,5 +1,5 @@
-// The engine in a web worker: JSON texts from the page, and back. Between slices of work it looks
-// for new ones, so that a newer change supersedes a frame. The page waits until it is greeted.
+// The engine in a web worker, which exchanges JSON texts with the page. Between slices of work it
+// takes new messages, so that a newer change supersedes a frame. A greeting says that it is ready.
 
 import init, { Engine } from "pinhole-engine";
 
@@ -10,7 +10,7 @@ function run(engine: Engine): void {
     for (const text of texts) postMessage(text);
     if (isPlanned || !engine.isBusy()) return;
     isPlanned = true;
-    // Messages that have come by then are taken in before it.
+    // Messages that have arrived by then are handled first.
     slices.port2.postMessage(null);
   };
   slices.port1.onmessage = () => {
@@ -21,7 +21,7 @@ function run(engine: Engine): void {
   say([engine.greeting()]);
 }
 
-// A rejection alone would not reach the page.
+// An unhandled rejection would not reach the page.
 const fail = (error: unknown) => setTimeout(() => { throw error; });
 const wasm = new URL("pinhole_bg.wasm", import.meta.url);
 init({ module_or_path: wasm }).then(() => run(new Engine()), fail);

@@ -1,4 +1,4 @@
-// The page as people of all kinds meet it: an audit of WCAG AA by axe, in both themes, on a telephone and a desk.
+// Accessibility: an audit of WCAG AA by axe in both themes, on a phone and a desktop, and the keyboard.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -19,9 +19,9 @@ async function audit(page, where) {
 
 for (const colorScheme of ["dark", "light"]) {
   for (const width of [380, 1280]) {
-    test(`no violations: ${colorScheme}, ${width} px`, async t => {
+    test(`axe finds no violations: ${colorScheme}, ${width} px`, async t => {
       const page = await open(await launch(t), await host(t), { colorScheme, viewport: { width, height: 760 }, reducedMotion: "reduce" });
-      // The policy of the page keeps scripts of others out: this one comes by the debugger.
+      // The page's policy forbids foreign scripts, so axe is injected by the debugger.
       await page.evaluate(axe);
       await tab(page, "text");
       await page.waitForSelector(".hint");
@@ -56,7 +56,7 @@ for (const colorScheme of ["dark", "light"]) {
   }
 }
 
-test("from the text the picture is three stops of the Tab key away, and a colour is picked by Alt-Enter", async t => {
+test("Tab reaches the picture from the text in three stops, and Alt-Enter opens the colour picker", async t => {
   const page = await open(await launch(t), await host(t));
   await page.waitForSelector(".swatch");
   const line = page.locator(".cm-line", { hasText: "sphere" });
@@ -73,7 +73,7 @@ test("from the text the picture is three stops of the Tab key away, and a colour
   assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), "Colour olive");
 });
 
-test("who does not see the picture hears what is in it, and what has changed", async t => {
+test("screen readers get a description of the picture and of its changes", async t => {
   const page = await open(await launch(t), await host(t));
   const seen = pattern => page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("canvas").ariaLabel), pattern);
   await seen("^Ball, Sail, Crate, checkerboard: middle centre$");
@@ -83,7 +83,7 @@ test("who does not see the picture hears what is in it, and what has changed", a
   assert.match(await page.textContent("#seen"), /^Ball: middle left/);
 });
 
-test("paper has the picture and the whole text", async t => {
+test("the printed page has the picture and the whole text", async t => {
   const long = `${FIGURE}${Array.from({ length: 200 }, (_, i) => `// line ${i}`).join("\n")}`;
   const page = await open(await launch(t), await host(t, long));
   await page.evaluate(() => dispatchEvent(new Event("beforeprint")));
@@ -99,7 +99,7 @@ test("paper has the picture and the whole text", async t => {
 });
 
 for (const [width, height, least] of [[640, 400, 0.4], [390, 844, 0.9], [844, 390, 0.3], [820, 1180, 0.9]]) {
-  test(`everything can be reached at ${width} × ${height}, and the picture is large`, async t => {
+  test(`every control is reachable at ${width} × ${height}, and the picture is large`, async t => {
     const page = await open(await launch(t), await host(t), { viewport: { width, height } });
     await page.selectOption("#objects", { label: "Ball (sphere)" });
     for (const id of ["#undo", "#save", "#share", "summary:text('Help')", "#objects", "#along", "#zoom-in", "#zoom-actual", "#problems", "#theme"]) {

@@ -1,6 +1,7 @@
-// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key, and from a step of a drag, to the first coarse picture and to the finished
-// one, as medians of 100; how many coarse pictures a second a drag has; and whether memory grows over many pictures. `node test/bench.mjs [drags of 100 steps]`; with
-// SITE, of the static page in that folder.
+// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key and from a step
+// of a drag to the coarse and to the finished picture, as medians of 100; the coarse pictures per second
+// of a drag; and whether memory grows. `node test/bench.mjs [drags of 100 steps]`; with SITE, for the
+// static page in that folder.
 
 import { chromium } from "playwright-core";
 import { readFileSync } from "node:fs";
@@ -23,7 +24,7 @@ ending.push(() => host.stop?.());
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--enable-precise-memory-info", "--js-flags=--expose-gc"] });
 try {
   const page = await open(browser, host);
-  // Times count from the event that the browser got to the picture on the canvas.
+  // Times are from the browser's event to the picture on the canvas.
   await page.evaluate(() => {
     window.begin = 0;
     window.frames = [];
@@ -54,7 +55,7 @@ try {
   await page.mouse.move(x + 20, y, { steps: 3 });
   console.log("drag:", await measure(i => page.mouse.move(x + 20 + (i % 2 === 0 ? 15 : 0), y)));
 
-  // A hand that does not rest: the browser's own frames give the pace.
+  // A drag without pauses, at the pace of the browser's frames.
   const moving = steps =>
     page.evaluate(
       async ([x, y, steps]) => {
@@ -63,7 +64,7 @@ try {
         const begin = performance.now();
         for (let i = 0; i < steps; i++) {
           await new Promise(requestAnimationFrame);
-          // By two pixels each time: where it does not move, the numbers do not change, and nothing is drawn.
+          // By two pixels each time, as nothing is drawn unless the numbers change.
           const at = { clientX: x + 2 * Math.abs((i % 80) - 40) - 40, clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
           stage.dispatchEvent(new PointerEvent("pointermove", at));
         }
@@ -81,7 +82,7 @@ try {
   const memory = async () => {
     await session.send("HeapProfiler.collectGarbage");
     const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
-    // Pictures that a browser keeps are not in the heap.
+    // Pictures kept by the browser are not in the heap.
     const { processInfo } = await all.send("SystemInfo.getProcessInfo");
     const whole = Math.max(...processInfo.filter(({ type }) => type === "renderer").map(({ id }) => resident(id)));
     return { heap: round(heap / 2 ** 20), host: host.pid ? round(resident(host.pid)) : NaN, whole: round(whole) };
@@ -97,12 +98,12 @@ try {
     }
   }
   await page.mouse.up();
-  // 200 bytes kept of each of 10 000 pictures would be more.
+  // Keeping 200 bytes of each of 10 000 pictures would exceed this.
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 
-  // A thousand spheres: from the hand to the coarse picture, and for how many keys, one each 120
-  // ms, there is one before the next.
+  // A thousand spheres: the time from a drag to the coarse picture, and how many of the keys, one per
+  // 120 ms, have a picture before the next key.
   if (process.env.SITE === undefined) {
     const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
     writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);

@@ -1,5 +1,5 @@
-// What is written and not saved is not lost: by a reload, a crash of the host, another port,
-// another program that saves the file.
+// Drafts: unsaved text survives a reload, a crash of the host, another port, and a save by another
+// program.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -12,16 +12,16 @@ const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 
 const offered = page => page.waitForSelector("#draft-bar:not([hidden])");
 const choose = (page, name) => page.click(`#draft-choices >> text=${name}`);
-/** Longer than a draft is behind the keys. */
+/** Time in which a draft is certainly stored, in milliseconds. */
 const kept = page => page.waitForTimeout(900);
 
-/** Leaves a page as a browser that is closed does. */
+/** Leaves a page as when the browser is closed. */
 async function leave(page) {
   page.on("dialog", dialog => dialog.accept());
   await page.context().close();
 }
 
-/** The texts of so many drafts, each restored and undone. */
+/** Returns the texts of a number of drafts, each restored and undone. */
 async function restoredInTurn(page, count) {
   const texts = [];
   for (let i = 0; i < count; i++) {
@@ -32,7 +32,7 @@ async function restoredInTurn(page, count) {
   return texts;
 }
 
-test("a host that is killed and another one at another port: the draft is offered, restored, and gone when it is saved", async t => {
+test("after a killed host, one at another port offers the draft until it is saved", async t => {
   const started = await host(t);
   const browser = await launch(t);
   const page = await open(browser, started);
@@ -58,7 +58,7 @@ test("a host that is killed and another one at another port: the draft is offere
   assert.ok(await other.isHidden("#draft-bar"));
 });
 
-test("what is written while an offer stands unanswered is kept beside it, and so is what was there when one is restored", async t => {
+test("restoring a draft keeps other offers and the text it replaces as drafts", async t => {
   const started = await host(t);
   const browser = await launch(t);
   const SMALLER = FIGURE.replace("radius 1", "radius 0.5");
@@ -68,7 +68,7 @@ test("what is written while an offer stands unanswered is kept beside it, and so
   await kept(page);
   await started.stop("SIGKILL");
   await leave(page);
-  // Not answered, and written on.
+  // The offer is not answered, and the text is changed.
   const second = await serve(started.file);
   page = await open(browser, second);
   await offered(page);
@@ -82,14 +82,14 @@ test("what is written while an offer stands unanswered is kept beside it, and so
   page = await open(browser, third);
   await offered(page);
   assert.equal((await offers(page)).length, 2);
-  // Another one is written before one is restored.
+  // The text is changed again before a draft is restored.
   await andFinished(page, () => type(page, NEARER));
   await andFinished(page, () => choose(page, "Restore"));
   assert.equal(await text(page), SMALLER);
   assert.equal((await offers(page)).length, 2);
   await andFinished(page, () => choose(page, "Restore"));
   assert.equal(await text(page), NEARER);
-  // Saving is no answer to those that are left.
+  // Saving does not answer the remaining offers.
   await page.keyboard.press("Control+s");
   await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
   await page.reload();
@@ -101,12 +101,12 @@ test("what is written while an offer stands unanswered is kept beside it, and so
 });
 
 for (const way of ["a reload of its tab, and its address there", "its address in another tab"]) {
-  test(`what is typed while the host is dead is there again, at the same port: ${way}`, async t => {
+  test(`text typed without a host is back when one starts at the same port: ${way}`, async t => {
     const started = await host(t, FIGURE, "own.scn");
     const browser = await launch(t);
     const page = await open(browser, started);
     page.on("dialog", dialog => dialog.accept());
-    // Something that the host has, and on from there what it has not.
+    // One text that the host has, and a later one that it does not have.
     await andFinished(page, () => type(page, LARGER));
     await kept(page);
     await started.stop("SIGKILL");
@@ -126,7 +126,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
       await offered(page);
       assert.match(await page.textContent("#connection"), /Studio was started anew/);
       assert.equal(await page.locator("#draft-choices li").count(), 1);
-      // It goes on at once.
+      // The page continues at once.
       await choose(page, "Restore");
       assert.equal(await text(page), typed);
       assert.ok(await page.isHidden("#draft-bar"));
@@ -163,7 +163,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
       await page.waitForTimeout(300);
       assert.ok(await page.isHidden("#draft-bar"));
     }
-    // Nothing is left in the browser that the host has.
+    // The browser keeps no draft that the host has.
     await kept(next);
     const left = await next.evaluate(() => new Promise(resolve => {
       indexedDB.open("pinhole-drafts").onsuccess = ({ target: { result } }) => {
@@ -174,7 +174,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
   });
 }
 
-test("a draft that is shown before there is a connection goes on as one, and Save asks for what is newer", async t => {
+test("a draft restored without a connection stays a draft, and Save asks about a newer file", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   page.on("dialog", dialog => dialog.accept());
@@ -197,7 +197,7 @@ test("a draft that is shown before there is a connection goes on as one, and Sav
   assert.equal(started.text(), NEARER);
 });
 
-test("reloading offers the draft; Forget forgets it, and Undo back to the file does", async t => {
+test("reloading offers the draft; Forget deletes it, and so does Undo back to the file", async t => {
   const page = await open(await launch(t), await host(t));
   page.on("dialog", dialog => dialog.accept());
   await andFinished(page, () => type(page, LARGER));
@@ -228,14 +228,14 @@ for (const [name, go] of [
     return openFile(page, path.join(folder, "other.scn"));
   }],
 ]) {
-  test(`what is not saved is offered when ${name} comes in its place, also after a reload`, async t => {
+  test(`an unsaved text is offered when ${name} replaces it, also after a reload`, async t => {
     const started = await host(t);
     const page = await open(await launch(t), started);
     page.on("dialog", dialog => dialog.accept());
     await andFinished(page, () => type(page, LARGER));
     await andFinished(page, () => go(page, started));
     await offered(page);
-    // The new scene is written on, too.
+    // The new scene is changed, too.
     await type(page, `${NEARER}// on\n`);
     await kept(page);
     await page.reload();
@@ -248,7 +248,7 @@ for (const [name, go] of [
       await andFinished(page, () => page.keyboard.press("Control+z"));
     }
     assert.deepEqual(texts.sort(), [LARGER, `${NEARER}// on\n`].sort());
-    // Who has looked at both, and taken them back, still has both.
+    // After restoring and undoing both drafts, both are still offered.
     await kept(page);
     await page.reload();
     await finished(page);
@@ -258,7 +258,7 @@ for (const [name, go] of [
   });
 }
 
-test("while a number is played, what was written is kept", async t => {
+test("drafts are stored while a number is playing", async t => {
   const started = await host(t, FIGURE.replace(/^/, "let r = 1  // [0.5:0.25:2]\n").replace("radius 1", "radius r"));
   const page = await open(await launch(t), started);
   page.on("dialog", dialog => dialog.accept());
@@ -276,7 +276,7 @@ test("while a number is played, what was written is kept", async t => {
   assert.match(await text(other), /\/\/ mine/);
 });
 
-test("a draft is not written over a file that is newer without a question", async t => {
+test("saving a draft over a newer file asks first", async t => {
   const started = await host(t);
   const browser = await launch(t);
   const page = await open(browser, started);
@@ -294,7 +294,7 @@ test("a draft is not written over a file that is newer without a question", asyn
   assert.equal(started.text(), NEARER);
 });
 
-test("drafts are for the user alone", async t => {
+test("drafts are readable only by their user", async t => {
   const page = await open(await launch(t), await host(t));
   await andFinished(page, () => type(page, LARGER));
   await kept(page);
@@ -304,7 +304,7 @@ test("drafts are for the user alone", async t => {
   assert.equal(statSync(folder).mode & 0o77, 0);
 });
 
-test("a host that stops is told after two seconds, and Save says that nothing is saved", async t => {
+test("a stopped host is reported after two seconds, and Save says that nothing is saved", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await rested(page);
@@ -318,7 +318,7 @@ test("a host that stops is told after two seconds, and Save says that nothing is
   await page.waitForSelector("#connection-bar", { state: "hidden", timeout: 3000 });
 });
 
-test("that nothing was saved is said no longer when the host is there again", async t => {
+test("the message of a failed save disappears when the host is back", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await started.stop();
@@ -332,7 +332,7 @@ test("that nothing was saved is said no longer when the host is there again", as
   await page.waitForFunction(() => document.querySelector("#said").textContent === "");
 });
 
-test("while the host hangs or is gone, problems are not said to be there or not", async t => {
+test("without an answering host, the page makes no claim about problems", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   const foot = () => page.locator("footer").innerText();
@@ -352,7 +352,7 @@ test("while the host hangs or is gone, problems are not said to be there or not"
   assert.ok(await page.isHidden("#problem-list"));
 });
 
-test("two pages of a host keep a draft each, and both are offered", async t => {
+test("two pages of a host store a draft each, and both are offered", async t => {
   const started = await host(t);
   const browser = await launch(t);
   const pages = [await open(browser, started), await open(browser, started)];
@@ -371,11 +371,11 @@ test("two pages of a host keep a draft each, and both are offered", async t => {
   assert.deepEqual(texts, [`${LARGER}// on\n`, NEARER]);
 });
 
-test("what is saved while another scene comes, and what Undo brings back, is not offered", async t => {
+test("a text saved while it is replaced, or restored by Undo, is not offered", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
-  // The answer to Save comes when the scene is left already.
+  // The answer to Save arrives after the scene is replaced.
   process.kill(started.pid, "SIGSTOP");
   await page.keyboard.press("Control+s");
   await menu(page, "File", "#new");
@@ -391,7 +391,7 @@ test("what is saved while another scene comes, and what Undo brings back, is not
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), NEARER);
   await page.waitForFunction(() => document.querySelector("#draft-bar").hidden);
-  // It is still kept as what it is.
+  // It is still stored as a draft of its scene.
   await kept(page);
   page.on("dialog", dialog => dialog.accept());
   await page.reload();

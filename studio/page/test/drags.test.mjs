@@ -1,5 +1,4 @@
-// Drags by a hand: a real pointer that is pressed, moved twelve times at a hand's pace, and
-// released.
+// Drags by a real pointer, which is pressed, moved twelve times at the pace of a hand, and released.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -17,7 +16,7 @@ const select = async (page, label) => {
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.]+)`).exec(text)[1]);
 
-test("one drag follows another, from handle to handle, to the camera and back", async t => {
+test("consecutive drags of handles and the camera each change their own values", async t => {
   const page = await open(await launch(t), await host(t));
   await select(page, "Crate (box)");
   const drags = [["Crate: max y", [0, -40]], ["Crate: max x", [40, 0]], ["Crate: max y", [0, 30]], ["Crate: min x", [-30, 0]], ["Crate: center", [30, 0]]];
@@ -35,12 +34,12 @@ test("one drag follows another, from handle to handle, to the camera and back", 
     await rested(page);
     assert.notEqual(await text(page), before, `the drag by ${tool} does nothing`);
   }
-  // Each was one step.
+  // Each drag was one undo step.
   for (let i = 0; i < drags.length + 5; i++) await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
 });
 
-test("a drag depends on press and place alone, and says what moves with it", async t => {
+test("a drag depends only on its first and last point, and lists what else moves", async t => {
   const ends = new Set();
   const started = await host(t, WATCHED);
   const browser = await launch(t);
@@ -62,7 +61,7 @@ test("a drag depends on press and place alone, and says what moves with it", asy
 });
 
 for (const [tool, by] of [["orbit", [90, 60]], ["orbit", [0, -400]], ["look", [0, -200]], ["look", [60, 300]], ["pan", [70, 30]], ["dolly", [0, 80]], ["roll", [50, 90]], ["view_distance", [0, -90]], ["move", [80, 40]]]) {
-  test(`out and back leaves the text as it was: ${tool} ${by}`, async t => {
+  test(`a drag out and back leaves the text unchanged: ${tool} ${by}`, async t => {
     const page = await open(await launch(t), await host(t));
     await choose(page, tool);
     const from = await onPage(page, tool === "move" ? BALL : [900, 380]);
@@ -80,7 +79,7 @@ for (const [tool, by] of [["orbit", [90, 60]], ["orbit", [0, -400]], ["look", [0
   });
 }
 
-test("Escape in a drag leaves nothing to redo, and what was to redo stays", async t => {
+test("Escape in a drag adds nothing to Redo and keeps what was there", async t => {
   const page = await open(await launch(t), await host(t));
   assert.ok(await page.isDisabled("#undo") && (await page.isDisabled("#redo")));
   await hand(page, await onPage(page, BALL), [50, 0]);
@@ -100,7 +99,7 @@ test("Escape in a drag leaves nothing to redo, and what was to redo stays", asyn
   assert.ok(await page.isDisabled("#redo"));
 });
 
-test("Escape takes back whatever a pointer turns: a slider, a number, the divider", async t => {
+test("Escape reverts a pointer's change of a slider, a number or the divider", async t => {
   const scene = `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`;
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForSelector(".slider-row");
@@ -131,7 +130,7 @@ test("Escape takes back whatever a pointer turns: a slider, a number, the divide
     await rested(page);
     assert.notEqual(await text(page), scene, `${name} turns nothing`);
     await page.keyboard.press("Escape");
-    // The hand goes on before it lets go.
+    // The pointer moves on before its release.
     await page.mouse.move(500, 300, { steps: 4 });
     await page.mouse.up();
     await after();
@@ -141,7 +140,7 @@ test("Escape takes back whatever a pointer turns: a slider, a number, the divide
     await page.keyboard.press("Escape");
     assert.equal(await page.inputValue(".slider-row input"), "1", name);
   }
-  // The slider turns again.
+  // The slider works again.
   await hand(page, await thumb(".slider-row input"), [60, 0]);
   await rested(page);
   assert.notEqual(await text(page), scene);
@@ -153,7 +152,7 @@ test("Escape takes back whatever a pointer turns: a slider, a number, the divide
   assert.equal(await around.share(), share);
 });
 
-test("what a drag says stands at the hand, and is gone afterwards; the footer says nothing that is not true any more", async t => {
+test("a drag's note stands at the pointer while it lasts, and the footer shows no outdated object", async t => {
   const page = await open(await launch(t), await host(t));
   const from = await onPage(page, BALL);
   await hand(page, from, [110, 0], { hold: true });
@@ -163,7 +162,7 @@ test("what a drag says stands at the hand, and is gone afterwards; the footer sa
   assert.equal(await page.textContent("#pointed"), "");
   await page.mouse.up();
   await page.waitForSelector("#drag-note", { state: "hidden" });
-  // The pointer has not moved since: the footer tells what is there now.
+  // The pointer has not moved since: the footer names the object that is there now.
   await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
   await page.keyboard.press("Control+z");
   await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
@@ -174,7 +173,7 @@ test("what a drag says stands at the hand, and is gone afterwards; the footer sa
   assert.equal(await page.textContent("#said"), "");
 });
 
-test("handles are not there while the text has errors", async t => {
+test("a text with errors has no handles", async t => {
   const page = await open(await launch(t), await host(t));
   await select(page, "Ball (sphere)");
   await page.locator(".cm-line", { hasText: "sphere" }).click();
@@ -186,7 +185,7 @@ test("handles are not there while the text has errors", async t => {
   await page.waitForSelector(".handle");
 });
 
-test("handles that are seen at one place lie side by side, and each can be taken", async t => {
+test("handles at the same point are placed side by side, and each can be dragged", async t => {
   const scene = "image { width 640  height 360 }\ncamera { eye (0, 0, 6)  direction (0, 0, -1) }\nsampler { per_pixel 1 }\nbox Crate { center (0, 0, 0)  size (1, 1, 1) }\n";
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
@@ -197,7 +196,7 @@ test("handles that are seen at one place lie side by side, and each can be taken
     assert.ok(a.width >= 24 && a.height >= 24);
     for (const [, b] of places.slice(0, i)) assert.ok(Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) >= 24);
   }
-  // The camera looks along z: what moves along it does not move in the picture.
+  // The camera looks along z, so a move along z is not seen in the picture.
   for (const label of ["min x", "max x", "min y", "max y"]) {
     const before = await text(page);
     await hand(page, await handle(page, `Crate: ${label}`), [label.endsWith("x") ? 12 : 0, label.endsWith("y") ? 12 : 0]);
@@ -206,7 +205,7 @@ test("handles that are seen at one place lie side by side, and each can be taken
   }
 });
 
-test("a vertex that is brought onto another one is refused, and says why", async t => {
+test("dragging a vertex onto another one is refused with a reason", async t => {
   const scene = "image { width 640  height 360 }\ncamera { eye (0, 0, 6)  direction (0, 0, -1) }\nsampler { per_pixel 1 }\ntriangle Sail { v0 (-1, -1, 0)  v1 (1, -1, 0)  v2 (0.6, 1, 0) }\n";
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForFunction(() => document.querySelector("#objects").options.length > 1);
@@ -218,7 +217,7 @@ test("a vertex that is brought onto another one is refused, and says why", async
   await rested(page);
   const [, x, y] = /v2 \((\S+), (\S+), 0\)/.exec(await text(page));
   for (const number of [x, y]) assert.ok(number.length < 9, number);
-  // It can be read until something else is done.
+  // The note stays until the next action.
   await page.waitForTimeout(300);
   assert.ok(await page.isVisible("#drag-note"));
   await page.click("#undo");
@@ -226,7 +225,7 @@ test("a vertex that is brought onto another one is refused, and says why", async
   assert.equal(await page.textContent("#drag-note"), "");
 });
 
-test("a hand that is quicker than the answers moves things, too", async t => {
+test("a drag faster than the server's answers still arrives", async t => {
   const page = await open(await launch(t), await host(t));
   const [x, y] = await onPage(page, BALL);
   await page.mouse.move(x, y);
@@ -236,14 +235,14 @@ test("a hand that is quicker than the answers moves things, too", async t => {
   await rested(page);
   assert.notEqual(await text(page), FIGURE);
   await finished(page);
-  // A text that is typed meanwhile is never lost.
+  // Text typed during a drag is never lost.
   await type(page, WATCHED);
   await rested(page);
   assert.equal(await text(page), WATCHED);
 });
 
-test("at every size what is selected moves neither the page nor the picture, and things go where the hand goes", async t => {
-  // The lines of the objects are far below the first ones, and have to be scrolled to.
+test("at every window size selecting moves nothing, and objects follow the pointer", async t => {
+  // The objects' lines are far below the first ones, so selecting them scrolls.
   const started = await host(t, `${"// a line\n".repeat(60)}${FIGURE}`);
   const browser = await launch(t);
   const first = await open(browser, started, { viewport: { width: 1280, height: 720 } });
@@ -270,7 +269,7 @@ test("at every size what is selected moves neither the page nor the picture, and
     const begin = await onPage(page, middle);
     // A step is at most 8 pixels.
     assert.ok(Math.hypot(x - begin[0] - dx, y - begin[1] - dy) < 12, `${width} × ${height}: ${x - begin[0]}, ${y - begin[1]}`);
-    // Nothing is left to be offered to the next page.
+    // No draft is left for the next page.
     await page.keyboard.press("Control+z");
     await rested(page);
     await page.waitForTimeout(600);

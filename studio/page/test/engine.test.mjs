@@ -1,4 +1,4 @@
-// The engine as WebAssembly, without a page: it answers as the program does, pixel by pixel.
+// The WebAssembly engine without a page: its pictures equal the program's, pixel by pixel.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -25,7 +25,7 @@ before(async () => {
 
 let requests = 0;
 
-/** The response to a request, after all slices of it. */
+/** Returns the response to a request after all its slices. */
 function ask(engine, method, params) {
   const id = ++requests;
   const said = engine.handle(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -41,7 +41,7 @@ function opened(text) {
   return engine;
 }
 
-/** What the program renders of a text. */
+/** Returns the program's picture of a text. */
 function rendered(text, ending = "png", ...args) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-engine-"));
   try {
@@ -54,7 +54,7 @@ function rendered(text, ending = "png", ...args) {
   }
 }
 
-/** The bytes of a PNG from the chunks of pixels on: what stands before them is the text that it was made of. */
+/** Returns a PNG from its pixel chunks on; the chunks before hold the scene's text. */
 const pixels = png => png.subarray(png.indexOf("IDAT"));
 
 test("a frame has the pixels that the program renders", { skip }, () => {
@@ -70,7 +70,7 @@ test("a frame has the pixels that the program renders", { skip }, () => {
   }
 });
 
-test("the file of a picture is the one that the program writes", { skip }, () => {
+test("the engine's picture file equals the program's", { skip }, () => {
   const engine = new Engine();
   const greeting = JSON.parse(engine.greeting());
   assert.equal(greeting.method, "studio/file");
@@ -82,7 +82,7 @@ test("the file of a picture is the one that the program writes", { skip }, () =>
   assert.match(ask(engine, "studio/exr", { text: figure }).error.message, /no EXR/);
 });
 
-test("frames come soon", { skip }, t => {
+test("the engine's frames are fast enough", { skip }, t => {
   const engine = opened(figure);
   const median = params => {
     const times = Array.from({ length: 9 }, () => {

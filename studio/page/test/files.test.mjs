@@ -1,4 +1,4 @@
-// Files of the served host: saved whole, changed outside, and both changed.
+// Files of the served host: saving, outside changes, and conflicts.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, 
 const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
 
-/** A page of a host without a file, in a folder of its own. */
+/** Opens a page of a host without a file, in a new folder. */
 async function withoutFile(t) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -19,7 +19,7 @@ async function withoutFile(t) {
   return { folder, started, page: await open(await launch(t), started) };
 }
 
-test("a browser without a decoder of its own shows the same picture", async t => {
+test("a browser without ImageDecoder shows the same picture", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await page.addInitScript(() => delete window.ImageDecoder);
@@ -40,7 +40,7 @@ test("saving in another editor changes the page", async t => {
   assert.equal(await page.textContent("#file-state"), "");
 });
 
-test("Save writes the file, by key and by button", async t => {
+test("Save writes the file by key and by button", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
@@ -55,7 +55,7 @@ test("Save writes the file, by key and by button", async t => {
   assert.equal(started.text(), NEARER);
 });
 
-test("a file that is gone is told, and Save writes it anew", async t => {
+test("a removed file is reported, and Save writes it again", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   rmSync(started.file);
@@ -66,7 +66,7 @@ test("a file that is gone is told, and Save writes it anew", async t => {
   assert.equal(started.text(), FIGURE);
 });
 
-test("a file that is no text is told, and not overwritten", async t => {
+test("a file that is not UTF-8 is reported and not overwritten", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   const latin = Buffer.from(FIGURE.replace("ball,", "b\u00e4ll,"), "latin1");
@@ -77,12 +77,12 @@ test("a file that is no text is told, and not overwritten", async t => {
   await page.waitForFunction(() => /is not saved, .*another name/.test(document.querySelector("#said").textContent));
   assert.deepEqual(readFileSync(started.file), latin);
   assert.equal(await text(page), LARGER);
-  // What is said of it is not so any more when it is a text again.
+  // The message disappears when the file is valid again.
   started.write(FIGURE);
   await page.waitForFunction(() => /is there again/.test(document.querySelector("#said").textContent));
 });
 
-test("a file with lines that end by CR LF keeps them, and is compared by its text", async t => {
+test("a file keeps its CR LF line ends, and is compared without them", async t => {
   const crlf = text => text.replaceAll("\n", "\r\n");
   const started = await host(t, crlf(FIGURE));
   const page = await open(await launch(t), started);
@@ -96,7 +96,7 @@ test("a file with lines that end by CR LF keeps them, and is compared by its tex
   assert.equal(started.text(), crlf(LARGER));
 });
 
-test("a file that comes back with another text is followed where nothing was written here", async t => {
+test("a file restored with another text is shown if the page has no unsaved text", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   rmSync(started.file);
@@ -106,12 +106,12 @@ test("a file that comes back with another text is followed where nothing was wri
   assert.equal(await page.textContent("#file-state"), "");
 });
 
-test("a change outside of half a character's units changes the character", async t => {
+test("an outside change of half a surrogate pair replaces the whole character", async t => {
   const started = await host(t, `// 😀\n${FIGURE}`);
   const page = await open(await launch(t), started);
   await andFinished(page, () => started.write(`// 😁\n${FIGURE}`));
   assert.equal(await text(page), `// 😁\n${FIGURE}`);
-  // Half of one, as some programs paste it, is none.
+  // Half of a surrogate pair, as some programs paste it, is replaced.
   await page.click(".cm-content");
   await page.keyboard.press("Control+Home");
   await andFinished(page, () =>
@@ -127,7 +127,7 @@ test("a change outside of half a character's units changes the character", async
   assert.equal(started.text(), await text(page));
 });
 
-test("the page asks nobody but its host", async t => {
+test("the page sends requests only to its host", async t => {
   const started = await host(t);
   const page = await (await launch(t)).newPage();
   const asked = new Set();
@@ -143,7 +143,7 @@ test("the page asks nobody but its host", async t => {
 
 const saved = page => page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
 
-test("a save that is answered late belongs to the scene that was saved", async t => {
+test("a late answer to Save belongs to the scene that was saved", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
@@ -157,7 +157,7 @@ test("a save that is answered late belongs to the scene that was saved", async t
   assert.equal(await page.textContent("#file-state"), "not saved");
   await page.keyboard.press("Control+s");
   await page.waitForSelector("#name-dialog[open]");
-  // The name of the host's own scene is taken.
+  // The name of the host's scene is in use.
   await page.fill("#name-field", "scene.scn");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));
@@ -170,7 +170,7 @@ test("a save that is answered late belongs to the scene that was saved", async t
   assert.equal(await page.textContent("#file-state"), "");
 });
 
-test("a scene beside the host's can be saved when the host was started anew", async t => {
+test("a scene beside the host's can be saved after the host restarts", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   page.on("dialog", dialog => dialog.accept());
@@ -198,10 +198,10 @@ test("a scene beside the host's can be saved when the host was started anew", as
   assert.equal(started.text(), FIGURE);
 });
 
-test("New says that it has to wait as long as the scene is not there", async t => {
+test("New reports that Studio is not ready before the scene arrives", async t => {
   const started = await host(t);
   const context = await (await launch(t)).newContext();
-  // What the host says comes late.
+  // The host's notification is delayed.
   await context.addInitScript(() => {
     window.WebSocket = class extends WebSocket {
       addEventListener(type, hear) {
@@ -217,7 +217,7 @@ test("New says that it has to wait as long as the scene is not there", async t =
   assert.equal(await text(page), FIGURE);
 });
 
-test("Studio without a file and New begin with the same text, which has a picture", async t => {
+test("Studio without a file and New start with the same valid text", async t => {
   const { page } = await withoutFile(t);
   const first = await text(page);
   assert.equal(await page.textContent("#file-state"), "");
@@ -225,7 +225,7 @@ test("Studio without a file and New begin with the same text, which has a pictur
   await andFinished(page, () => menu(page, "File", "#new"));
   assert.equal(await text(page), first);
   assert.equal(await page.textContent("#said"), "");
-  // What is added stands on a board that comes after it.
+  // A new object stands on a board that is added later.
   for (const kind of ["sphere", "box", "checkerboard"]) {
     await andFinished(page, () => menu(page, "+ Add", `[data-kind=${kind}]`));
     await rested(page);
@@ -237,7 +237,7 @@ test("Studio without a file and New begin with the same text, which has a pictur
   assert.deepEqual([ball - radius, box - size / 2], [board, board], made);
 });
 
-test("a new scene gets its name by Save", async t => {
+test("Save asks for the name of a new scene", async t => {
   const { folder, page } = await withoutFile(t);
   await andFinished(page, () => type(page, FIGURE));
   await page.keyboard.press("Control+s");
@@ -248,12 +248,12 @@ test("a new scene gets its name by Save", async t => {
   assert.equal(readFileSync(path.join(folder, "other.scn"), "utf8"), FIGURE);
 });
 
-test("Save as makes a file beside the host's, and goes on with that", async t => {
+test("Save as writes another file beside the host's and continues with it", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
   await menu(page, "File", "#save-as");
-  // Nothing that is there is written over.
+  // No existing file is overwritten.
   await page.waitForSelector("#name-dialog[open]");
   assert.equal(await page.inputValue("#name-field"), "scene.scn");
   await page.keyboard.press("Enter");
@@ -275,7 +275,7 @@ test("Save as makes a file beside the host's, and goes on with that", async t =>
   assert.equal(readFileSync(path.join(started.folder, "third.scn"), "utf8"), NEARER);
   assert.equal(readFileSync(path.join(started.folder, "second.scn"), "utf8"), LARGER);
   assert.equal(started.text(), FIGURE);
-  // Undo is one of the text, and no draft is left of what was saved.
+  // Undo changes only the text, and no draft of the saved text is left.
   await page.click("#undo");
   assert.equal(await text(page), LARGER);
   assert.equal(await page.textContent("#file-name"), "third.scn");
@@ -288,7 +288,7 @@ test("Save as makes a file beside the host's, and goes on with that", async t =>
   assert.equal(await text(page), FIGURE);
 });
 
-test("Save as of a new scene is Save", async t => {
+test("Save as of a new scene works like Save", async t => {
   const { folder, page } = await withoutFile(t);
   await andFinished(page, () => type(page, FIGURE));
   await menu(page, "File", "#save-as");
@@ -301,7 +301,7 @@ test("Save as of a new scene is Save", async t => {
   assert.equal(readFileSync(path.join(folder, "first.scn"), "utf8"), LARGER);
 });
 
-test("a name gets its ending, and one that will not do stays in the dialog with the reason", async t => {
+test("Save adds the ending to a name, and keeps a refused name in the dialog with the reason", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-new-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   writeFileSync(path.join(folder, "taken.scn"), "");
@@ -323,7 +323,7 @@ test("a name gets its ending, and one that will not do stays in the dialog with 
   assert.equal(readFileSync(path.join(folder, "my scene.scn"), "utf8"), FIGURE);
 });
 
-test("lines that end in different ways keep their ends", async t => {
+test("a file with mixed line ends keeps them", async t => {
   const ends = ["\r\n", "\n", "\n", "\r\n"];
   const mixed = text => text.split("\n").map((line, i, all) => (i === all.length - 1 ? line : line + ends[i % 4])).join("");
   const started = await host(t, mixed(FIGURE));
@@ -338,7 +338,7 @@ test("lines that end in different ways keep their ends", async t => {
   assert.equal(await text(page), LARGER);
 });
 
-test("a file that cannot be written is named, with what to do", async t => {
+test("a file that cannot be written is named with a remedy", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
@@ -356,7 +356,7 @@ for (const [choice, onDisk, onPage] of [
   ["Take the file's text", NEARER, NEARER],
   ["Decide later", NEARER, LARGER],
 ]) {
-  test(`both changed: ${choice}`, async t => {
+  test(`a conflict of page and file is resolved by choice: ${choice}`, async t => {
     const started = await host(t);
     const page = await open(await launch(t), started);
     await andFinished(page, () => type(page, LARGER));
@@ -378,7 +378,7 @@ for (const [choice, onDisk, onPage] of [
   });
 }
 
-test("what another program saves while a hand moves something waits until it lets go", async t => {
+test("an outside save during a drag is shown when the drag ends", async t => {
   const started = await host(t, `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`);
   const before = started.text();
   const page = await open(await launch(t), started);
@@ -395,7 +395,7 @@ test("what another program saves while a hand moves something waits until it let
     started.write(before.replace("8)", "6)"));
     await page.waitForTimeout(1000);
     assert.ok(await page.isHidden("#conflict-dialog"));
-    // The hand goes on.
+    // The drag continues.
     const [x, y] = await from();
     await page.mouse.move(x + 90, y, { steps: 6 });
     await rested(page);
@@ -410,7 +410,7 @@ test("what another program saves while a hand moves something waits until it let
     await rested(page);
     assert.equal(await text(page), before);
   }
-  // Where nothing was moved, the page follows.
+  // If nothing was changed, the page follows the file.
   await page.mouse.move(...(await onPage(page, [455, 320])));
   await page.mouse.down();
   await page.waitForTimeout(200);
@@ -422,7 +422,7 @@ test("what another program saves while a hand moves something waits until it let
   assert.ok(await page.isHidden("#conflict-dialog"));
 });
 
-test("a picture that takes long tells how far it is, and Cancel ends it at once", async t => {
+test("a long rendering shows its progress, and Cancel ends it at once", async t => {
   const slow = FIGURE.replace(/image\s*{[^}]*}/, "").replace(/sampler\s*{[^}]*}/, "") + "\nimage { width 4096  height 4096 }\nsampler { method regular  per_pixel 65536 }\n";
   const started = await host(t);
   const page = await open(await launch(t), started);
@@ -436,7 +436,7 @@ test("a picture that takes long tells how far it is, and Cancel ends it at once"
     await choose();
     await page.waitForSelector("#rendering:not([hidden])");
     await page.waitForFunction(() => parseFloat(document.querySelector("#percent").textContent) > 0, null, { timeout: 120_000 });
-    // The page still answers, and another picture is refused.
+    // The page still responds, and a second rendering is refused.
     await choose();
     assert.match(await page.textContent("#said"), /Another picture is being made/);
     const took = await page.evaluate(async () => {
@@ -448,14 +448,14 @@ test("a picture that takes long tells how far it is, and Cancel ends it at once"
     assert.ok(took < 100, `${took} ms`);
     assert.match(await page.textContent("#said"), /scene\.png was cancelled/);
   }
-  // Nothing is left that would be in the way of the next one.
+  // The next rendering is not blocked.
   await type(page, FIGURE);
   const download = page.waitForEvent("download");
   await choose();
   assert.equal((await download).suggestedFilename(), "scene.png");
 });
 
-test("what another program saves while a number is played comes at once, and the number rests", async t => {
+test("an outside save stops a playing number and is shown at once", async t => {
   const started = await host(t, `let r = 1 // [0.5:0.25:2]\n${FIGURE.replace("radius 1", "radius r")}`);
   const page = await open(await launch(t), started);
   await page.click('[aria-label="Play r"]');
@@ -468,7 +468,7 @@ test("what another program saves while a number is played comes at once, and the
   assert.equal(await page.locator(".play[aria-pressed=true]").count(), 0);
 });
 
-test("Save as says what is wrong with this name, not with the one before", async t => {
+test("Save as shows the problem of the current name, not of the previous one", async t => {
   const page = await open(await launch(t), await host(t));
   await menu(page, "File", "#save-as");
   const problem = pattern => page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("#name-problem").textContent), pattern, { timeout: 3000 });

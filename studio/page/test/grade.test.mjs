@@ -1,4 +1,4 @@
-// The page that `grade -o` writes, from a file, as a teacher opens it.
+// The page that `grade -o` writes, opened as a local file.
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -11,7 +11,7 @@ import { FIGURE, launch } from "./helpers.mjs";
 const PINHOLE = process.env.PINHOLE ?? "pinhole";
 const HOSTILE = "<img src=x onerror=alert(1)>" + "x".repeat(70);
 
-/** A folder with a graded class. */
+/** Makes a folder with a graded class. */
 function graded(t) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-grade-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
@@ -28,7 +28,7 @@ function graded(t) {
   return `file://${folder}/out/index.html`;
 }
 
-test("a class's page sorts by keyboard, opens pictures, fits a telephone and prints", async t => {
+test("the grading page sorts by keyboard, opens pictures, fits a phone and prints", async t => {
   const address = graded(t);
   const browser = await launch(t);
   const page = await browser.newPage({ viewport: { width: 1200, height: 900 } });
@@ -43,7 +43,7 @@ test("a class's page sorts by keyboard, opens pictures, fits a telephone and pri
   assert.match(await page.textContent(".mistakes"), /2 students: background/);
   assert.match(await page.textContent("tr:has-text('ben')"), /the same in every pixel as that of cy/);
 
-  // By keyboard alone: the last heading, with what is empty last in either order.
+  // By keyboard alone: the last column, with empty cells last in both orders.
   await page.focus("thead th:last-child button");
   await page.keyboard.press("Enter");
   assert.deepEqual(await sorted(), ["none", "none", "none", "none", "ascending"]);
@@ -63,7 +63,7 @@ test("a class's page sorts by keyboard, opens pictures, fits a telephone and pri
 
   await page.click("tr:has-text('ben') .comment summary");
   await page.click("tr:has-text('ben') .copy");
-  // The clipboard answers when it likes.
+  // The clipboard may answer late.
   await page.waitForSelector("tr:has-text('ben') .copy:text-is('copied')");
 
   await page.setViewportSize({ width: 400, height: 800 });

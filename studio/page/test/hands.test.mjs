@@ -1,10 +1,10 @@
-// Hands: objects and the camera are moved in the picture, and the text follows.
+// Editing in the picture: objects and the camera are moved, and the text follows.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { andFinished, choose, comparing, decoded, drag, FIGURE, finished, hand, handle, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
-/** Where the middle of figure 9.9's ball is seen: well inside of it. */
+/** Point in the picture well inside the ball of figure 9.9. */
 const BALL = [455, 320];
 
 const vector = (text, before) => {
@@ -13,7 +13,7 @@ const vector = (text, before) => {
   return found[1].split(",").map(Number);
 };
 
-test("a drag moves a ball that is a let, in one step of undo, and nothing else of the text", async t => {
+test("dragging a ball defined by let changes only its numbers, in one undo step", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await andFinished(page, () => drag(page, BALL, [BALL[0] + 200, BALL[1]]));
@@ -27,7 +27,7 @@ test("a drag moves a ball that is a let, in one step of undo, and nothing else o
   assert.equal(await text(page), FIGURE);
 });
 
-test("Escape takes back a drag that goes on", async t => {
+test("Escape reverts a drag in progress", async t => {
   const page = await open(await launch(t), await host(t));
   await page.mouse.move(...(await onPage(page, BALL)));
   await page.mouse.down();
@@ -40,7 +40,7 @@ test("Escape takes back a drag that goes on", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
-test("a click names and selects what is seen, and jumps to its line; the cursor selects, too", async t => {
+test("a click selects the object under it and shows its line; the cursor selects, too", async t => {
   const page = await open(await launch(t), await host(t));
   await page.mouse.move(...(await onPage(page, BALL)));
   await page.waitForFunction(() => /^Ball at \(.*away/.test(document.querySelector("#pointed").textContent));
@@ -53,7 +53,7 @@ test("a click names and selects what is seen, and jumps to its line; the cursor 
   assert.equal(await page.locator("#objects option:checked").textContent(), "Crate (box)");
 });
 
-test("a click selects the member of a repetition that is clicked, and the cursor its first one", async t => {
+test("a click selects the clicked object of a repetition, and the cursor the first one", async t => {
   for (const name of ["Pearl", ""]) {
     const scene = `camera { eye (0, 0, 12)  lookat (0, 0, 0) }\nsampler { per_pixel 1 }\nsphere { center (0, -3, 0) }\nsphere ${name} for i < 5 { center (2 * i - 4, 0, 0)  radius 0.6 }\n`;
     const page = await open(await launch(t), await host(t, scene));
@@ -68,7 +68,7 @@ test("a click selects the member of a repetition that is clicked, and the cursor
       const [hx, hy] = await handle(page, await page.locator(".handle").first().getAttribute("aria-label"));
       assert.ok(Math.hypot(hx - x, hy - y) < 3, `${i}: ${hx - x} ${hy - y}`);
     }
-    // What is dragged stays what is selected, and so it is when a block comes before it.
+    // The dragged object stays selected, also when a block is inserted before it.
     const before = await text(page);
     await hand(page, await onPage(page, at(3)), [0, 40]);
     await rested(page);
@@ -87,7 +87,7 @@ test("a click selects the member of a repetition that is clicked, and the cursor
   }
 });
 
-test("what is chosen while the answer to a click is waited for stays chosen", async t => {
+test("a choice made before a click is answered is kept", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await rested(page);
@@ -102,7 +102,7 @@ test("what is chosen while the answer to a click is waited for stays chosen", as
   await page.waitForSelector('.handle[aria-label="Ball: center"]');
 });
 
-test("a hand that takes the body beside a handle moves the body", async t => {
+test("a press beside a handle drags the object", async t => {
   const browser = await launch(t);
   const started = await host(t, FIGURE.replace("d      2.75", "d      5.5"));
   const page = await open(browser, started);
@@ -115,7 +115,7 @@ test("a hand that takes the body beside a handle moves the body", async t => {
   }));
   for (const [label, x, y] of places) {
     const isFace = !label.endsWith("center");
-    // Towards the middle of the box, where the box is under the hand.
+    // Towards the centre of the box, where the box is under the pointer.
     const [, mx, my] = places.find(([label]) => label.endsWith("center"));
     const far = Math.hypot(mx - x, my - y);
     const part = isFace ? 11 / far : 0;
@@ -136,7 +136,7 @@ test("a hand that takes the body beside a handle moves the body", async t => {
   }
 });
 
-test("an axis holds a drag", async t => {
+test("a drag constrained to an axis stays on it", async t => {
   const page = await open(await launch(t), await host(t));
   await page.focus("#stage");
   await page.keyboard.press("y");
@@ -146,7 +146,7 @@ test("an axis holds a drag", async t => {
   assert.ok(y > 1.3);
 });
 
-test("the camera orbits about what it looks at", async t => {
+test("the camera orbits about its lookat point", async t => {
   const page = await open(await launch(t), await host(t));
   await choose(page, "orbit");
   await andFinished(page, () => drag(page, [640, 500], [840, 460]));
@@ -155,13 +155,13 @@ test("the camera orbits about what it looks at", async t => {
   const distance = ([x, y, z]) => Math.hypot(x - 0.2, y - 0.8, z);
   assert.deepEqual(vector(moved, "lookat"), [0.2, 0.8, 0]);
   assert.notDeepEqual(eye, [3, 3.5, 8]);
-  // The eye stays at its distance, but for the digits that are left out.
+  // The eye keeps its distance, except for omitted digits.
   assert.ok(Math.abs(distance(eye) / distance([3, 3.5, 8]) - 1) < 0.01, String(eye));
 });
 
-test("all of it goes by keyboard", async t => {
+test("objects and camera can be moved by keyboard alone", async t => {
   const page = await open(await launch(t), await host(t));
-  // From the top of the page to the picture by the tab key alone.
+  // From the top of the page to the picture by the Tab key alone.
   for (let i = 0; i < 60; i++) {
     await page.keyboard.press("Tab");
     if (await page.evaluate(() => document.activeElement.id === "objects")) break;
@@ -188,14 +188,14 @@ test("all of it goes by keyboard", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
-test("an object after a thousand others is selected, too", async t => {
+test("an object after a thousand others can be selected", async t => {
   const others = Array.from({ length: 1000 }, (_, i) => `sphere { center (0, ${i + 10}, 20)  radius 0.1 }`).join("\n");
   const page = await open(await launch(t), await host(t, `camera { eye (0, 0, 5)  direction (0, 0, -1) }\n${others}\nsphere Last { center (0, 0, 0) }\n`));
   await page.mouse.click(...(await onPage(page, [400, 225])));
   await page.waitForSelector('.handle[aria-label="Last: center"]');
 });
 
-test("taps of a key are one drag, and all of them count", async t => {
+test("repeated taps of a key are one drag, and every tap counts", async t => {
   const page = await open(await launch(t), await host(t));
   await page.selectOption("#objects", { label: "Ball (sphere)" });
   await page.focus('.handle[aria-label="Ball: center"]');
@@ -209,13 +209,13 @@ test("taps of a key are one drag, and all of them count", async t => {
   await page.waitForTimeout(800);
   await finished(page);
   const [now, level] = await place();
-  // Half a step of each number.
+  // Half a unit of the last digit of each number.
   assert.ok(Math.abs(now - x - 60) <= 8 && Math.abs(level - y) <= 8, `${now - x}`);
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), FIGURE);
 });
 
-test("every handle moves its object, and every tool the camera, and nothing else", async t => {
+test("every handle moves only its object, and every tool only the camera", async t => {
   const page = await open(await launch(t), await host(t));
   const handles = {
     Ball: ["center", "radius"],
@@ -231,7 +231,7 @@ test("every handle moves its object, and every tool the camera, and nothing else
     assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
     for (const name of names) {
       await page.focus(`.handle[data-handle=${name}]`);
-      // Up or to the right: one of them is a way that every handle can go.
+      // Every handle can move either up or to the right.
       for (const key of ["ArrowUp", "ArrowRight"]) await page.keyboard.press(key);
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "not saved", null, { timeout: 5000 }).catch(() => assert.fail(`${object}: ${name} does nothing`));
       await finished(page);
@@ -254,7 +254,7 @@ test("every handle moves its object, and every tool the camera, and nothing else
   }
 });
 
-test("a finger drags, and two fingers zoom without a change of the text", async t => {
+test("one finger drags, and two fingers zoom without changing the text", async t => {
   const browser = await launch(t);
   const page = await open(browser, await host(t), { viewport: { width: 380, height: 700 }, hasTouch: true, isMobile: true });
   const session = await page.context().newCDPSession(page);
@@ -263,7 +263,7 @@ test("a finger drags, and two fingers zoom without a change of the text", async 
   const start = await place();
   const before = start.width;
   const [x, y] = await onPage(page, BALL);
-  // What is touched is selected, which moves nothing.
+  // A touch selects the object, which moves nothing.
   await page.touchscreen.tap(x, y);
   await page.waitForSelector(".handle");
   assert.deepEqual(await place(), start);
@@ -286,7 +286,7 @@ test("a finger drags, and two fingers zoom without a change of the text", async 
 
 test("a phone has tabs for picture and text, and targets of 44 pixels", async t => {
   const page = await open(await launch(t), await host(t), { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-  // A tall one has room for the text below the picture.
+  // A tall phone has room for the text below the picture.
   const [editor, stage] = [await page.locator("#editor").boundingBox(), await page.locator("#stage").boundingBox()];
   assert.ok(await page.isVisible("#editor") && editor.y >= stage.y + stage.height && editor.height > 150);
   await page.setViewportSize({ width: 390, height: 640 });
@@ -304,12 +304,12 @@ test("a phone has tabs for picture and text, and targets of 44 pixels", async t 
   assert.ok(await page.isHidden("#stage") && await page.isVisible("#editor"));
   await page.tap("#tabs [data-tab=picture]");
   assert.ok(await page.isVisible("#stage"));
-  // Problems stand with the text.
+  // Problems are shown with the text.
   await page.tap("#problems");
   assert.ok(await page.isVisible("#editor"));
 });
 
-test("members of a repetition without a name are told apart by their indices", async t => {
+test("unnamed objects of a repetition are labelled by their indices", async t => {
   const scene = `${FIGURE}\nsphere for i < 2, j < 2 { center (i - 3, 3 + j, 0)  radius 0.3 }\nsphere { center (2, 3, 0)  radius 0.3 }\n`;
   const page = await open(await launch(t), await host(t, scene));
   const names = () => page.locator("#objects option").allTextContents();
@@ -320,7 +320,7 @@ test("members of a repetition without a name are told apart by their indices", a
   await page.waitForSelector('.handle[aria-label^="sphere [1, 0]: "]');
 });
 
-test("a selected board is outlined where it is seen, and not across what stands before it", async t => {
+test("a selected board is not outlined across objects in front of it", async t => {
   const scene = "camera { eye (0, 1, 5)  lookat (0, 0, 0) }\ncheckerboard Floor { square 2 }\nsphere Ball { center (0.5, 0.5, 3)  radius 1 }\n";
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForFunction(() => document.querySelector("#objects").options.length === 3);
@@ -329,7 +329,7 @@ test("a selected board is outlined where it is seen, and not across what stands 
   await page.mouse.move(...(await onPage(page, [100, -30])));
   await page.waitForTimeout(300);
   assert.equal(await page.locator(".line.selected").count(), 0);
-  // Beside it all of the cell is seen.
+  // Beside the box the whole cell is visible.
   await page.locator(".cm-line").last().click();
   await page.keyboard.type("// ", { delay: 30 });
   await page.keyboard.press("ArrowUp");
@@ -339,8 +339,8 @@ test("a selected board is outlined where it is seen, and not across what stands 
   await page.waitForSelector(".line.selected", { state: "attached", timeout: 5000 });
 });
 
-test("what is selected stays so when another program puts something before it", async t => {
-  // Another program's change comes as the least that differs, which may begin anywhere in a block.
+test("the selection stays when another program inserts text before it", async t => {
+  // Another program's change is applied as a minimal difference, which may begin within a block.
   const blocks = ["sphere for i < 3 { center (2*i - 2, 1, 0)  radius 0.6 }", "box { min (-3, 0, -1)  max (-2.4, 2, 0) }"];
   const board = "checkerboard { y 0 }";
   const camera = "camera { eye (0, 3, 9)  lookat (0, 1, 0) }";
@@ -359,7 +359,7 @@ test("what is selected stays so when another program puts something before it", 
     await rested(page);
     const line = Number(/\d+(?=\)$)/.exec(selected)[0]) + 2;
     assert.deepEqual(await shown(), [selected.replace(/\d+\)$/, `${line})`), label]);
-    // And when it is taken away again.
+    // The same when the text is removed again.
     started.write(lines.join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
     await rested(page);
@@ -367,7 +367,7 @@ test("what is selected stays so when another program puts something before it", 
     started.write([...lines.slice(0, at), added, added.replace("3", "2.5"), ...lines.slice(at)].join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 8);
     await rested(page);
-    // The handle is its own.
+    // The handle belongs to the selected object.
     await hand(page, await handle(page, label), [40, 0]);
     await rested(page);
     const now = (await text(page)).split("\n");

@@ -11,13 +11,13 @@ import { chromium } from "playwright-core";
 
 const PINHOLE = process.env.PINHOLE ?? "pinhole";
 
-/** What hosts keep of their user, here. */
+/** Folder for the drafts of hosts. */
 export const STATE = mkdtempSync(path.join(tmpdir(), "pinhole-state-"));
 process.on("exit", () => rmSync(STATE, { recursive: true, force: true }));
 
 export const FIGURE = readFileSync(new URL("../../../examples/figure_9_9.scn", import.meta.url), "utf8");
 
-/** A browser, closed when the test ends. */
+/** Starts a browser, which is closed when the test ends. */
 export async function launch(context) {
   const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-features=LocalNetworkAccessChecks"] });
   context.after(() => browser.close());
@@ -40,7 +40,7 @@ export async function launch(context) {
   return browser;
 }
 
-/** A host of a file with this text, in a folder of its own. Both go when the test ends. */
+/** Starts a host of a file with a text in a new folder. Both are removed when the test ends. */
 export async function host(context, text = FIGURE, name = "scene.scn") {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
   const file = path.join(folder, name);
@@ -53,11 +53,11 @@ export async function host(context, text = FIGURE, name = "scene.scn") {
   return started;
 }
 
-/** A host of a file, or of a new scene in a folder, at a port of its own choice if none is named. */
+/** Starts a host of a file, or of a new scene in a folder, at a given or any free port. */
 export async function serve(file, { port, folder, browser } = {}) {
   const scene = file === null ? [] : [file];
   const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port])];
-  // What starts a browser is found on the path.
+  // The program that opens a browser is found on the path.
   const env = { ...process.env, XDG_STATE_HOME: STATE, PATH: browser === undefined ? process.env.PATH : `${browser}:${process.env.PATH}` };
   const child = spawn(PINHOLE, ["studio", ...scene, ...options], { cwd: folder, env, stdio: ["ignore", "ignore", "pipe"] });
   let said = "";
@@ -73,7 +73,7 @@ export async function serve(file, { port, folder, browser } = {}) {
   return { address, stop: signal => (child.kill(signal), ended), pid: child.pid };
 }
 
-/** A site: a folder served as files, as any web host does. It collects what it is asked for. */
+/** Serves a folder as a web host does. Records the requests. */
 export async function site(context, folder) {
   const types = { html: "text/html; charset=utf-8", js: "text/javascript", css: "text/css", wasm: "application/wasm" };
   const requests = [];
@@ -92,7 +92,7 @@ export async function site(context, folder) {
   return { address: `http://127.0.0.1:${server.address().port}/`, requests };
 }
 
-/** The page of a host, as soon as its picture is finished. What the browser complains of is collected in `page.complaints`. */
+/** Opens the page of a host, with its picture finished. Browser errors go to `page.complaints`. */
 export async function open(browser, { address }, { late, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
   const page = await context.newPage();
@@ -105,7 +105,7 @@ export async function open(browser, { address }, { late, ...options } = {}) {
   return page;
 }
 
-/** Has answers come late: by so many milliseconds for each method that `late` has. */
+/** Delays answers, by the milliseconds that `late` has for their method. */
 async function delayed(page, late) {
   await page.routeWebSocket("**/socket", socket => {
     const server = socket.connectToServer();
@@ -128,7 +128,7 @@ export async function finished(page) {
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 15_000 });
 }
 
-/** Does something, and waits for the finished picture of the text that it makes. */
+/** Acts, and waits for the finished picture of the resulting text. */
 export async function andFinished(page, act) {
   const before = await version(page);
   await act();
@@ -146,7 +146,7 @@ export async function version(page) {
   return page.evaluate(() => Number(document.querySelector("canvas").dataset.version ?? -1));
 }
 
-/** The text in the editor, without the hints between its letters. */
+/** Returns the text in the editor, without the hints. */
 export async function text(page) {
   return page.evaluate(() => {
     const lines = [...document.querySelectorAll(".cm-line")].map(line => {
@@ -158,29 +158,29 @@ export async function text(page) {
   });
 }
 
-/** The link that Share offers. The dialog stays open. */
+/** Returns the link that Share offers. The dialog stays open. */
 export async function link(page) {
   await page.click("#share");
   await page.waitForSelector("#share-dialog[open]");
   return page.inputValue("#share-link");
 }
 
-/** Shows the picture or the text, where a phone has room for one of them. */
+/** Shows the picture or the text on a phone, which has room for one of them. */
 export async function tab(page, name) {
   const button = page.locator(`#tabs [data-tab=${name}]`);
   if (await button.isVisible()) await button.click();
 }
 
-/** Puts another text into the editor, as pasting does. */
+/** Replaces the text in the editor, as pasting does. */
 export async function type(page, text) {
   await tab(page, "text");
-  // At its corner: elsewhere may be a colour, whose picker would open.
+  // Clicks at the corner, as a click on a colour would open its picker.
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(text);
 }
 
-/** Where a point of the picture is on the page, for the mouse. */
+/** Converts a point of the picture to one of the page, for the mouse. */
 export async function onPage(page, [x, y]) {
   return page.evaluate(
     ([x, y]) => {
@@ -193,12 +193,12 @@ export async function onPage(page, [x, y]) {
   );
 }
 
-/** Chooses what a drag moves. Those of the camera are in a menu. */
+/** Chooses a tool. Those of the camera are in a menu. */
 export async function choose(page, tool) {
   await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool);
 }
 
-/** Chooses what drags of the selected object are held to. */
+/** Chooses the constraint of drags of objects. */
 export async function hold(page, along) {
   await page.check(`input[name=along][value="${along}"]`, { force: true });
 }
@@ -207,26 +207,26 @@ export async function hold(page, along) {
 export async function drag(page, from, to) {
   await page.mouse.move(...(await onPage(page, from)));
   await page.mouse.down();
-  // The page asks what is under the pointer before it moves that.
+  // The page asks what is under the pointer before it moves the object.
   await page.waitForTimeout(300);
   const [x, y] = await onPage(page, to);
   await page.mouse.move(x, y, { steps: 5 });
   await page.mouse.up();
 }
 
-/** Opens a menu and clicks at something in it. */
+/** Opens a menu and clicks an item in it. */
 export async function menu(page, name, item) {
   await page.click(`summary:text("${name}")`);
   await page.click(item);
 }
 
-/** Chooses a file of this computer in the page's own menu. */
+/** Chooses a local file in the page's menu. */
 export async function openFile(page, file) {
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), menu(page, "File", "#open")]);
   await chooser.setFiles(file);
 }
 
-/** Takes hold at a place of the page, moves on by steps at a hand's pace, and lets go. */
+/** Presses at a point of the page, moves by steps at the pace of a hand, and releases. */
 export async function hand(page, [x, y], [dx, dy], { steps = 12, back = false, hold = false } = {}) {
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -239,7 +239,7 @@ export async function hand(page, [x, y], [dx, dy], { steps = 12, back = false, h
   if (!hold) await page.mouse.up();
 }
 
-/** Waits until the text and its picture have come to rest. */
+/** Waits until the text and its picture no longer change. */
 export async function rested(page) {
   let before = null;
   for (let same = 0; same < 4; ) {
@@ -251,13 +251,13 @@ export async function rested(page) {
   await finished(page);
 }
 
-/** The middle of a handle on the page. */
+/** Returns the centre of a handle on the page. */
 export async function handle(page, label) {
   const { x, y, width, height } = await page.locator(`.handle[aria-label="${label}"]`).boundingBox();
   return [x + width / 2, y + height / 2];
 }
 
-/** The pixels of the picture, as RGBA bytes in base64. */
+/** Returns the pixels of the picture, as RGBA bytes in base64. */
 export async function pixels(page) {
   return page.evaluate(() => {
     const canvas = document.querySelector("canvas");
@@ -265,7 +265,7 @@ export async function pixels(page) {
   });
 }
 
-/** The pixels of a PNG as this browser reads them. */
+/** Returns the pixels of a PNG as the browser decodes them. */
 export async function decoded(page, png) {
   return page.evaluate(async png => {
     const bytes = Uint8Array.from(atob(png), letter => letter.charCodeAt(0));
@@ -277,7 +277,7 @@ export async function decoded(page, png) {
   }, png.toString("base64"));
 }
 
-/** Has the page able to compare pixels. */
+/** Adds a function to the page that reads pixels. */
 export async function comparing(page) {
   await page.evaluate(() => {
     window.bytesOf = async ({ data, width, height }) => {
@@ -287,7 +287,7 @@ export async function comparing(page) {
   });
 }
 
-/** The picture of a scene by `pinhole render`, as bytes. */
+/** Returns the bytes of a scene's picture by `pinhole render`. */
 export function rendered(folder, text, kind = "png") {
   const scene = path.join(folder, "rendered.scn");
   const picture = path.join(folder, `rendered.${kind}`);

@@ -1,5 +1,4 @@
-// The page as a stranger meets it: scenes from the menu, objects that are added, the first problem,
-// a second window.
+// First use of the page: scenes from the menu, new objects, the first problem, the projector window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -9,11 +8,11 @@ import { andFinished, FIGURE, finished, hand, handle, host, launch, menu, onPage
 
 const { SITE } = process.env;
 
-/** Both hosts; the static page where there is one. */
+/** The served host, and the static page if it is built. */
 const HOSTS = [["served", t => host(t)], ...(SITE === undefined ? [] : [["static", t => site(t, SITE)]])];
 
 for (const [name, start] of HOSTS) {
-  test(`an example comes, and goes again by Undo, and Save asks for a name: ${name}`, async t => {
+  test(`an example opens, Undo reverts it, and Save asks for a name: ${name}`, async t => {
     const started = await start(t);
     const page = await open(await launch(t), started);
     await menu(page, "File", "text='farther is smaller'");
@@ -28,7 +27,7 @@ for (const [name, start] of HOSTS) {
       await page.keyboard.press("Enter");
       await page.waitForFunction(() => /mine\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), example);
-      // The new scene can be saved again, but no file that was there before.
+      // Only the new scene can be saved again, and no earlier file.
       await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere { center (0, 1, 0) }\n");
       await page.keyboard.press("Control+s");
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
@@ -61,7 +60,7 @@ for (const [name, start] of HOSTS) {
       assert.match(await page.evaluate(() => document.querySelector("#objects").selectedOptions[0].text), new RegExp(kind));
       assert.equal(await page.textContent("#problems"), "No problems");
     }
-    // What is added is seen, and can be dragged at once.
+    // A new object is visible and can be dragged at once.
     for (const label of ["Box1: center", "Box1: max y"]) {
       const before = await text(page);
       await hand(page, await handle(page, label), [30, -20]);
@@ -88,7 +87,7 @@ for (const [name, start] of HOSTS) {
   });
 }
 
-test("what is added while the text has errors stands side by side, and is seen when they are mended", async t => {
+test("objects added while the text has errors get distinct positions and appear after the fix", async t => {
   const slip = "sphere Slip { center (0, 1, 0)  radios 1 }\n";
   const page = await open(await launch(t), await host(t));
   await type(page, `${FIGURE}${slip}`);
@@ -110,11 +109,11 @@ test("what is added while the text has errors stands side by side, and is seen w
   }
 });
 
-test("an opened file of this computer is a new scene, of a host, too", async t => {
+test("an opened local file is a new scene, also with a host", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   const other = path.join(started.folder, "other.scn");
-  // Its lines end as they do on Windows.
+  // The file has Windows line ends.
   const scene = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\r\nsphere { center (0, 0, 0) }\r\n";
   writeFileSync(other, scene);
   await openFile(page, other);
@@ -122,7 +121,7 @@ test("an opened file of this computer is a new scene, of a host, too", async t =
   await page.click("#save");
   await page.waitForSelector("#name-dialog[open]");
   await page.keyboard.press("Enter");
-  // There is such a file, which is not written over.
+  // A file of this name exists and is not overwritten.
   await page.waitForFunction(() => document.querySelector("#name-problem").textContent !== "");
   await page.fill("#name-field", "third");
   await page.keyboard.press("Enter");
@@ -131,7 +130,7 @@ test("an opened file of this computer is a new scene, of a host, too", async t =
   assert.equal(started.text(), FIGURE);
 });
 
-test("on a floor an object keeps its height; Shift frees it, and its numbers are short, unless Control is held", async t => {
+test("on a floor drags keep the height unless Shift is held, and snap unless Control is", async t => {
   const page = await open(await launch(t), await host(t));
   const drag = async keys => {
     for (const key of keys) await page.keyboard.down(key);
@@ -155,7 +154,7 @@ test("on a floor an object keeps its height; Shift frees it, and its numbers are
   assert.ok(Math.max(...free.map(decimals)) > 1, String(free));
 });
 
-test("a handle that snaps is never far from the hand, and is back where it was pressed", async t => {
+test("a snapping handle stays near the pointer and returns to its starting point", async t => {
   const page = await open(await launch(t), await host(t));
   await page.selectOption("#objects", { label: "Crate (box)" });
   await page.waitForSelector(".handle");
@@ -167,7 +166,7 @@ test("a handle that snaps is never far from the hand, and is back where it was p
   }
 });
 
-test("the right button orbits, the middle one pans, Shift and the wheel dolly, and d stands beside fov and window", async t => {
+test("the right button orbits, the middle one pans, Shift and the wheel dolly, and fov shows d", async t => {
   const page = await open(await launch(t), await host(t));
   const [x, y] = await onPage(page, [900, 600]);
   for (const [button, changed] of [["right", /eye/], ["middle", /lookat/]]) {
@@ -195,7 +194,7 @@ test("the right button orbits, the middle one pans, Shift and the wheel dolly, a
   await page.click("#undo");
   await rested(page);
   assert.equal(await text(page), FIGURE);
-  // Keys work wherever the focus is not in a text.
+  // Keys work unless the focus is in a text.
   await page.focus("#save");
   await page.keyboard.press("v");
   assert.match(await page.textContent("#camera-menu summary"), /view distance/);
@@ -204,7 +203,7 @@ test("the right button orbits, the middle one pans, Shift and the wheel dolly, a
   await page.mouse.up();
 });
 
-test("a text that is pasted over one with mistakes has none of their marks", async t => {
+test("a text pasted over one with errors has no error marks", async t => {
   const page = await open(await launch(t), await host(t));
   await type(page, FIGURE.replace("radius 1", "radios 1"));
   await page.waitForSelector(".cm-lint-marker");
@@ -214,7 +213,7 @@ test("a text that is pasted over one with mistakes has none of their marks", asy
   assert.equal(await page.locator(".cm-lint-marker, .cm-lintRange").count(), 0);
 });
 
-test("the first problem stands under the text with its fix, above the sliders; the list holds a thousand", async t => {
+test("the first problem is shown with its fix above the sliders, and the list holds a thousand", async t => {
   const page = await open(await launch(t), await host(t, `let r = 1\n${FIGURE.replace("radius 1", "radius r")}`));
   await page.waitForSelector("#sliders:not([hidden])");
   await type(page, `let r = 1\n${FIGURE.replace("radius 1", "radios r")}`);
@@ -233,7 +232,7 @@ test("the first problem stands under the text with its fix, above the sliders; t
   assert.ok(list < 300 && scrolled > 10_000, `${list} ${scrolled}`);
 });
 
-test("vanishing points outside of the page are arrows with coordinates, and a layer that shows nothing says so", async t => {
+test("vanishing points outside the page are arrows, and an empty layer gives a reason", async t => {
   const page = await open(await launch(t), await host(t));
   await page.click("summary:text('Show')");
   for (const name of ["vanishing", "grid"]) await page.check(`input[name=${name}]`);
@@ -246,12 +245,12 @@ test("vanishing points outside of the page are arrows with coordinates, and a la
     assert.ok(x >= stage.x && y >= stage.y && x + width <= stage.x + stage.width && y + height <= stage.y + stage.height, label);
   }
   assert.match(await page.textContent("#unseen"), /pixel grid/);
-  // Farther away, the point itself is seen.
+  // With a smaller zoom, the point itself is visible.
   for (let i = 0; i < 4; i++) await page.click("#zoom-out");
   assert.equal(await page.locator("path.line.axis-y[transform^=translate]").count(), 0);
 });
 
-test("the picture has one row of tools above it at 1280, and a window of its own that asks no server", async t => {
+test("the tools fit one row at 1280, and the projector window needs no server", async t => {
   const page = await open(await launch(t), await host(t));
   await page.selectOption("#objects", { label: "Ball (sphere)" });
   await page.waitForSelector("#along:not([hidden])");
@@ -268,7 +267,7 @@ test("the picture has one row of tools above it at 1280, and a window of its own
   await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
   await rested(page);
   await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
-  // A page that is loaded anew goes on with it.
+  // A reloaded page continues to use the window.
   page.on("dialog", dialog => dialog.accept());
   await page.reload();
   await finished(page);
@@ -288,7 +287,7 @@ test("the reference of the language is in the page", async t => {
   await page.waitForSelector("#language-dialog", { state: "hidden" });
 });
 
-test("at each size the picture takes what there is", async t => {
+test("at each window size the picture fills its space", async t => {
   const [started, browser] = [await host(t), await launch(t)];
   for (const [width, height, least] of [[1280, 800, 700], [1920, 1080, 1060], [820, 1180, 760]]) {
     const page = await open(browser, started, { viewport: { width, height } });
@@ -298,7 +297,7 @@ test("at each size the picture takes what there is", async t => {
   }
 });
 
-test("on a phone the header and the tools have two rows each, on its side the tools have one, and selecting moves nothing", async t => {
+test("a phone has two rows of header and tools, one on its side, and selecting moves nothing", async t => {
   const [started, browser] = [await host(t), await launch(t)];
   for (const [width, height, header, tools] of [[390, 844, 110, 115], [360, 740, 110, 115], [320, 640, 110, 115], [844, 390, 60, 62], [768, 1024, 60, 62]]) {
     const page = await open(browser, started, { viewport: { width, height }, hasTouch: true, isMobile: true });
@@ -319,7 +318,7 @@ test("on a phone the header and the tools have two rows each, on its side the to
   }
 });
 
-test("at each width what is selected, or that nothing is, can be read", async t => {
+test("at each width the name of the selected object is readable", async t => {
   const [browser, started] = [await launch(t), await host(t)];
   for (const hasTouch of [false, true]) for (const width of [350, 390, 560, 761, 1280]) {
     const page = await open(browser, started, { viewport: { width, height: 844 }, hasTouch, isMobile: hasTouch });

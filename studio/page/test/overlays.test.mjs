@@ -1,4 +1,4 @@
-// What is drawn over the picture.
+// Overlays on the picture.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -13,10 +13,10 @@ const show = async (page, layer) => {
   await page.keyboard.press("Escape");
 };
 
-/** Where the vanishing points are marked, by axis. */
+/** Returns the marks of the vanishing points, by axis. */
 const marked = page => page.locator("#lines text").allTextContents();
 
-test("the lines of the boxes lead to the vanishing points, which follow the camera", async t => {
+test("lines of boxes meet at the vanishing points, which follow the camera", async t => {
   const page = await open(await launch(t), await host(t, BOXES));
   await show(page, "vanishing");
   await page.waitForSelector("#lines .axis-x");
@@ -27,12 +27,12 @@ test("the lines of the boxes lead to the vanishing points, which follow the came
   await choose(page, "orbit");
   await andFinished(page, () => drag(page, [400, 300], [450, 300]));
   assert.notEqual(await place(), before);
-  // The menu's choice is remembered.
+  // The chosen layers are remembered.
   await page.reload();
   await page.waitForSelector("#lines .axis-x");
 });
 
-test("horizon, view axis, near and far are drawn where they are", async t => {
+test("horizon, view axis, near and far are drawn at their positions", async t => {
   const page = await open(await launch(t), await host(t, FIGURE.replace("d      2.75", "d      2.75\n  near   6\n  far    30")));
   for (const layer of ["horizon", "axis", "near"]) await show(page, layer);
   for (const line of ["horizon", "view-axis", "near", "far"]) await page.waitForSelector(`#lines path.${line}`, { state: "attached" });
@@ -41,7 +41,7 @@ test("horizon, view axis, near and far are drawn where they are", async t => {
   assert.ok(Math.hypot(box.x + box.width / 2 - middle[0], box.y + box.height / 2 - middle[1]) < 1);
 });
 
-test("zoom shows pixels, their grid, and where the samples lie", async t => {
+test("zooming in shows pixels, their grid and the sample points", async t => {
   const page = await open(await launch(t), await host(t));
   await show(page, "grid");
   await show(page, "samples");

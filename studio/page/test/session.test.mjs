@@ -1,4 +1,4 @@
-// Who is let in, and what the page says when it is not: reloading, connecting again, another host, an address that was used twice, other servers.
+// Sessions: reloading, reconnecting, another host, an address used twice, and other servers.
 
 import assert from "node:assert/strict";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { andFinished, FIGURE, finished, host, launch, open, serve, text, type } 
 
 const LARGER = FIGURE.replace("radius 1", "radius 1.5");
 
-/** Waits until the page says something of its connection. */
+/** Waits until the page shows a text about its connection. */
 async function says(page, pattern) {
   await page.waitForFunction(pattern => new RegExp(pattern).test(document.querySelector("#connection").textContent), pattern.source, { timeout: 40_000 });
   assert.ok(await page.isVisible("#connection"));
@@ -21,14 +21,14 @@ async function connected(page) {
   await finished(page);
 }
 
-/** The text is still there, and can be taken away. */
+/** Asserts that the text is still there and can be downloaded. */
 async function keeps(page, scene) {
   assert.equal(await text(page), scene);
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("#connection-download")]);
   assert.equal(readFileSync(await download.path(), "utf8"), scene);
 }
 
-test("the token leaves the address, and nothing else does; reloading keeps the session", async t => {
+test("only the token is removed from the address, and reloading keeps the session", async t => {
   const started = await host(t);
   const { origin, hash } = new URL(started.address);
   const page = await open(await launch(t), { address: `${origin}/#view=1&${hash.slice(1)}&show=text` });
@@ -42,7 +42,7 @@ test("the token leaves the address, and nothing else does; reloading keeps the s
   assert.deepEqual(page.complaints, []);
 });
 
-test("a tab without the token says where it is, and has it from then on; two tabs work", async t => {
+test("a tab without the token says how to get it, and two tabs work with it", async t => {
   const started = await host(t);
   const first = await open(await launch(t), started);
   const second = await first.context().newPage();
@@ -56,7 +56,7 @@ test("a tab without the token says where it is, and has it from then on; two tab
   assert.equal(await text(second), LARGER);
 });
 
-test("a connection that breaks is found again, and the text stays", async t => {
+test("a broken connection is restored, and the text stays", async t => {
   const started = await host(t);
   const page = await (await launch(t)).newPage();
   let wire;
@@ -76,7 +76,7 @@ test("a connection that breaks is found again, and the text stays", async t => {
   assert.equal(started.text(), LARGER);
 });
 
-test("a host that was not to be reached for long is found again by itself", async t => {
+test("a host that was long unreachable is found again automatically", async t => {
   const started = await host(t);
   const page = await (await launch(t)).newPage();
   let [wire, isAway] = [null, false];
@@ -99,7 +99,7 @@ test("a host that was not to be reached for long is found again by itself", asyn
   assert.equal(started.text(), LARGER);
 });
 
-test("a host that is started anew is told from one that is lost; its address goes on with the text", async t => {
+test("a restarted host is distinguished from a lost one, and its address continues the text", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   const { port } = new URL(started.address);
@@ -121,7 +121,7 @@ test("a host that is started anew is told from one that is lost; its address goe
   assert.equal(started.text(), LARGER);
 });
 
-test("a host that dies is not looked for without a word; one at another port has another address", async t => {
+test("a dead host is reported, and the address of one at another port continues the text", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await type(page, LARGER);
@@ -131,7 +131,7 @@ test("a host that dies is not looked for without a word; one at another port has
   await keeps(page, LARGER);
   const again = await serve(started.file);
   t.after(() => again.stop());
-  // The browser asks before it leaves a text that is not saved.
+  // The browser asks before it leaves an unsaved text.
   const [asked] = await Promise.all([page.waitForEvent("dialog"), page.goto(again.address).catch(() => {})]);
   assert.equal(asked.type(), "beforeunload");
   await asked.accept();
@@ -139,7 +139,7 @@ test("a host that dies is not looked for without a word; one at another port has
   assert.equal(await text(page), FIGURE);
 });
 
-test("an address of an earlier run says so", async t => {
+test("an address of an earlier run is reported as such", async t => {
   const started = await host(t);
   const page = await (await launch(t)).newPage();
   await page.goto(`${new URL(started.address).origin}/#token=${"0".repeat(32)}`);
@@ -148,7 +148,7 @@ test("an address of an earlier run says so", async t => {
   await connected(page);
 });
 
-test("the address that a browser is started with serves once; both pages hear of a second time", async t => {
+test("the opened address works once, and a second use ends both pages' sessions", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-open-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   for (const name of ["xdg-open", "open"]) {
@@ -171,13 +171,13 @@ test("the address that a browser is started with serves once; both pages hear of
   for (const page of [first, second]) await says(page, /opened twice.* has ended.*printed in its terminal/);
   await keeps(first, LARGER);
   assert.equal(readFileSync(scene, "utf8"), FIGURE);
-  // The printed one still lets in.
+  // The printed address still works.
   await first.goto(started.address);
   await connected(first);
   assert.equal(await text(first), LARGER);
 });
 
-test("a page of another server on this machine gets nothing", async t => {
+test("a page of another local server gets no access", async t => {
   const started = await host(t);
   const { origin, host: name, hash } = new URL(started.address);
   const token = hash.slice("#token=".length);
@@ -220,7 +220,7 @@ test("a page of another server on this machine gets nothing", async t => {
   for (const head of heads) assert.ok(!head.includes(token) && !head.includes(name) && !/"cookie"/.test(head), head);
 });
 
-test("without a connection nothing is said of a text's errors, but whose picture it is", async t => {
+test("without a connection the page says nothing about errors, only which text the picture shows", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   page.on("dialog", dialog => dialog.accept());

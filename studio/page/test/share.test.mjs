@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { andFinished, FIGURE, finished, host, launch, link, open, rendered, text, type } from "./helpers.mjs";
 
-test("a link holds the scene, and asks nobody else", async t => {
+test("a link contains the scene and causes no other request", async t => {
   const browser = await launch(t);
   const started = await host(t);
   const page = await open(browser, started);
@@ -21,7 +21,7 @@ test("a link holds the scene, and asks nobody else", async t => {
   await other.goto(`${address}&${hash.slice(1)}`);
   await other.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final");
   assert.equal(await text(other), scene);
-  // The file is not touched, and undo brings its text.
+  // The file is not changed, and Undo restores its text.
   assert.equal(started.text(), FIGURE);
   await other.click(".cm-content");
   await other.keyboard.press("Control+z");
@@ -33,7 +33,7 @@ test("a link holds the scene, and asks nobody else", async t => {
   assert.equal(await text(other), scene);
 });
 
-test("a link in a tab without a connection shows its scene, and goes on with the printed address", async t => {
+test("a link opened without a connection shows its scene and continues with the printed address", async t => {
   const browser = await launch(t);
   const started = await host(t);
   const page = await open(browser, started);
@@ -54,7 +54,7 @@ test("a link in a tab without a connection shows its scene, and goes on with the
   assert.equal(started.text(), FIGURE);
 });
 
-test("a link that is pasted into an open page changes it, too", async t => {
+test("a link pasted into an open page loads its scene", async t => {
   const page = await open(await launch(t), await host(t));
   const scene = FIGURE.replace("radius 1", "radius 1.5");
   await type(page, scene);
@@ -66,7 +66,7 @@ test("a link that is pasted into an open page changes it, too", async t => {
   assert.equal(await text(page), scene);
 });
 
-test("a damaged link is told", async t => {
+test("a damaged link is reported", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await page.goto("about:blank");
@@ -77,7 +77,7 @@ test("a damaged link is told", async t => {
 });
 
 for (const [kind, id] of [["png", "#download-png"], ["exr", "#download-exr"], ["scn", "#download-scene"]]) {
-  test(`the download as ${kind} is what the program writes`, async t => {
+  test(`the download as ${kind} equals the program's file`, async t => {
     const started = await host(t);
     const page = await open(await launch(t), started);
     await page.click("text=Download");

@@ -1,5 +1,4 @@
-// Numbers that are turned: sliders of definitions and of numbers, playing, and what they do at
-// errors.
+// Sliders of definitions and of numbers, playing, and their behaviour at errors.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -7,10 +6,10 @@ import { FIGURE, finished, hand, handle, host, launch, open, rested, tab, text, 
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
-/** The figure with a definition before it, and another field. */
+/** Returns the figure with a definition before it, and one field replaced. */
 const scene = (definition, field, other) => `${definition}\n${FIGURE.replace(field, other)}`;
 
-/** The thumb of a slider on the page. */
+/** Returns the position of a slider's thumb on the page. */
 async function thumb(page, at = 0) {
   return page.locator(".slider-row input").nth(at).evaluate(it => {
     const { x, y, width, height } = it.getBoundingClientRect();
@@ -18,12 +17,12 @@ async function thumb(page, at = 0) {
   });
 }
 
-/** Waits until the first slider has an end. */
+/** Waits until the first slider has a given limit. */
 async function until(page, end, value) {
   await page.waitForFunction(([end, value]) => document.querySelector(".slider-row input")?.[end] === value, [end, value]);
 }
 
-test("definitions have sliders with their ranges, which one undo takes back, and which play to and fro", async t => {
+test("sliders of definitions keep their ranges, undo in one step, and play to and fro", async t => {
   const scene = `let r = 1.5 // [0.5:0.25:2]\nlet turn = 30deg\nlet n = 9\n${FIGURE.replace("radius 1", "radius r").replace("roll   0deg", "roll turn").replace("per_pixel 16", "per_pixel n")}`;
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForSelector(".slider-row");
@@ -56,7 +55,7 @@ test("definitions have sliders with their ranges, which one undo takes back, and
   assert.equal(await text(page), scene);
 });
 
-test("a number that is played rests as soon as something is dragged", async t => {
+test("a playing number stops as soon as something is dragged", async t => {
   const scene = FIGURE.replace(/^/, "let r = 1  // [0.5:0.25:2]\n").replace("radius 1", "radius r");
   const page = await open(await launch(t), await host(t, scene));
   await page.waitForSelector("#sliders:not([hidden])");
@@ -76,7 +75,7 @@ test("a number that is played rests as soon as something is dragged", async t =>
   assert.equal(await text(page), scene);
 });
 
-test("a range has units, its ends may be exchanged, and one that is not understood is said to be none", async t => {
+test("ranges have units and any order of ends, and invalid ones are reported", async t => {
   const lines = ["let a = 30deg // [0deg:5deg:90deg]", "let b = 2 // [5:1:0]", "let c = 1 // [1:x]", "let d = 3 // see below"];
   const page = await open(await launch(t), await host(t, `${lines.join("\n")}\n${FIGURE}`));
   await page.waitForSelector(".slider-row");
@@ -96,7 +95,7 @@ test("a range has units, its ends may be exchanged, and one that is not understo
   }
 });
 
-test("a slider stays under the hand where its value is an error, and after that, below the problem", async t => {
+test("a slider stays under the pointer while its value is an error, below the problem", async t => {
   const browser = await launch(t);
   const started = await host(t, scene("let r = 1 // [-1:0.1:3]", "radius 1", "radius r / 2"));
   for (const [width, height] of [[1280, 800], [1280, 420], [390, 700]]) {
@@ -114,7 +113,7 @@ test("a slider stays under the hand where its value is an error, and after that,
     await page.mouse.move(0, y, { steps: 5 });
     await page.mouse.up();
     await page.waitForSelector("#problem-list:not([hidden])");
-    // It is shown whole, and the problem above it.
+    // The slider is fully visible, and the problem above it.
     await page.waitForTimeout(400);
     const [row, problem, footer] = await Promise.all([".slider-row", "#problem-list", "footer"].map(it => page.locator(it).boundingBox()));
     assert.ok(problem.y + problem.height <= row.y + 1 && row.y + row.height <= footer.y + 1, `${width} × ${height}`);
@@ -125,14 +124,14 @@ test("a slider stays under the hand where its value is an error, and after that,
   }
 });
 
-test("no slider leads into errors by itself, and a count has whole steps", async t => {
+test("sliders never reach values that are errors, and counts have whole steps", async t => {
   const page = await open(await launch(t), await host(t, scene("let r = 1", "radius 1", "radius r / 2")));
   await until(page, "min", "0.1");
   await hand(page, await thumb(page), [-900, 0]);
   await rested(page);
   assert.equal(number(await text(page), "let r ="), 0.1);
   assert.equal(await page.textContent("#problems"), "No problems");
-  // By a drag in the text, too.
+  // The same for a drag in the text.
   await page.click("#undo");
   const box = await page.locator(".cm-line").first().getByText("1", { exact: true }).boundingBox();
   await page.keyboard.down("Alt");
@@ -150,7 +149,7 @@ test("no slider leads into errors by itself, and a count has whole steps", async
     await rested(page);
     assert.equal(number(await text(page), "let n ="), 5);
     assert.doesNotMatch(await page.textContent("#problems"), /^\d+ problem/);
-    // The slider of the number in the text, and its keys.
+    // The same for the slider in the text, and its keys.
     await page.locator(".cm-line").first().getByText("5", { exact: true }).click();
     await page.waitForSelector(".slider");
     assert.equal(await page.getAttribute(".slider input", "step"), "1");
@@ -160,7 +159,7 @@ test("no slider leads into errors by itself, and a count has whole steps", async
   }
 });
 
-test("what is played shows its button, and rests at an error, and by Escape", async t => {
+test("a playing number stays visible, and stops at an error or by Escape", async t => {
   const page = await open(await launch(t), await host(t, scene("let r = 1.4 // [0:0.1:4]", "radius 1", "radius 2 - r")));
   await page.waitForSelector(".slider-row");
   await page.click('[aria-label="Play r"]');
@@ -181,7 +180,7 @@ test("what is played shows its button, and rests at an error, and by Escape", as
   assert.equal(await page.textContent("#problems"), "No problems");
 });
 
-test("a value has few digits, and is never over its button, whatever its name and its width are", async t => {
+test("a slider's value has few digits and never covers its button", async t => {
   const lines = ["let tilt = 10deg // [0rad:0.1rad:1rad]", "let aNameThatIsLongerThanARowOfThePanelIsWide = 0.12345678901234567890123456789", "let far = 1 // [0:0.001:1e6]"];
   const browser = await launch(t);
   const started = await host(t, `${lines.join("\n")}\n${FIGURE}`);
@@ -202,7 +201,7 @@ test("a value has few digits, and is never over its button, whatever its name an
   }
 });
 
-test("a range behind what is no number is said to be none", async t => {
+test("a range behind a value that is not a number is reported", async t => {
   const page = await open(await launch(t), await host(t, scene("let r = 1 + 0 // [0:1:3]\nlet v = (1, 2, 3) // [1:2]", "radius 1", "radius r")));
   await page.waitForSelector(".slider-row p");
   const rows = await page.locator(".slider-row").evaluateAll(all => all.map(row => [row.innerText, row.querySelector("input").checkVisibility()]));

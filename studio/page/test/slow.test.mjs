@@ -1,16 +1,16 @@
-// A host that takes its time: what a hand does is done all the same, a sign says that it is waited
-// for, and every picture is finished in the end.
+// A slow host: drags are still carried out, a note says that the page waits, and every picture is
+// finished in the end.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { comparing, decoded, FIGURE, hand, handle, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
 const LATE = 1500;
-/** How many drags a slow one is behind the hand at most: the one that is asked, and the last one. */
+/** Maximum number of edits behind the pointer: the one requested, and the last one. */
 const BEHIND = 2 * LATE + 1200;
 const BALL = [455, 320];
 
-/** What is dragged, from where, and how far. */
+/** Drags: the tool or handle, the start, and the distance. */
 const DRAGS = {
   object: { from: page => onPage(page, BALL), way: [90, -40] },
   handle: { from: page => handle(page, "Ball: center"), way: [70, 30] },
@@ -22,7 +22,7 @@ async function dragged(page, { from, way, tool }) {
   await hand(page, await from(page), way);
 }
 
-test("where the hand lets go is where the handle comes, however late the host answers", async t => {
+test("a handle arrives where it was released, however late the host answers", async t => {
   const browser = await launch(t);
   const started = await host(t);
   const late = {};
@@ -39,10 +39,10 @@ test("where the hand lets go is where the handle comes, however late the host an
     await rested(page);
   }
   for (const [name, drag] of Object.entries(DRAGS)) for (const slow of ["pinhole/drag", "pinhole/frame", "pinhole/pick"]) {
-    // What is taken by its body is not selected before.
+    // An object dragged by its body is not selected before.
     await page.selectOption("#objects", { label: name === "object" ? "Crate (box)" : "Ball (sphere)" });
     await rested(page);
-    // A picture may take as long as it wants.
+    // The time of a picture does not matter.
     late[slow] = slow === "pinhole/frame" ? 4 * BEHIND : LATE;
     await dragged(page, drag);
     const begin = Date.now();
@@ -59,7 +59,7 @@ test("where the hand lets go is where the handle comes, however late the host an
   }
 });
 
-test("drags wait for those before them, and Escape takes back the one that waits", async t => {
+test("a drag waits for earlier ones, and Escape cancels a waiting one", async t => {
   const late = {};
   const page = await open(await launch(t), await host(t), { late });
   await page.selectOption("#objects", { label: "Ball (sphere)" });
@@ -73,7 +73,7 @@ test("drags wait for those before them, and Escape takes back the one that waits
   await rested(page);
   assert.equal(await text(page), FIGURE);
   late["pinhole/drag"] = LATE;
-  // One is let go, the next one is given up, and a third one follows.
+  // One drag is released, the next one is cancelled, and a third one follows.
   await dragged(page, DRAGS.handle);
   const given = await onPage(page, BALL);
   await hand(page, given, [50, 20], { hold: true });
@@ -94,14 +94,14 @@ test("drags wait for those before them, and Escape takes back the one that waits
   assert.equal(await text(page), FIGURE);
 });
 
-test("the last good picture of a text with errors is finished, too", async t => {
+test("the last good picture of a text with errors is finished", async t => {
   const scene = FIGURE.replace(/per_pixel\s+\d+/, "per_pixel 800");
   assert.notEqual(scene, FIGURE);
   const started = await host(t, FIGURE);
   const page = await open(await launch(t), started);
   await comparing(page);
   const expected = await decoded(page, rendered(started.folder, scene));
-  // From the coarse picture on it is wrong.
+  // After the coarse picture, the text has an error.
   await page.evaluate(() => addEventListener("pinhole-frame", () => (window.isBegun = true), { once: true }));
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
@@ -110,7 +110,7 @@ test("the last good picture of a text with errors is finished, too", async t => 
   await page.keyboard.type("x");
   await page.waitForFunction(() => /errors/.test(document.querySelector("#stale").textContent));
   assert.notEqual(await page.evaluate(() => document.querySelector("canvas").dataset.fineness), "final");
-  // More mistakes do not begin it anew, nor keep it.
+  // Further errors neither restart nor prevent it.
   await page.keyboard.type("y z", { delay: 100 });
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 60_000 });
   assert.equal(await pixels(page), expected);
@@ -120,7 +120,7 @@ test("the last good picture of a text with errors is finished, too", async t => 
   assert.ok(await page.isHidden("#stale"));
 });
 
-test("of very many objects the menu names what is selected at once, and places are said once", async t => {
+test("among very many objects the menu shows the selected one at once, and places once", async t => {
   const scene = "camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0) }\nsphere Ball for j < 40, i < 40 { center (40 - i, 0.2*j - 8.8, j - 34)  radius 0.4 }\n";
   const page = await open(await launch(t), await host(t, scene), { late: { "pinhole/objects": LATE } });
   await page.waitForFunction(() => document.querySelector("#objects").options.length === 1001);

@@ -1,4 +1,4 @@
-// The static page: the engine in a web worker, no host, no file. SITE is the folder that holds it.
+// The static page: the engine in a web worker, without host or file. SITE is its folder.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -9,7 +9,7 @@ import { andFinished, comparing, decoded, drag, FIGURE, finished, launch, link, 
 
 const skip = process.env.SITE === undefined ? "SITE names no folder" : false;
 
-test("the static page draws, drags, downloads and links without a request", { skip }, async t => {
+test("the static page renders, drags, downloads and links without a request", { skip }, async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-site-"));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
   const host = await site(t, process.env.SITE);
@@ -37,9 +37,9 @@ test("the static page draws, drags, downloads and links without a request", { sk
   assert.equal(await text(other), moved);
 });
 
-test("the static page opens a file of this computer", { skip }, async t => {
+test("the static page opens a local file", { skip }, async t => {
   const page = await open(await launch(t), await site(t, process.env.SITE));
-  // What browsers without access to files do.
+  // As in browsers without file pickers.
   await page.evaluate(() => (window.showOpenFilePicker = undefined));
   const scene = FIGURE.replace("radius 1", "radius 1.5");
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("summary:text('File')").then(() => page.click("#open"))]);
@@ -47,7 +47,7 @@ test("the static page opens a file of this computer", { skip }, async t => {
   assert.equal(await text(page), scene);
   assert.equal(await page.textContent("#file-name"), "other.scn");
   assert.equal(await page.textContent("#file-state"), "");
-  // The text that was there before comes back with its own file.
+  // Undo restores the earlier text with its own file.
   await page.click(".cm-content");
   await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
@@ -64,7 +64,7 @@ test("the static page opens a file of this computer", { skip }, async t => {
   assert.equal(await page.textContent("#file-name"), "other.scn");
 });
 
-test("an engine that takes long to load is waited for", { skip }, async t => {
+test("the static page waits for an engine that loads slowly", { skip }, async t => {
   const page = await (await launch(t)).newPage();
   await page.route("**/*.wasm", async route => {
     await new Promise(resolve => setTimeout(resolve, 5000));
@@ -75,7 +75,7 @@ test("an engine that takes long to load is waited for", { skip }, async t => {
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 30_000 });
 });
 
-test("the static page keeps what is written in the browser, and offers it after a reload", { skip }, async t => {
+test("the static page stores drafts in the browser and offers them after a reload", { skip }, async t => {
   const host = await site(t, process.env.SITE);
   const page = await open(await launch(t), host);
   page.on("dialog", dialog => dialog.accept());
@@ -87,11 +87,11 @@ test("the static page keeps what is written in the browser, and offers it after 
   assert.equal(await text(page), FIGURE);
   await andFinished(page, () => page.click("#draft-choices >> text=Restore"));
   assert.equal(await text(page), scene);
-  // It goes on as the one draft that it is.
+  // It continues as the same draft.
   await page.waitForTimeout(900);
   await page.reload();
   await page.waitForSelector("#draft-bar:not([hidden])");
-  // What is written before that is answered is kept beside it.
+  // Text changed before the answer is stored beside it.
   const other = FIGURE.replace("radius 1", "radius 0.5");
   await andFinished(page, () => type(page, other));
   await page.waitForTimeout(900);
@@ -106,7 +106,7 @@ test("the static page keeps what is written in the browser, and offers it after 
   await page.waitForTimeout(900);
   await page.reload();
   await finished(page);
-  // Who has looked at both, and taken them back, still has both, until they are forgotten.
+  // After restoring and undoing both, both are still offered, until they are deleted.
   await page.waitForSelector("#draft-bar:not([hidden])");
   for (let left = 2; left > 0; left--) {
     assert.equal(await page.locator("#draft-choices li").count(), left);

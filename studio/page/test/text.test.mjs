@@ -1,16 +1,16 @@
-// The text: what is wrong with it and how it is mended, what the server knows about it, and what it never becomes.
+// The text: problems and their fixes, completion, hints and sliders, and safe display.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { andFinished, comparing, decoded, FIGURE, finished, hand, host, launch, menu, open, pixels, rendered, rested, tab, text, type } from "./helpers.mjs";
 
-/** Waits until the text is this one. */
+/** Waits until the editor has a text. */
 async function until(page, expected) {
   for (let i = 0; i < 40 && (await text(page)) !== expected; i++) await page.waitForTimeout(25);
   assert.equal(await text(page), expected);
 }
 
-test("the picture is that of `pinhole render`, pixel by pixel", async t => {
+test("the picture equals that of `pinhole render` pixel by pixel", async t => {
   const { address, folder } = await host(t);
   const page = await open(await launch(t), { address });
   await comparing(page);
@@ -20,7 +20,7 @@ test("the picture is that of `pinhole render`, pixel by pixel", async t => {
   assert.equal(await pixels(page), await decoded(page, rendered(folder, other)));
 });
 
-test("the policy of the page forbids nothing that it does", async t => {
+test("the page works within its content security policy", async t => {
   const page = await open(await launch(t), await host(t));
   await page.waitForSelector(".swatch");
   await page.selectOption("#objects", { label: "Ball (sphere)" });
@@ -29,13 +29,13 @@ test("the policy of the page forbids nothing that it does", async t => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("a slip is mended by its fix, by mouse and by key", async t => {
+test("a fix is applied by mouse and by key", async t => {
   const page = await open(await launch(t), await host(t));
   const slip = FIGURE.replace("radius 1", "radios 1");
   await type(page, slip);
   await page.waitForSelector(".cm-lintRange-error");
   assert.equal(await page.textContent("#problems"), "1 problem");
-  // The hints come a little later, and may move the line.
+  // The hints appear a little later, and may move the line.
   await page.waitForTimeout(500);
   await page.hover(".cm-lintRange-error");
   await andFinished(page, () => page.click(".cm-tooltip-lint .cm-diagnosticAction"));
@@ -46,7 +46,7 @@ test("a slip is mended by its fix, by mouse and by key", async t => {
   assert.equal(await text(page), FIGURE);
 });
 
-test("while the text is broken the last good picture stays, and says so", async t => {
+test("while the text has errors the last good picture stays and is marked", async t => {
   const page = await open(await launch(t), await host(t));
   await comparing(page);
   const before = await pixels(page);
@@ -58,7 +58,7 @@ test("while the text is broken the last good picture stays, and says so", async 
   assert.ok(await page.isHidden("#stale"));
 });
 
-test("a text that is broken from the start says so, and is mended in the page", async t => {
+test("a text with errors from the start is reported and can be fixed in the page", async t => {
   const { address } = await host(t, FIGURE.replace("radius 1", "radios 1"));
   const page = await (await launch(t)).newPage();
   await page.goto(address);
@@ -89,17 +89,17 @@ test("completion, hints, swatches and format come from the server", async t => {
   assert.equal(await text(page), FIGURE);
   await type(page, "camera { eye (0, 1, 5) lookat (0, 0, 0) }\nsphere { center (0, 0, 0) ra");
   await page.waitForSelector(".cm-tooltip-autocomplete");
-  // Completion passes over keys that come too soon after it has opened.
+  // Completion ignores keys shortly after it has opened.
   await page.waitForTimeout(200);
   await page.keyboard.press("Enter");
   assert.match(await text(page), /center \(0, 0, 0\) radius 1$/);
-  // The value is selected, to be typed over.
+  // The placeholder is selected, to type over.
   await andFinished(page, () => page.keyboard.insertText("2 }"));
   await page.keyboard.press("Shift+Alt+f");
   await page.waitForFunction(() => /sphere \{ center \(0, 0, 0\) {2}radius 2 \}/.test(document.querySelector(".cm-content").innerText));
 });
 
-test("numbers are turned by a slider, by keys, and by a drag with the alt key, each in one step of undo", async t => {
+test("numbers change by slider, keys and Alt-drag, each in one undo step", async t => {
   const page = await open(await launch(t), await host(t));
   const radius = page.locator(".cm-line", { hasText: "sphere" }).getByText("1", { exact: true });
   await radius.click();
@@ -129,7 +129,7 @@ test("numbers are turned by a slider, by keys, and by a drag with the alt key, e
   }
 });
 
-test("a slider, a key and a drag stay where the number is right", async t => {
+test("a slider, a key and a drag keep a number within its limits", async t => {
   const page = await open(await launch(t), await host(t));
   for (const [line, number, least] of [["sphere", "1", "0.1"], ["sampler", "16", "1"], ["camera", "2.75", "0.01"]]) {
     const written = page.locator(".cm-line", { hasText: line === "camera" ? "2.75" : line }).getByText(number, { exact: true }).first();
@@ -137,7 +137,7 @@ test("a slider, a key and a drag stay where the number is right", async t => {
     const slider = page.locator(".slider input");
     await page.waitForFunction(least => document.querySelector(".slider input")?.min === least, least);
     const { x, y, width, height } = await slider.boundingBox();
-    // To the left end and beyond.
+    // Beyond the left end.
     await hand(page, [x + width / 2, y + height / 2], [-width, 0]);
     await rested(page);
     assert.ok(await page.isHidden("#stale"), await text(page));
@@ -156,7 +156,7 @@ test("a slider, a key and a drag stay where the number is right", async t => {
   }
 });
 
-test("braces that are typed are the braces that are there, and what is between them is indented", async t => {
+test("typed braces replace the closing ones, and the text between them is indented", async t => {
   const page = await open(await launch(t), await host(t));
   const typed = async (keys, expected) => {
     await type(page, "");
@@ -173,11 +173,11 @@ test("braces that are typed are the braces that are there, and what is between t
   await typed("sphere {\nradius 1 }", "sphere {\n  radius 1 }");
 });
 
-test("texts and names of a scene are never HTML", async t => {
+test("texts and names of a scene are never interpreted as HTML", async t => {
   const evil = `<img src=x onerror="window.hit=1"><script>window.hit=1</script>`;
   const scene = `// ${evil}\n${FIGURE.replace("let ball", `// ${evil}\nlet ball`)}`;
   const page = await open(await launch(t), await host(t, scene));
-  // Comments, words that are not known, and names that are too odd to be any come back in hovers and messages.
+  // Comments, unknown words and invalid names appear in hovers and messages.
   await type(page, `${scene}\nsphere ${evil} { center (0, 0, 0) colour '${evil}' }\nlet a = b${evil}`);
   await page.waitForSelector(".cm-lintRange-error");
   await page.click("#problems");
@@ -190,7 +190,7 @@ test("texts and names of a scene are never HTML", async t => {
   assert.equal(await page.locator("img:not(.cm-widgetBuffer), body script").count(), 0);
 });
 
-test("a key has its picture asked for before all else, also where it selects another object", async t => {
+test("a key press requests its picture first, also if it selects another object", async t => {
   const started = await host(t);
   const page = await (await launch(t)).newPage();
   const asked = [];
@@ -198,10 +198,10 @@ test("a key has its picture asked for before all else, also where it selects ano
   await page.goto(started.address);
   await finished(page);
   await page.locator(".cm-line").filter({ hasText: /^sphere/ }).click();
-  // At first it leads to where the line is wrapped.
+  // The first key goes to the end of the wrapped line.
   for (let i = 0; i < 2; i++) await page.keyboard.press("End");
   await rested(page);
-  // Behind its block the object is not selected any more, and before that space it is.
+  // Behind its block the object is no longer selected, and before the space it is.
   for (const key of ["Space", "Backspace"]) {
     asked.length = 0;
     await andFinished(page, () => page.keyboard.press(key));
@@ -211,7 +211,7 @@ test("a key has its picture asked for before all else, also where it selects ano
   }
 });
 
-test("what is said of a word never covers the tools above the text", async t => {
+test("a tooltip of a word never covers the tools above the text", async t => {
   const browser = await launch(t);
   const started = await host(t);
   for (const [width, height] of [[380, 760], [1280, 760], [1280, 330], [390, 560]]) {
@@ -226,14 +226,14 @@ test("what is said of a word never covers the tools above the text", async t => 
       await tooltip.waitFor();
       const [said, edge] = [await tooltip.boundingBox(), (await page.locator("#editor").boundingBox()).y];
       assert.ok(said.y >= edge && said.y + said.height <= height, `${word} at ${width} × ${height}: ${said.y}, ${said.height}`);
-      // All of it can be read.
+      // The whole tooltip can be read.
       assert.ok(await tooltip.evaluate(it => it.scrollHeight <= it.clientHeight + 1 || getComputedStyle(it).overflowY === "auto"));
     }
     await page.context().close();
   }
 });
 
-test("a hint on a word that is gone when it comes is none", async t => {
+test("a hover answer for a word that is gone is not shown", async t => {
   const started = await host(t);
   const page = await open(await launch(t), started);
   await page.waitForSelector(".hint");
@@ -249,7 +249,7 @@ test("a hint on a word that is gone when it comes is none", async t => {
   assert.deepEqual(page.complaints, []);
 });
 
-test("a click at a hint moves the cursor to its place", async t => {
+test("a click on a hint moves the cursor to its position", async t => {
   const page = await open(await launch(t), await host(t));
   await page.waitForSelector(".hint");
   await page.click(".cm-content", { position: { x: 2, y: 5 } });

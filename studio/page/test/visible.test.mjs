@@ -1,4 +1,4 @@
-// What cannot be seen, in names and messages, is made visible wherever it could be shown.
+// Invisible characters in names and messages are shown as codes everywhere.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { FIGURE, launch, open, serve, type } from "./helpers.mjs";
 const ALL = ["\u202e", "\u2066", "\u200f", "\u061c", "\u0085", "\u001b", "\u200b", "\u00ad", "\ufeff", "\u{e0041}", "\n", "\t", "\u2028"];
 const code = character => `\\u{${character.codePointAt(0).toString(16)}}`;
 
-test("a name is shown with its codes in all places", async t => {
+test("invisible characters of a name are shown as codes everywhere", async t => {
   const browser = await launch(t);
   for (const character of ALL) {
     const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
@@ -36,7 +36,7 @@ test("a name is shown with its codes in all places", async t => {
   }
 });
 
-test("no message shows what cannot be seen as it is", async t => {
+test("messages show invisible characters as codes", async t => {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
   const file = path.join(folder, "scene.scn");
   writeFileSync(file, FIGURE);
@@ -45,7 +45,7 @@ test("no message shows what cannot be seen as it is", async t => {
   const page = await open(await launch(t), started);
   await page.click("#problems");
   for (const character of ALL.slice(0, 10)) {
-    // Where it cannot stand, within what a message quotes, and in what a fix writes.
+    // Where it is an error, in a quotation of a message, and in the text of a fix.
     for (const wrong of [`${character} camera`, `sphere { radius "a${character}b" }`, `let a = (1, 2, "${character}`, `sphere { center [1, 2, /*${character}*/ 3] }`]) {
       const before = await page.textContent("#problem-list");
       await type(page, wrong);
@@ -56,7 +56,7 @@ test("no message shows what cannot be seen as it is", async t => {
   }
 });
 
-test("every text is set by what makes it visible", () => {
+test("the page's sources set every text through setText", () => {
   const folder = new URL("../src/", import.meta.url);
   const sources = readdirSync(folder).filter(name => name.endsWith(".ts") && name !== "visible.ts");
   const wrong = sources.filter(name => /(textContent|innerText) =(?!=)|createTextNode\((?!visible\()|message: diagnostic\.message/.test(readFileSync(new URL(name, folder), "utf8")));

@@ -1,5 +1,5 @@
-// A random walk of hands' steps: whatever is done in whatever order, the picture is that of the
-// text, and Undo leads back to the first text. STEPS is how many, SEED where they begin.
+// A random walk of actions: after any sequence, the picture is that of the text, and Undo restores
+// the first text. STEPS is the number of actions, SEED that of the walk.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -36,7 +36,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
     async slider() {
       await rested(page);
       const before = await text(page);
-      // A text without its definition has none.
+      // Without the definition, there is no slider.
       if (await page.isHidden(".slider-row input")) return;
       const { x, y, width, height } = await page.locator(".slider-row input").boundingBox();
       const isTaken = random() < 0.5;
@@ -66,7 +66,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
   for (let i = 0; i < STEPS; i++) {
     done.push(one(names));
     await steps[done.at(-1)]();
-    // Some come before the one before has come to its end.
+    // Some actions begin before the previous one has ended.
     if (random() < 0.6) await rested(page);
     else await page.waitForTimeout(150);
   }

@@ -10,7 +10,7 @@ mod transcripts;
 use crate::interrupt::interrupted;
 use crate::program::Folder;
 
-/// A small scene that sees something of everything.
+/// A small scene with a byte order mark, a Windows line end, a definition and each kind of block.
 const SCENE: &str = "\u{feff}// A ball on a floor.\r
 let h = 1
 image { width 64 height 36 }
@@ -20,14 +20,14 @@ sphere Ball { center (-1.6, h, 0) }
 checkerboard {}
 ";
 
-/// A folder with the scene in `a.scn`.
+/// Returns a folder with the scene in `a.scn`.
 fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_what_the_hard_cases_have_shown() {
+fn ctrl_c_keeps_the_hard_cases_measured_so_far() {
     let folder = folder();
     let line = "report --numerics --inputs 1000000000 --threads 1";
     let in_json = format!("{line} --format json");
@@ -38,7 +38,7 @@ fn ctrl_c_keeps_what_the_hard_cases_have_shown() {
     assert!((1..1_000_000_000).contains(&asked), "{asked}");
     let people = interrupted(&mut folder.command(line), 1500).errors;
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    // On a busy machine some cases have not been asked at all, and are not in the table.
+    // On a busy machine some cases are not reached at all, and are not in the table.
     let all = folder
         .done("report --numerics --inputs 1 --format json")
         .json();

@@ -1,9 +1,9 @@
-//! `render`: its crops, and what it leaves behind.
+//! `render`: crops and temporary files.
 
 use super::*;
 
 #[test]
-fn a_crop_has_the_pixels_of_the_whole() {
+fn a_crop_has_the_pixels_of_the_whole_picture() {
     let folder = folder();
     folder.done("render a.scn");
     folder.done("render a.scn -o b.png --crop 20,10,31,17");
@@ -14,7 +14,7 @@ fn a_crop_has_the_pixels_of_the_whole() {
 
 #[cfg(unix)]
 #[test]
-fn what_killed_runs_leave_is_removed_by_the_next_one() {
+fn temporary_files_of_killed_runs_are_removed_by_the_next_run() {
     let folder = folder();
     let line = "render a.scn -o a.exr --set image.width=640 --set image.height=480 --set sampler.method=random --set sampler.per_pixel=1";
     let is_writing = || {
@@ -32,7 +32,7 @@ fn what_killed_runs_leave_is_removed_by_the_next_one() {
         left += u32::from(is_writing());
     }
     assert!(left > 0, "no run was killed while it wrote");
-    // Of another file, which is not written here.
+    // A temporary file of another output stays.
     folder.write(".pinhole-b.exr-abcdef.tmp", "");
     folder.done(line);
     assert_eq!(

@@ -1,9 +1,9 @@
-//! `sheet`: where each picture stands, and what is refused.
+//! `sheet`: the position of each picture, and which arguments are refused.
 
 use super::*;
 
-/// A scene of another size, and one with errors.
-fn with_others() -> Folder {
+/// Returns a folder with further scenes: `b.scn` of another size, and `wrong.scn` with errors.
+fn folder_with_more_scenes() -> Folder {
     let folder = folder();
     folder.write(
         "b.scn",
@@ -14,8 +14,8 @@ fn with_others() -> Folder {
 }
 
 #[test]
-fn each_picture_of_a_sheet_is_that_of_its_scene() {
-    let folder = with_others();
+fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
+    let folder = folder_with_more_scenes();
     let open = |name: &str| {
         let picture = image::load_from_memory(&folder.read(name));
         picture.unwrap().to_rgb8()
@@ -36,11 +36,11 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
         let (w, h) = picture.dimensions();
         let part = image::imageops::crop_imm(&sheet, x, y, w, h).to_image();
         assert!(part == *picture, "at {x}, {y}");
-        // Its name.
+        // The name below the picture has dark pixels.
         let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
         assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
     }
-    // A warning is told once, however often the scene is read.
+    // A warning is printed once, however often the scene is read.
     folder.write(
         "w.scn",
         "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere for i < 1 { center (0, 0, 0) }",
@@ -51,23 +51,24 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
         .matches("warning[pinhole::unused_index]")
         .count();
     assert_eq!((said.status, told), (0, 1), "{}", said.errors);
-    // That is for `check` to say: of a ride past objects it would be said of every scene.
+    // Only `check` reports objects outside the picture: in a sweep of a camera past objects, the
+    // warning would appear for every scene.
     for (command, told) in [("check", 1), ("render", 0), ("inspect", 0), ("probe", 0)] {
         let rest = if command == "probe" { " 1 1" } else { "" };
         let said = folder.run(&format!("{command} w.scn{rest}"));
         let found = said.errors.matches("pinhole::outside_picture").count();
         assert_eq!(found.min(1), told, "{command}: {}", said.errors);
     }
-    // Rows of two scenes have their names: the pictures of equal ones are equal, and no more.
+    // Rows of two scenes show their names: equal scenes have equal pictures, but different labels.
     folder.write("other.scn", folder.read("b.scn"));
     folder.done("sheet b.scn other.scn --columns 2 --sweep S.radius=1..2/2 -o rows.png");
     let rows = open("rows.png");
     let row = |y, height| image::imageops::crop_imm(&rows, 12, y, 30, height).to_image();
     assert!(row(12, 40) == row(86, 40) && row(52, 22) != row(126, 22));
-    // There is no room for a letter.
+    // A picture of one pixel has no room for a letter of its name.
     folder.done("sheet b.scn --set image.width=1 --set image.height=1 -o dot.png");
     assert_eq!(open("dot.png").dimensions(), (25, 47));
-    // Smaller ones, as a scene of that size has them; and what a sweep is made of.
+    // Pictures of a smaller width equal those of a scene of that size, for each value of a sweep.
     folder.done("sheet b.scn --width 20 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
     let swept = open("swept.png");
     for (i, x, y) in [
@@ -84,8 +85,8 @@ fn each_picture_of_a_sheet_is_that_of_its_scene() {
 }
 
 #[test]
-fn what_is_no_sheet_is_refused_and_nothing_is_written() {
-    let folder = with_others();
+fn invalid_sheet_arguments_are_refused_and_nothing_is_written() {
+    let folder = folder_with_more_scenes();
     let before = folder.names();
     for (line, status, words) in [
         ("sheet a.scn", 2, "--output"),

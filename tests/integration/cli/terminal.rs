@@ -1,4 +1,4 @@
-//! What reaches a terminal of texts that come from elsewhere.
+//! Which characters of foreign texts reach a terminal.
 
 use std::process::Stdio;
 
@@ -6,45 +6,45 @@ use pinhole::film::{self, Film, Recipe};
 
 use super::{SCENE, folder};
 #[cfg(unix)]
-use crate::program::Said;
+use crate::program::Outcome;
 
-/// It would set the window's title, colour the text, and turn it round.
-const EVIL: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
+/// Control characters that would set the window's title, colour the text and reverse its direction.
+const CONTROLS: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
 
-/// The same as it may be shown, as far as it is.
-fn assert_tame(errors: &str, what: &str) {
+/// Asserts that a message shows the control characters as escapes only.
+fn assert_escaped(errors: &str, what: &str) {
     assert!(errors.contains("\\u{202e}txet"), "{what}: {errors:?}");
-    let is_evil = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
-    assert!(!errors.contains(is_evil), "{what}: {errors:?}");
+    let is_control = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
+    assert!(!errors.contains(is_control), "{what}: {errors:?}");
 }
 
 #[test]
-fn nothing_acts_on_it() {
+fn messages_escape_control_characters_of_texts_names_and_pictures() {
     let folder = folder();
-    let text = format!("let a = \"{EVIL}\"\n/* {EVIL} */ sphere {{ radius {EVIL} }}\n");
+    let text = format!("let a = \"{CONTROLS}\"\n/* {CONTROLS} */ sphere {{ radius {CONTROLS} }}\n");
     folder.write("text.scn", text);
-    let spaced = format!("sphere  {{ center (0, 1, 0) }} // {EVIL}\n");
+    let spaced = format!("sphere  {{ center (0, 1, 0) }} // {CONTROLS}\n");
     folder.write("spaced.scn", spaced);
-    let name = format!("'{}.scn'", EVIL.replace('/', ""));
+    let name = format!("'{}.scn'", CONTROLS.replace('/', ""));
     for line in [
         "check text.scn",
         "fmt --check text.scn",
         "fmt --check spaced.scn",
-        &format!("check a.scn --set 'Ball.radius={EVIL}'"),
-        &format!("render a.scn '--crop={EVIL}'"),
+        &format!("check a.scn --set 'Ball.radius={CONTROLS}'"),
+        &format!("render a.scn '--crop={CONTROLS}'"),
         &format!("render {name}"),
-        &format!("render a.scn -o '{EVIL}.png/x.png'"),
+        &format!("render a.scn -o '{CONTROLS}.png/x.png'"),
         &format!("diff {name} a.scn"),
         &format!("explain {name}"),
     ] {
         let said = folder.run(line);
         assert_ne!(said.status, 0, "{line:?}");
-        assert_tame(&said.errors, line);
+        assert_escaped(&said.errors, line);
     }
-    // Of what a picture carries, too.
+    // The same holds for the recipe in a picture.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
-        overrides: vec![format!("Ball.radius={EVIL}")],
+        overrides: vec![format!("Ball.radius={CONTROLS}")],
         crop: None,
     };
     let film = Film::<[u8; 3]>::new(1, 1).unwrap();
@@ -52,12 +52,12 @@ fn nothing_acts_on_it() {
     film::write_png(&film, Some(&recipe), &mut picture).unwrap();
     let said = folder.run_reading("check -", picture);
     assert_ne!(said.status, 0);
-    assert_tame(&said.errors, "a picture");
+    assert_escaped(&said.errors, "a picture");
 }
 
 #[cfg(unix)]
 #[test]
-fn output_that_nobody_can_take_is_said_and_one_that_nobody_wants_is_not() {
+fn a_full_device_is_an_error_and_a_closed_pipe_is_not() {
     let folder = folder();
     folder.write("bad.scn", "x y z ".repeat(5000));
     for (line, status) in [
@@ -70,13 +70,13 @@ fn output_that_nobody_can_take_is_said_and_one_that_nobody_wants_is_not() {
     ] {
         let to = |output: Stdio| {
             let output = folder.command(line).stdout(output).output().unwrap();
-            Said::from(output)
+            Outcome::from(output)
         };
         let full = std::fs::File::options().write(true).open("/dev/full");
         let said = to(full.unwrap().into());
         assert_eq!(said.status, 2, "{line}");
         assert!(said.errors.contains("cannot write to standard output"));
-        // As `head` does.
+        // The reader closes the pipe, as `head` does.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let said = to(writer.into());

@@ -1,16 +1,16 @@
-//! The command line as one types it: `tests/cli` has what a shell is told, `$`, and below it what
-//! comes of it: what is printed, `<`, what is told to people, `!`, and the status if it is not 0,
-//! `=`. A last line that does not end has a `\` behind it. A transcript has a folder of its own,
-//! with the scene in `a.scn`. `#` begins a remark.
+//! Command lines with their results, in `tests/cli`: a shell command, `$`, and below it the
+//! standard output, `<`, the standard error, `!`, and the exit status unless it is 0, `=`. A last
+//! line without a line end has a `\` behind it. Each transcript runs in a folder of its own, with
+//! the scene in `a.scn`. `#` begins a remark.
 //!
-//! `PINHOLE_BLESS=1 cargo test` writes what comes of it anew.
+//! `PINHOLE_BLESS=1 cargo test` writes the results anew.
 
 use std::{fs, path::Path, thread};
 
 use super::folder;
 use crate::{program::names, snapshot::assert_file};
 
-fn held(transcript: &str) -> String {
+fn replayed(transcript: &str) -> String {
     let folder = folder();
     let mut real = String::new();
     for line in transcript
@@ -41,7 +41,7 @@ fn held(transcript: &str) -> String {
 }
 
 #[test]
-fn commands_do_what_stands_there() {
+fn cli_transcripts_match_the_program() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli");
     let is_there = |name: &String| match name.as_str() {
         "report.txt" => cfg!(feature = "report"),
@@ -56,7 +56,7 @@ fn commands_do_what_stands_there() {
             let path = folder.join(name);
             scope.spawn(move || {
                 let transcript = fs::read_to_string(&path).expect("a transcript");
-                assert_file(&path, &held(&transcript));
+                assert_file(&path, &replayed(&transcript));
             });
         }
     });

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
 
-/// A small scene, of which mistakes are found at once.
+/// A small scene whose mistakes are found soon.
 const SCENE: &str = "image { width 60 height 40 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -18,7 +18,7 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// A folder with the scene in `a.scn` and its exact picture in `a.png`.
+/// Returns a folder with the scene in `a.scn` and its exact picture in `a.png`.
 fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     render(&folder, "-o a.png");
@@ -29,7 +29,7 @@ fn render(folder: &Folder, arguments: &str) {
     folder.told(&format!("render a.scn {arguments}"), 0);
 }
 
-/// What is said to programs.
+/// Returns the JSON form of a comparison.
 fn json(folder: &Folder, compared: &str) -> Value {
     let said = folder.run(&format!("diff {compared} --format json"));
     assert_eq!(said.errors, "");
@@ -44,7 +44,8 @@ fn save(folder: &Folder, name: &str, picture: impl Into<DynamicImage>) {
     picture.into().save(folder.path(name)).unwrap();
 }
 
-/// What is compared, the status, and what is told: its start, or a part of it after dots.
+/// Checks rows of what is compared, the exit status, and the start of the message, or a part of it
+/// behind `…`.
 #[track_caller]
 fn compare(folder: &Folder, table: &'static str) {
     for [compared, status, words] in rows(table) {
@@ -86,7 +87,7 @@ rmse      0.00772 in linear light, where white is 1
 }
 
 #[test]
-fn what_a_file_holds_is_compared_not_how() {
+fn pictures_are_compared_by_content_across_formats() {
     let folder = folder();
     render(&folder, "-o a.exr");
     let picture = open(&folder, "a.png");
@@ -119,7 +120,7 @@ fn what_a_file_holds_is_compared_not_how() {
 }
 
 #[test]
-fn another_curve_than_srgb_is_told() {
+fn a_transfer_curve_other_than_srgb_gives_a_warning() {
     let folder = Folder::with([]);
     // An ICC profile with one tag.
     let profile = |curve: &[u8]| {
@@ -166,7 +167,7 @@ fn standard_input_is_a_picture_or_a_scene() {
 }
 
 #[test]
-fn sizes_that_differ_are_named() {
+fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
     // A part of a larger picture than the scene's.
@@ -188,7 +189,7 @@ fn sizes_that_differ_are_named() {
 }
 
 #[test]
-fn a_heat_map_is_a_picture_of_the_size() {
+fn a_heat_map_has_the_size_of_the_picture() {
     let folder = folder();
     render(&folder, "-o b.png --set Ball.color=red");
     compare(
@@ -223,7 +224,7 @@ fn pixels_that_cannot_be_judged_are_counted() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_trouble() {
+fn unreadable_or_mismatched_inputs_are_errors() {
     let folder = folder();
     folder.write("text.png", "no picture");
     folder.write("empty.EXR", "");

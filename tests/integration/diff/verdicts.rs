@@ -1,4 +1,4 @@
-//! A picture judged by a scene: right, right but for noise, or wrong, and by which mistake.
+//! Verdicts on a picture of a scene: right, right except for noise, or wrong, and by which mistake.
 
 use std::fs;
 
@@ -10,8 +10,8 @@ use crate::{program::Folder, table::rows};
 
 const RANDOM: &str = "--set sampler.method=random --set sampler.per_pixel=16";
 
-/// How a picture is rendered, how it is compared with the scene, the exit status, and how the first
-/// line starts.
+/// Rows of the arguments of `render`, the arguments of `diff`, the exit status, and the start of
+/// the first line.
 const VERDICTS: &str = "
     -> -> 0 -> right: equal to the exact picture
     -> --strict -> 0 -> right: no pixel differs by more than 0.5 steps
@@ -26,7 +26,7 @@ const VERDICTS: &str = "
 ";
 
 #[test]
-fn the_verdict_comes_first() {
+fn diff_prints_the_verdict_first() {
     let folder = folder();
     for [rendered, compared, status, first] in rows(VERDICTS) {
         for name in ["b.png", "b.exr"] {
@@ -34,7 +34,7 @@ fn the_verdict_comes_first() {
             render(&folder, &format!("-o {name} {rendered}"));
             let compared = format!("diff {name} a.scn {compared}");
             let text = folder.told(&compared, status.parse().unwrap());
-            // A float has no rounding of half a step.
+            // Floats are not rounded to steps, so no half step is named.
             let first = first.strip_suffix(" than 0.5 steps").unwrap_or(first);
             assert!(text.starts_with(first), "{rendered} {compared}: {text}");
         }
@@ -42,7 +42,7 @@ fn the_verdict_comes_first() {
 }
 
 #[test]
-fn a_mistake_is_what_can_be_set() {
+fn a_found_mistake_is_given_as_a_set_argument() {
     let folder = folder();
     let set = "Ball.radius=1.5";
     render(&folder, &format!("-o b.png --set {set}"));
@@ -90,7 +90,7 @@ fn a_mistake_is_what_can_be_set() {
 }
 
 #[test]
-fn what_jpeg_changes_is_not_wrong() {
+fn jpeg_compression_is_not_reported_as_wrong() {
     let folder = folder();
     for (arguments, status) in [("", 0), (RANDOM, 0), ("--set Ball.radius=1.5", 1)] {
         render(&folder, &format!("-o b.png {arguments}"));
@@ -105,8 +105,8 @@ fn what_jpeg_changes_is_not_wrong() {
 }
 
 #[test]
-fn a_mistake_is_found_where_every_pixel_shows_several_colours() {
-    // Behind the box there are squares of about a pixel.
+fn a_mistake_is_found_in_front_of_pixel_sized_squares() {
+    // Behind the box the squares have about the size of a pixel.
     let scene = "image { width 96 height 64 }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -120,7 +120,7 @@ checkerboard { square 0.3 }
 }
 
 #[test]
-fn objects_are_told_by_the_pixels() {
+fn objects_are_judged_by_their_own_pixels() {
     let folder = folder();
     let all_are = |found: &Value, right: bool| {
         for object in found["objects"].as_array().unwrap() {
@@ -131,7 +131,7 @@ fn objects_are_told_by_the_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // A blot on the sky.
+    // A few wrong pixels in the background.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
@@ -143,7 +143,7 @@ fn objects_are_told_by_the_pixels() {
 }
 
 #[test]
-fn no_known_mistake_explains_a_blot() {
+fn a_scribbled_picture_is_wrong_and_not_noise() {
     let folder = folder();
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y, pixel) in picture.enumerate_pixels_mut() {
@@ -157,19 +157,18 @@ fn no_known_mistake_explains_a_blot() {
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
 }
 
-/// Changes a pixel of a row.
+/// Function that changes a pixel, given its row.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// What is plain to see in a picture, and what is said of it.
+/// Identifiers of obvious defects with the change of a pixel that makes each of them.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
     ("transparent", |_, _| Rgba([0; 4])),
     ("alpha", |Rgba([r, g, b, _]), _| Rgba([r, g, b, 254])),
     ("alpha", |Rgba([r, g, b, _]), _| Rgba([r, g, b, 1])),
-    ("rows_missing", |pixel, y| match y < 30 {
-        true => pixel,
-        false => Rgba([0, 0, 0, 255]),
+    ("rows_missing", |pixel, y| {
+        if y < 30 { pixel } else { Rgba([0, 0, 0, 255]) }
     }),
     ("inverted", |Rgba([r, g, b, a]), _| {
         Rgba([255 - r, 255 - g, 255 - b, a])
@@ -177,7 +176,7 @@ const PLAIN: [(&str, Change); 7] = [
 ];
 
 #[test]
-fn what_is_plain_to_see_is_said_and_nothing_else() {
+fn an_obvious_defect_is_the_only_mistake_reported() {
     let folder = folder();
     render(&folder, "-o blue.png --set image.background=navy");
     let blue = "b.png a.scn --set image.background=navy";
@@ -192,7 +191,7 @@ fn what_is_plain_to_see_is_said_and_nothing_else() {
         let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(ids, [id], "{found:#}");
     }
-    // Of a background that is all there is the camera tells.
+    // If only background is seen, the camera is the mistake.
     render(
         &folder,
         "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",
@@ -202,7 +201,7 @@ fn what_is_plain_to_see_is_said_and_nothing_else() {
 }
 
 #[test]
-fn where_work_ends_nothing_is_said_for_certain() {
+fn exhausted_effort_gives_an_unknown_verdict() {
     let folder = folder();
     render(
         &folder,

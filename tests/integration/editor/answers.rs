@@ -1,4 +1,4 @@
-//! The answers that `tests/editor` has; `$0` is the cursor.
+//! Editor answers, compared with the files in `tests/editor`; `$0` is the cursor.
 
 use glam::dvec2;
 use pinhole::{
@@ -18,14 +18,14 @@ use crate::{
     snapshot::assert_answers,
 };
 
-/// What stands before a text in which an object is dragged.
+/// Start of a text in which an object is dragged.
 const LEVEL: &str =
     "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
 
-/// What stands before a camera that is moved.
+/// Start of a text in which the camera is moved.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
-/// The labels of all that is offered, by their kinds.
+/// Returns the labels of completions, grouped by kind.
 fn offered(all: &[Completion]) -> String {
     let kind = |completion: &Completion| {
         let kind = format!("{:?}", completion.kind);
@@ -38,7 +38,7 @@ fn offered(all: &[Completion]) -> String {
     groups.collect::<Vec<_>>().join(" | ")
 }
 
-/// The text with a completion, where `‹›` are around what is typed over.
+/// Returns the text with a completion inserted, and its placeholders in `‹›`.
 pub fn inserted(text: &str, completion: &Completion) -> String {
     let insert = completion.insert.iter().map(|piece| match piece {
         Piece::Text(text) => text.clone(),
@@ -49,8 +49,8 @@ pub fn inserted(text: &str, completion: &Completion) -> String {
     text
 }
 
-/// The text with `‹›` around each use of what is at the cursor, and `«»` around its definition; or
-/// why it has no other name.
+/// Returns the text with `‹›` around each use of the name at the cursor, and `«»` around its
+/// definition; or the reason why the name cannot be changed.
 fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     let mut text = analysis.text().to_owned();
     let found = occurrences(analysis, at);
@@ -69,7 +69,7 @@ fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     renamable(analysis, at).map_or_else(|why| why, |_| text)
 }
 
-/// The label of a call with the active parameter in `‹›`.
+/// Returns the label of a call with the active parameter in `‹›`.
 fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     let found = signature(analysis, at)?;
     let mut label = found.label;
@@ -80,7 +80,7 @@ fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     Some(label)
 }
 
-/// The definitions, blocks and fields.
+/// Returns the definitions and blocks, with the fields of each block.
 fn outline(symbols: &[Symbol]) -> String {
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     let lines = symbols.iter().map(|symbol| {
@@ -90,7 +90,7 @@ fn outline(symbols: &[Symbol]) -> String {
     lines.collect::<Vec<_>>().join(" | ")
 }
 
-/// The text after a handle was moved; or why it cannot be.
+/// Returns the text after a drag of a handle, or the reason why the drag is refused.
 pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     let (sources, scene) = (sources(text), read(text));
     let alone = alone(&sources, &scene, moved.object);
@@ -98,8 +98,8 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// The text behind a start of it, of which a handle was dragged as the words say: its name, the
-/// points, and along what.
+/// Applies a drag to a text behind a fixed start, and returns the rest of the text. The words are
+/// the handle, the coordinates of one or two points, and the axis or plane of the movement.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
@@ -121,7 +121,8 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
     }
 }
 
-/// What is answered to a question. The text that [`Color`]s are picked for stands in brackets.
+/// Answers a question about a text. Brackets mark the span of the question, such as that of a
+/// [`Color`] to be replaced.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);
@@ -209,6 +210,6 @@ fn answer(question: &str, text: &str, other: &str) -> String {
 }
 
 #[test]
-fn answers_are_as_they_stand_there() {
+fn editor_answers_match_the_files_in_tests_editor() {
     assert_answers("tests/editor", answer);
 }

@@ -1,4 +1,4 @@
-//! Random drags: what is dragged is seen where it was dragged to, and no text is broken.
+//! Random drags: a handle appears where it was dragged to, and no drag breaks a text.
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
@@ -15,7 +15,7 @@ use proptest::{
 use super::answers::dragged;
 use crate::scenes::{read, sources};
 
-/// A scene with one object in front of the camera.
+/// Generates a scene with one object in front of the camera.
 fn any_scene() -> impl Strategy<Value = String> {
     let vectors = uniform4(uniform3(-4.0..4.0));
     let turns = uniform2(-200.0..200.0);
@@ -38,7 +38,7 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// A point in the picture or near to it, or a foolish one, in parts of the picture.
+/// Generates a point in or near the picture, or a very distant one, in fractions of the picture.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())
@@ -51,7 +51,7 @@ fn point_of(scene: &Scene, (x, y): (f64, f64)) -> DVec2 {
     )
 }
 
-/// The handles of the first object.
+/// Returns the names of the first object's handles.
 fn handles(scene: &Scene) -> Vec<&'static str> {
     let objects = overlays(scene, &Shown::First(None)).objects;
     objects[0].handles.iter().map(|(name, _)| *name).collect()
@@ -61,9 +61,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Where a handle of the first object is in the world, but for those that depend on the picture; of
-/// a board as high as it is where another board, `held`, is met by the view axis.
-fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
+/// Returns the position in the world of a handle of the first object. Handles whose position
+/// depends on the picture have that of their object. The position on a board is the point at the
+/// board's height above or below the point where the view axis meets the board of `held`.
+fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
         (Shape::Box(Cuboid { min, max, .. }), _) => {
@@ -87,8 +88,8 @@ fn place(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     }
 }
 
-/// The direction in the picture in which a point is seen to move that moves along an axis; of
-/// length 1.
+/// Returns the unit direction in the picture in which a point moves that moves along an axis of the
+/// world.
 fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
@@ -97,7 +98,8 @@ fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
-/// The axis along which a handle moves; none if it moves in a plane, or in its own way.
+/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane, or in its
+/// own way.
 fn axis_of(handle: &str, word: &str) -> Option<usize> {
     let axis = match handle {
         "y" => "y",
@@ -107,7 +109,8 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
     "xyz".find(axis).filter(|_| !axis.is_empty())
 }
 
-/// The tip of a triangle's normal is seen at a point, or it is the nearest to the ray there.
+/// Returns whether the tip of a triangle's normal is seen at a point of the picture, or is the
+/// nearest point to the ray through it.
 fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let camera = camera_of(scene);
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
@@ -117,21 +120,22 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
     let ray = (ray / ray.abs().max_element()).normalize();
     let center = triangle.centroid - camera.eye;
     let foot = ray * center.dot(ray) - center;
-    let goal = match foot.length() < triangle.sides.z {
-        true => to,
-        false => seen(
+    let goal = if foot.length() < triangle.sides.z {
+        to
+    } else {
+        project(
             scene,
             triangle.centroid + foot.normalize() * triangle.sides.z,
-        ),
+        )
     };
     let tip = triangle.centroid + triangle.normal.normalize() * triangle.sides.z;
-    seen(scene, tip).distance(goal) <= 0.5 + 1e-6
+    project(scene, tip).distance(goal) <= 0.5 + 1e-6
 }
 
-/// The apex is seen in the direction of a point, from the centroid; or the two are too near to each
-/// other to tell.
+/// Returns whether the apex is seen in the direction of a point from the centroid, or too near to
+/// the centroid to tell.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
-    let middle = seen(scene, triangle.centroid);
+    let middle = project(scene, triangle.centroid);
     let shown = overlays(scene, &Shown::First(None));
     let (_, apex) = shown.objects[0].handles[2];
     let (wanted, found) = (to - middle, apex.expect("it is seen") - middle);
@@ -141,8 +145,8 @@ fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> b
         || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
 }
 
-/// Where a point is seen, by the numbers of `pinhole inspect`.
-fn seen(scene: &Scene, point: DVec3) -> DVec2 {
+/// Projects a point of the world to the picture, with the camera facts of `pinhole inspect`.
+fn project(scene: &Scene, point: DVec3) -> DVec2 {
     let camera = inspect(scene, &sources("").file).camera;
     let from_eye = point - camera.eye;
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
@@ -153,16 +157,16 @@ fn seen(scene: &Scene, point: DVec3) -> DVec2 {
     )
 }
 
-fn near(a: DVec2, b: DVec2, text: &str) {
+fn assert_near(a: DVec2, b: DVec2, text: &str) {
     assert!(a.distance(b) <= 0.5 + 1e-6, "{a} is not near {b}\n{text}");
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// What is dragged is seen where it was dragged to, or there is a reason.
+    /// A drag moves the handle to the pointer, or is refused with a reason.
     #[test]
-    fn a_handle_is_seen_where_it_was_dragged_to(
+    fn a_dragged_handle_appears_at_the_pointer(
         text in any_scene(), to in any_point(), which in 0..7usize, word in prop_oneof![Just(""), Just("x"), Just("y"), Just("z"), Just("floor")],
     ) {
         let reading = scene::read(&sources(&text));
@@ -174,15 +178,16 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The camera may be tied to what was moved.
+        // The camera may depend on the moved value by a shared name.
         after.camera = before.camera;
-        let place = place(&after, handle, &before);
-        let found = seen(&after, place);
+        let place = handle_position(&after, handle, &before);
+        let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // Half a pixel inwards the sphere is hit, and half a pixel outwards it is not.
-                // Where the centre is behind the eye, it is inwards to go away from where it would be seen.
+                // The sphere is hit three quarters of a pixel inside the outline, and not as far
+                // outside. Where the centre is behind the eye, inside is away from the point where
+                // it would be seen.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -200,8 +205,9 @@ proptest! {
                 prop_assert!(is_right, "{}", message);
             }
             _ => match axis_of(handle, word) {
-                None => near(found, to, &message),
-                // As near as it can come: what is left lies across the line that it moves in.
+                None => assert_near(found, to, &message),
+                // The handle comes as near as it can: the rest of the distance is across its line
+                // of movement.
                 Some(axis) => {
                     let left = (to - found).dot(direction_seen(&after, place, axis));
                     prop_assert!(left.abs() <= 0.5 + 1e-6, "{}: {} left", message, left);
@@ -210,9 +216,9 @@ proptest! {
         }
     }
 
-    /// What the pointer does to the camera never breaks a text.
+    /// A camera drag never breaks a text.
     #[test]
-    fn a_camera_is_moved_or_there_is_a_reason(
+    fn a_camera_drag_keeps_objects_and_image_and_an_orbit_its_distance(
         text in any_scene(), from in any_point(), to in any_point(),
         handle in prop_oneof![Just("orbit"), Just("pan"), Just("dolly"), Just("roll"), Just("look"), Just("view_distance")],
     ) {
@@ -233,8 +239,8 @@ proptest! {
     }
 }
 
-/// Drags a handle again and again, and returns the object after each time.
-fn drags(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
+/// Drags a handle five times, and returns the object before and after each drag.
+fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
     let view = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }";
     let mut text = format!("{block} {view}");
     let mut shapes = vec![read(&text).objects[0].shape];
@@ -261,16 +267,16 @@ fn drags(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // A face stops before the one that is opposite.
+        // A face stops before the opposite one.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
     shapes
 }
 
-/// What is not held stays where it is, to the last digit.
+/// Coordinates that are not held keep their values, except for roundings below 1e-12.
 #[test]
-fn what_is_not_held_stays() {
+fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
     let steps = [None, Some(8.0), Some(3.0), Some(1.0)];
     let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
     let boxes = [
@@ -285,11 +291,11 @@ fn what_is_not_held_stays() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // A name that the center and the size share has both of them change.
+        // The center and the size share a name here, so both change.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }
-        let shapes = drags(text, handle, step);
+        let shapes = drag_repeatedly(text, handle, step);
         assert!(
             shapes.windows(2).any(|pair| pair[0] != pair[1]),
             "{text} {handle}"
@@ -314,7 +320,7 @@ fn what_is_not_held_stays() {
         }
     }
     for step in steps {
-        let shapes = drags(
+        let shapes = drag_repeatedly(
             "triangle { v0 (0, 0.25, 0) v1 (1.125, 0, 0.5) v2 (0, 1, 0.333) }",
             "center",
             step,
@@ -336,7 +342,7 @@ fn what_is_not_held_stays() {
         assert!(shapes[0] != shapes[5]);
     }
 
-    // What the camera looks along stays when it is panned.
+    // A pan keeps the vector from the eye to the point that the camera looks at.
     let text =
         "sphere { center (0, 0, 0) } camera { eye (3, 3.55, 8) lookat (0.2, 0.8, 0.125) d 2.75 }";
     let ahead = |text: &str| {

@@ -1,5 +1,5 @@
-//! No text that somebody types makes a reading or an answer fail: beginnings of every example,
-//! asked at their ends.
+//! Incomplete and edited texts never make a reading or an editor answer fail: prefixes of every
+//! example are asked at their ends.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
@@ -17,13 +17,13 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-/// Whether a span is one of whole characters.
+/// Returns whether a span begins and ends between characters.
 fn is_place(text: &str, span: Span) -> bool {
     text.get(span.range()).is_some()
 }
 
-/// Asks everything there is at a place, and looks at what any client relies on.
-fn ask(analysis: &Analysis<'_>, at: usize) {
+/// Asks every question about an offset, and checks what every client relies on.
+fn ask_at(analysis: &Analysis<'_>, at: usize) {
     let text = analysis.text();
     for completion in completions(analysis, at) {
         let span = completion.replaces;
@@ -44,12 +44,12 @@ fn ask(analysis: &Analysis<'_>, at: usize) {
     }
 }
 
-/// Asks everything there is about the whole text.
-fn ask_of_all(analysis: &Analysis<'_>) {
+/// Asks every question about the whole text, and checks what every client relies on.
+fn ask_about_all(analysis: &Analysis<'_>) {
     let text = analysis.text();
     let hints = hints(analysis, 0..text.len());
     for hint in hints {
-        // Within a line, it would push apart what the formatter puts under one another.
+        // A hint within a line would misalign the columns of the formatter.
         let rest = text.get(hint.at..).expect("a place between characters");
         let is_end = rest
             .lines()
@@ -82,27 +82,27 @@ fn ask_of_all(analysis: &Analysis<'_>) {
     }
 }
 
-sampled_and_exhaustive!(every_example_gets_its_answers_while_it_is_written);
+sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Its beginnings, asked at their ends; the whole, asked at every place; and it without a byte, or
-/// with a piece cut out, as when a line is being rewritten. Examples have much in common: of each
-/// it is every other place, of one example the odd ones and of the next the even ones.
-fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
+/// Asks the prefixes of each example at their ends, the whole example at every offset, and the
+/// example with a byte or a piece removed, as when a line is being rewritten. Examples have much in
+/// common, so each is asked at every other offset, alternately the even and the odd ones.
+fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);
         let whole = Analysis::new(&whole);
-        ask_of_all(&whole);
+        ask_about_all(&whole);
         let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
         let places = starts.iter().copied().chain([text.len()]);
         for at in places.skip(index % 2).step_by(2) {
-            ask(&whole, at);
+            ask_at(&whole, at);
             let beginning = &text[..at];
             robustness::read(beginning);
-            parts::check(beginning, 1, &[]);
+            parts::assert_same_in_parts(beginning, 1, &[]);
             let beginning = sources(beginning);
             let analysis = Analysis::new(&beginning);
-            ask(&analysis, at);
-            ask_of_all(&analysis);
+            ask_at(&analysis, at);
+            ask_about_all(&analysis);
         }
         for at in (index % 2..text.len()).step_by(2) {
             let mut bytes = text.clone().into_bytes();
@@ -112,14 +112,14 @@ fn every_example_gets_its_answers_while_it_is_written(effort: Effort) {
         for window in starts.windows(9).step_by(5) {
             let cut = sources(&format!("{}{}", &text[..window[0]], &text[window[8]..]));
             let analysis = Analysis::new(&cut);
-            ask(&analysis, window[0]);
-            ask_of_all(&analysis);
+            ask_at(&analysis, window[0]);
+            ask_about_all(&analysis);
         }
     }
 }
 
 #[test]
-fn odd_texts_get_their_answers() {
+fn editor_requests_survive_malformed_texts() {
     let texts = [
         "\u{feff}let a = 1\r\nsphere { center a }\r\n",
         "let é = 1 sphere { center 🎱 radius \"é",
@@ -139,10 +139,10 @@ fn odd_texts_get_their_answers() {
     for text in texts {
         let sources = sources(text);
         let analysis = Analysis::new(&sources);
-        // A client may ask for any place, one within a character or behind the text too.
+        // A client may send any offset, also within a character or behind the text.
         for at in 0..text.len() + 3 {
-            ask(&analysis, analysis.source().floor_char_boundary(at));
+            ask_at(&analysis, analysis.source().floor_char_boundary(at));
         }
-        ask_of_all(&analysis);
+        ask_about_all(&analysis);
     }
 }

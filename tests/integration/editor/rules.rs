@@ -1,4 +1,4 @@
-//! What holds of the answers about all of the language.
+//! Rules for the editor answers about every block and field of the language.
 
 use std::time::{Duration, Instant};
 
@@ -8,10 +8,10 @@ use pinhole::{
     schema::{BLOCKS, Preset},
 };
 
-use super::{answers::inserted, at_cursor, of_whole};
+use super::{about_text, answers::inserted, at_cursor};
 
 #[test]
-fn no_function_is_offered_with_a_value_that_is_an_error() {
+fn offered_function_snippets_cause_no_error() {
     let mut offered = 0;
     for block in [
         "sphere { center (0, 1, 0) radius $0 }",
@@ -22,7 +22,7 @@ fn no_function_is_offered_with_a_value_that_is_an_error() {
         for function in functions {
             let text = inserted(&block.replace("$0", ""), &function).replace(['‹', '›'], "");
             let text = format!("camera {{ eye (0, 1, 5) lookat (0, 1, 0) }} {text}");
-            let found = of_whole(&text, |analysis| analysis.diagnostics().len());
+            let found = about_text(&text, |analysis| analysis.diagnostics().len());
             assert_eq!(found, 0, "{text}");
             offered += 1;
         }
@@ -31,7 +31,7 @@ fn no_function_is_offered_with_a_value_that_is_an_error() {
 }
 
 #[test]
-fn only_a_default_is_called_one() {
+fn only_the_default_value_is_offered_as_the_default() {
     let mut defaults = 0;
     for row in BLOCKS {
         for field in row.fields {
@@ -48,7 +48,7 @@ fn only_a_default_is_called_one() {
 }
 
 #[test]
-fn every_rule_between_fields_is_told_of_one_of_them() {
+fn every_rule_between_fields_is_documented_at_one_of_them() {
     for row in BLOCKS {
         for rule in row.together {
             let mut fields = row.fields.iter();
@@ -59,7 +59,7 @@ fn every_rule_between_fields_is_told_of_one_of_them() {
 }
 
 #[test]
-fn mistakes_are_explained_by_their_pages() {
+fn hovering_a_mistake_shows_its_explain_page() {
     let markdown = |text: &str| at_cursor(text, hover).expect("a hover").markdown;
     let page = |code| explain::page(code).expect("a page").text.trim_end();
     let text = markdown("sphere { center (0, 1, 0) rad$0us 2 }");
@@ -78,12 +78,13 @@ fn mistakes_are_explained_by_their_pages() {
     assert!(text.ends_with(&end), "{text}");
 }
 
-/// One walk takes some hundredths of a second; one for each term took half a minute.
+/// One pass over the line takes some hundredths of a second. A pass for each term took half a
+/// minute.
 #[test]
-fn a_long_line_is_laid_out_in_one_walk() {
+fn formatting_a_long_line_takes_linear_time() {
     let text = format!("let b = {}1\n", "1+".repeat(100_000));
     let start = Instant::now();
-    let changes = of_whole(&text, |analysis| formatting(analysis).map(|all| all.len()));
+    let changes = about_text(&text, |analysis| formatting(analysis).map(|all| all.len()));
     assert_eq!(changes, Some(1));
     assert!(start.elapsed() < Duration::from_secs(5));
 }

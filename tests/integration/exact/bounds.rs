@@ -1,4 +1,4 @@
-//! What is known of a pixel: how close it is to its true mean, and which of its bytes are certain.
+//! Bounds of exact pixels: the distance to the true mean, the certain bytes, memory and time.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use super::*;
 use crate::{culling::spheres, program::Folder};
 
 #[test]
-fn bounds_keep_their_promise() {
+fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     for far in [Some(100.0), Some(1e3), None] {
         let mut scene = example("figure_9_9", 256, 256);
         scene.camera.far = far;
@@ -21,20 +21,19 @@ fn bounds_keep_their_promise() {
     }
 }
 
-/// So many spheres that pierce each other in one pixel, most of what bounds them hidden.
+/// The spheres pierce each other in one pixel, and most of their outlines are hidden.
 #[test]
-fn a_heap_in_one_pixel() {
+fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);
-    is_known(&format!(
+    assert_known(&format!(
         "image {{ width 3 height 3 }} camera {{ eye (0, 0, 100) lookat (0, 0, 0) d 0.33 }}\n{heap}"
     ));
 }
 
-/// The horizons of parallel boards are one line, and so is the edge that the triangles of a fan
-/// share: a pixel that they pass through is not cut any further, whose pieces would be without
-/// number.
+/// The horizons of parallel boards coincide, and so does the edge that the triangles of a fan
+/// share. A pixel that they pass through must not be subdivided without end.
 #[test]
-fn many_lines_that_are_one() {
+fn coincident_lines_are_known_within_1e_9() {
     let view = "image { width 48 height 27 }
         camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 roll 7deg }\n";
     let (mut boards, mut fan) = (view.to_owned(), view.to_owned());
@@ -49,22 +48,22 @@ fn many_lines_that_are_one() {
             "triangle {{ v0 (0, 0, 0) v1 (0, 2, 0) v2 ({cos}, 1, {sin}) color rgb({index}, 90, 40) }}"
         );
     }
-    is_known(&boards);
-    is_known(&fan);
+    assert_known(&boards);
+    assert_known(&fan);
 }
 
 #[test]
-fn ten_thousand_objects() {
+fn ten_thousand_objects_are_known_within_1e_9() {
     let spheres = spheres(&mut Random::new(11), 10_000, 3.0, [0.005, 0.03]);
-    is_known(&format!(
+    assert_known(&format!(
         "image {{ width 96 height 64 }} camera {{ eye (2, 3, 6) lookat (0, 0, 0) roll 20deg }}
          checkerboard {{ y -1 }} box {{ center (1, 0, 0) size (1, 2, 1.5) }}\n{spheres}"
     ));
 }
 
-/// Outlines of spheres that all but coincide are told apart, as closely as roundings allow.
+/// Nearly coincident outlines of spheres are told apart as closely as rounding allows.
 #[test]
-fn outlines_that_nearly_coincide() {
+fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
         for center in ["(0, 0.3, 0)", &format!("({gap}, 0.3, 0)")] {
             let text = format!(
@@ -73,16 +72,16 @@ fn outlines_that_nearly_coincide() {
                  sphere {{ center (0, 0.3, 0) radius 1 color red }}
                  sphere {{ center {center} radius 1 + {gap} color blue }}"
             );
-            is_known(&text);
-            adds_up(&read(&text));
+            assert_known(&text);
+            assert_adds_up(&read(&text));
         }
     }
 }
 
-/// A heap of boxes that is seen in a small part of one pixel, far away or in a wide view, is cut
-/// where it is, not all of the pixel.
+/// Many boxes are seen in a small part of one pixel, far away or in a wide view. Only that part is
+/// subdivided, and not the whole pixel.
 #[test]
-fn heaps_in_a_small_part_of_a_pixel() {
+fn distant_crowds_in_part_of_a_pixel_are_known_within_1e_9() {
     for (distance, count) in [(1e3, 40), (1e5, 40), (1e5, 100)] {
         let boxes = (0..count).map(|i| {
             let [row, column] = [i / 10, i % 10].map(f64::from);
@@ -92,7 +91,7 @@ fn heaps_in_a_small_part_of_a_pixel() {
             format!("box {{ min ({x}, 0, {z}) max ({x} + 1, {height}, {z} + 1) color {color} }}\n")
         });
         let boxes: String = boxes.collect();
-        is_known(&format!(
+        assert_known(&format!(
             "image {{ width 6 height 4 background white }}
              camera {{ eye (0, 1.7, 0) direction (0.3, -0.01, -1) d 2 }}
              {boxes}"
@@ -100,7 +99,7 @@ fn heaps_in_a_small_part_of_a_pixel() {
     }
 }
 
-/// The greatest memory that the program takes while it renders a pixel of a scene, in MiB.
+/// Returns the peak memory of the program while it renders a pixel of a scene, in MiB.
 #[cfg(target_os = "linux")]
 fn memory(scene: &str, crop: &str) -> u64 {
     let folder = Folder::with([("scene.scn", scene)]);
@@ -118,9 +117,9 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// The first is a pixel in the middle of which nearly everything is seen at once, so that ever more
-/// pieces of it are open: it takes twenty gigabytes without a limit. The other shows 65 536
-/// objects, whose scene takes its own memory, as a pixel beside them shows.
+/// In the first pixel nearly everything is seen at one point, so that the number of open pieces
+/// grows: without a limit, it takes twenty gigabytes. The second shows 65 536 objects, whose scene
+/// takes memory of its own, which a neighbouring pixel measures.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -154,9 +153,9 @@ fn a_pixel_takes_bounded_memory() {
     }
 }
 
-/// Two hundred objects through the same few points, in a pixel that sees half the world: many of
-/// their curves only the last precision tells apart. A pixel takes a second at most; the tests are
-/// not optimised as a release is, and others run at the same time.
+/// Two hundred objects pass through the same few points, in a pixel that sees half the world: many
+/// of their curves are told apart only in the last precision. A pixel takes at most a second in a
+/// release build; tests are optimised less, and others run at the same time.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {
@@ -194,24 +193,23 @@ fn a_pixel_takes_bounded_time() {
     }
 }
 
-/// The scenes of `tests/exact`: the pixels of the crop that a comment asks for, or all, are known
-/// to a thousand-millionth, and their quarters are they.
+/// In the scenes of `tests/exact`, the pixels of the crop given in a comment, or all pixels, are
+/// known within 1e-9 and equal the mean of their quarters.
 #[test]
-fn hard_scenes_are_known() {
+fn hard_scene_files_are_known_within_1e_9() {
     for path in scenes("tests/exact") {
         let text = std::fs::read_to_string(&path).unwrap();
         let scene = read(&text);
         let crop = text.lines().find_map(|line| line.strip_prefix("// crop "));
         let area = crop.map_or(whole(&scene), |crop| crop.parse().unwrap());
-        let bound = part_adds_up(&scene, area).bound();
+        let bound = assert_part_adds_up(&scene, area).bound();
         assert!(bound <= 1e-9, "{}: {bound:e}", path.display());
     }
 }
 
-/// What is not known of a pixel may be anything between the colours that it can show: no less and
-/// no more.
+/// The interval of an uncertain pixel lies between the darkest and the brightest of its colours.
 #[test]
-fn what_may_be_seen_of_a_vague_pixel_is_within_its_colors() {
+fn uncertain_pixels_stay_within_the_range_of_their_colours() {
     let mut vague = 0;
     for (camera, objects, [least, greatest]) in [
         (

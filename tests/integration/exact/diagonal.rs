@@ -1,14 +1,14 @@
-//! Views along a diagonal of the board, where most is left of its squares, be they too small to be
-//! seen.
+//! Views along a diagonal of the board, where squares contribute most even if they are too small to
+//! be seen.
 
 use super::*;
 
-/// Pixels known from elsewhere, of scenes in black and white, with how far that may be off: the
-/// widest views along x = z with the eye over that line, of which both sides are the same, up to
-/// what the eye's coordinates are off and the view's depth; and two whose millions of pieces were
-/// added up with 40 digits, for d = 0.
+/// Black and white pixels with values known independently, and the error of each value. The widest
+/// views look along x = z from above that line, so both sides are symmetric except for the errors
+/// of the eye's coordinates and the view's depth. Two values are sums of millions of pieces with 40
+/// digits, for d = 0.
 #[test]
-fn what_is_known_otherwise_is_within_the_bound() {
+fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("
         width 2 height 2 -> eye (0.3, 1, 0.3) direction (1, 0, -1) d 1e-40 -> square 1 colors (black, white) -> 0 -> 1 -> 0 -> 1e-30
         width 2 height 2 -> eye (-0.4804996875, 1, 0.3554996875) direction (-1, 0, -1) d 1e-300 -> square 0.0625 colors (white, black) -> 1 -> 1 -> 0 -> 1e-14
@@ -24,11 +24,11 @@ fn what_is_known_otherwise_is_within_the_bound() {
     }
 }
 
-sampled_and_exhaustive!(the_longest_lenses_end);
+sampled_and_exhaustive!(extreme_lenses_do_not_hang);
 
-/// Places and times so many that modes of lines do not end: something is known in the end, or
-/// nothing, but soon.
-fn the_longest_lenses_end(effort: Effort) {
+/// The numbers are so large that sums over lines may not end: the pixels must be computed soon,
+/// whatever their bound.
+fn extreme_lenses_do_not_hang(effort: Effort) {
     for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }
          checkerboard { square 136 colors (white, black) }",

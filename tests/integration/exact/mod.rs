@@ -1,12 +1,12 @@
-//! The computed picture against closed forms, against itself in other ways, against samples and
-//! against rational arithmetic.
+//! The exact picture compared with closed forms, with itself at twice the resolution, with samples
+//! and with rational arithmetic.
 
 mod board;
 mod bounds;
 mod diagonal;
+mod quarters;
 mod rational;
 mod shapes;
-mod twice;
 
 use std::fmt::Write;
 
@@ -21,44 +21,45 @@ pub use crate::scenes::read;
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
     generated::{Numbers, generated},
+    random::Random,
     scenes::{
         exact, example, example_names, example_text, read_with, resized, sampled, scenes, whole,
         with_samples,
     },
     table::{lines, list, rows},
-    tracer::Random,
 };
 
 fn part(scene: &Scene, area: Area) -> Exact {
     render_exact(&World::new(scene), area, &Control::default()).unwrap()
 }
 
-/// Scenes of ordinary numbers.
+/// Returns generated scenes of ordinary numbers.
 fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
     generated(Numbers::Wild(0), size, seed).map(|(_, scene)| scene)
 }
 
-/// A pixel's light, and its bound.
+/// Returns a pixel's light and its bound.
 pub fn pixel(picture: &Exact, x: u32, y: u32) -> ([f64; 3], f64) {
     let bound = picture.bounds[(y * picture.film.width() + x) as usize];
     (picture.film.pixel(x, y), bound.into())
 }
 
-/// The largest difference of two pixels' channels.
+/// Returns the largest difference between the channels of two pixels.
 pub fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     let differences = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
     differences.into_iter().fold(0.0, f64::max)
 }
 
-/// Of a scene with twice the resolution four pixels are one of the original.
+/// Asserts that each pixel is the mean of four pixels at twice the resolution, within the bounds.
 #[track_caller]
-fn adds_up(scene: &Scene) {
-    part_adds_up(scene, whole(scene));
+fn assert_adds_up(scene: &Scene) {
+    assert_part_adds_up(scene, whole(scene));
 }
 
-/// The same for a part of the picture, which is returned.
+/// Asserts that each pixel of an area is the mean of four pixels at twice the resolution, within
+/// the bounds. Returns the picture of the area.
 #[track_caller]
-fn part_adds_up(scene: &Scene, area: Area) -> Exact {
+fn assert_part_adds_up(scene: &Scene, area: Area) -> Exact {
     let fine = resized(scene.clone(), 2 * scene.image.width, 2 * scene.image.height);
     let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(|size| 2 * size);
     let twice = Area {
@@ -85,20 +86,20 @@ fn part_adds_up(scene: &Scene, area: Area) -> Exact {
     coarse
 }
 
-/// Every pixel of a picture is known to a thousand-millionth.
+/// Asserts that every pixel of a scene is known within 1e-9.
 #[track_caller]
-fn is_known(text: &str) {
+fn assert_known(text: &str) {
     let bound = exact(&read(text)).bound();
     assert!(bound <= 1e-9, "{bound:e}\n{text}");
 }
 
-/// Compares a picture with one of so many random samples a pixel.
-fn agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
+/// Asserts that a picture agrees with one of random samples, given their number per pixel.
+fn assert_agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
     let sampled = sampled(&scene);
-    // For channels from 0 to 1 of mean m the variance of a mean is at most m(1 − m)/n. By
-    // Bernstein's inequality no more than one of 10¹⁰ sums of independent ones is farther off
-    // than this.
+    // For channels from 0 to 1 of mean m, the variance of the mean of n samples is at most m(1 −
+    // m)/n. By Bernstein's inequality, at most one of 10¹⁰ sums of independent samples is farther
+    // off than this.
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());

@@ -1,4 +1,4 @@
-//! Pixels of the board against rational arithmetic, which has no errors.
+//! Pixels of the board compared with rational arithmetic, which has no errors.
 
 use std::{array, iter::successors};
 
@@ -7,27 +7,28 @@ use dashu_ratio::RBig;
 
 use super::{exact, pixel, read};
 
-/// A camera whose axes are rational, above a board of squares of side 1 at height 0.
+/// Camera with rational axes above a board of squares of side 1 at height 0.
 struct RationalView {
     eye: [RBig; 3],
-    /// The picture's right, its top, and against the view direction.
+    /// Right, up and back: the directions of the picture's columns, its rows, and against the view.
     axes: [[RBig; 3]; 3],
     d: RBig,
 }
 
-/// aX + bY + c as [a, b, c], for points (X, Y) of the view plane.
+/// Linear form aX + bY + c as [a, b, c], for points (X, Y) of the view plane.
 type Linear = [RBig; 3];
 type Polygon = Vec<[RBig; 2]>;
 
 impl RationalView {
-    /// The component of the ray through a point of the view plane, along an axis of the world.
+    /// Returns the component along an axis of the world of the ray through a point of the view
+    /// plane.
     fn ray(&self, axis: usize) -> Linear {
         let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
         [right, top, -(back * &self.d)]
     }
 
-    /// N and L of N/L, where the ray through a point meets the board, along x or z: L is positive
-    /// below the horizon.
+    /// Returns N and L such that the ray through a point meets the board at the coordinate N/L,
+    /// along x or z. L is positive below the horizon.
     fn place(&self, axis: usize) -> [Linear; 2] {
         let below = self.ray(1).map(|factor| -factor);
         let along = self.ray(axis);
@@ -35,19 +36,19 @@ impl RationalView {
         [place, below]
     }
 
-    /// The share of white squares, those whose numbers have an even sum, in a pixel below the
+    /// Returns the share of white squares, whose indices have an even sum, in a pixel below the
     /// horizon.
     fn white(&self, pixel: &Polygon) -> RBig {
         let [across, along] = [self.place(0), self.place(2)];
         let mut white = RBig::ZERO;
-        for row in numbers(&along, pixel) {
-            let in_row = between(&along, &row, pixel);
+        for row in square_indices(&along, pixel) {
+            let in_row = strip(&along, &row, pixel);
             if in_row.is_empty() {
                 continue;
             }
-            for column in numbers(&across, &in_row) {
+            for column in square_indices(&across, &in_row) {
                 if (&row + &column) % IBig::from(2) == IBig::ZERO {
-                    white += area(&between(&across, &column, &in_row));
+                    white += area(&strip(&across, &column, &in_row));
                 }
             }
         }
@@ -59,8 +60,8 @@ fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
     a * x + b * y + c
 }
 
-/// The whole numbers from which a polygon's places go on to the next.
-fn numbers([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
+/// Returns the indices of the rows or columns of squares that a polygon meets.
+fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
     let places = polygon
         .iter()
         .map(|at| (value(place, at) / value(below, at)).floor());
@@ -69,8 +70,8 @@ fn numbers([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// The part of a polygon with places from n to n + 1.
-fn between([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
+/// Returns the part of a polygon in the row or column of squares from n to n + 1.
+fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);
         array::from_fn(|i| &place[i] - &n * &below[i])
@@ -79,7 +80,8 @@ fn between([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon
     cut(&cut(polygon, &line(n.clone())), &beyond)
 }
 
-/// The part of a polygon where a form is not negative (Sutherland and Hodgman, 1974).
+/// Returns the part of a polygon where a linear form is not negative (Sutherland and Hodgman,
+/// 1974).
 fn cut(polygon: &Polygon, line: &Linear) -> Polygon {
     let mut rest = Vec::new();
     for (i, to) in polygon.iter().enumerate() {
@@ -108,10 +110,10 @@ fn area(polygon: &Polygon) -> RBig {
     twice / RBig::from(2)
 }
 
-/// Level cameras, one that looks down to the right, by (48, −25, −36)/65, and the same rolled by
-/// the angle of cosine 3/5. The horizon is above the pixels that are asked for.
+/// The cameras are level, look down to the right along (48, −25, −36)/65, or are that one rolled by
+/// the angle whose cosine is 3/5. The horizon is above all listed pixels.
 #[test]
-fn rational_arithmetic_agrees() {
+fn board_pixels_agree_with_rational_arithmetic() {
     let (width, height) = (64u32, 48u32);
     let rational = |x: f64| RBig::try_from(x).unwrap();
     let over = |vector: [i32; 3], by: i32| vector.map(|x| RBig::from(x) / RBig::from(by));
@@ -147,7 +149,7 @@ fn rational_arithmetic_agrees() {
             axes: axes.clone(),
             d: rational(d),
         };
-        // view_height is 2, and rows are counted from the top.
+        // `view_height` is 2, and rows are counted from the top.
         let pitch = RBig::from(2) / RBig::from(height);
         let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
         for at in pixels.split(' ') {

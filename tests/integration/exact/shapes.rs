@@ -1,4 +1,4 @@
-//! Pixels against closed forms.
+//! Exact pixels compared with closed forms.
 
 use std::f64::consts::PI;
 
@@ -6,9 +6,9 @@ use super::*;
 
 const AHEAD: &str = "eye (0, 0, 0) direction (0, 0, -1) d 1";
 
-/// How much of a picture of one pixel an object in white covers.
+/// Asserts the share of a picture of one pixel that a white object covers.
 #[track_caller]
-fn is_share(camera: &str, object: &str, expected: f64) {
+fn assert_coverage(camera: &str, object: &str, expected: f64) {
     let scene = read(&format!(
         "image {{ width 1 height 1 }} camera {{ {camera} }} {object}"
     ));
@@ -21,16 +21,16 @@ fn is_share(camera: &str, object: &str, expected: f64) {
 }
 
 #[test]
-fn half_planes() {
-    // The pixel is 2 wide at distance 1; the box's right side is seen at x/4, or at x/5 where its
-    // side face is seen, too.
+fn half_plane_coverage_matches_the_closed_form() {
+    // The pixel is 2 wide at distance 1. The box's right edge is seen at x/4, or at x/5 if its
+    // right face is seen, too.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
-        is_share(AHEAD, &object, expected);
-        is_share(&format!("{AHEAD} roll 90deg"), &object, expected);
+        assert_coverage(AHEAD, &object, expected);
+        assert_coverage(&format!("{AHEAD} roll 90deg"), &object, expected);
     }
-    // Rolled by 45° about an edge through the pixel's centre, and by any angle: half of it.
+    // An edge through the pixel's centre leaves half of it, at any roll.
     for object in list(
         "
         box { min (-100, -100, -5) max (0, 100, -4) color white }
@@ -39,15 +39,15 @@ fn half_planes() {
         ",
     ) {
         for roll in [45.0, 1e-9, 17.0, 89.999999] {
-            is_share(&format!("{AHEAD} roll {roll}deg"), object, 0.5);
+            assert_coverage(&format!("{AHEAD} roll {roll}deg"), object, 0.5);
         }
     }
 }
 
-/// The silhouette of a sphere is an ellipse of area πR²√C/(z² − R²)^(3/2), C = c·c − R², z the
-/// centre's depth; on the axis, it is a circle.
+/// The silhouette of a sphere is an ellipse of area πR²√C/(z² − R²)^(3/2) with C = c·c − R² and the
+/// centre's depth z. On the axis, it is a circle.
 #[test]
-fn discs_and_ellipses() {
+fn sphere_coverage_matches_the_area_of_an_ellipse() {
     for (x, y, z, radius) in [
         (0.0, 0.0, 1.0, 0.7f64),
         (0.0, 0.0, 1.0, 0.1),
@@ -61,40 +61,41 @@ fn discs_and_ellipses() {
         let depth: f64 = z * z - radius * radius;
         let area = PI * radius * radius * power.sqrt() / (depth * depth.sqrt());
         let object = format!("sphere {{ center ({x}, {y}, -{z}) radius {radius} color white }}");
-        is_share(AHEAD, &object, area / 4.0);
+        assert_coverage(AHEAD, &object, area / 4.0);
     }
 }
 
 #[test]
-fn squares_from_above() {
-    // From height 1 the pixel shows [−1, 1]²: 2 × 2 squares of side 1, and what is left of larger
-    // ones.
+fn board_coverage_from_above_matches_the_closed_form() {
+    // From height 1 the pixel shows [−1, 1]²: 2 × 2 squares of side 1, or smaller squares.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
-        // s integrates to −1/2 over x from −3/4 to 5/4, and to 1 · −1/2 … over z from −1/2 to 3/2.
+        // The colour is the sign s(x)·s(z). x goes from −3/4 to 5/4 and z from −1/2 to 3/2: two
+        // squares along each axis, so each integral is 0.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // x from −1/2 to 1: +1 − 1/2; z from −1/4 to 5/4: −1/4 + 1 − 1/4; of an area of (3/2)².
+        // x goes from −1/2 to 1 with the integral 1 − 1/2, and z from −1/4 to 5/4 with −1/4 + 1 −
+        // 1/4, of an area of (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");
         let board = format!("checkerboard {{ square {square} colors (white, black) }}");
-        is_share(&camera, &board, expected);
+        assert_coverage(&camera, &board, expected);
     }
 }
 
 #[test]
-fn lines_that_are_vertical_but_for_roundings() {
-    // The camera looks at an edge of the box, which is the middle column's side, and a sphere's
+fn nearly_vertical_lines_are_known_and_add_up() {
+    // The camera looks at an edge of the box, which runs along the middle column, and a sphere's
     // outline crosses it.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
         eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }
     ") {
-        // An odd number of columns has that line in the middle of pixels.
+        // With an odd number of columns, the edge is in the middle of pixels.
         for (width, height) in [(4, 3), (12, 9), (64, 36), (13, 7)] {
             let text = format!("image {{ width {width} height {height} }} camera {{ {camera} }} {objects}");
-            let bound = part_adds_up(&read(&text), Area::whole(width, height)).bound();
+            let bound = assert_part_adds_up(&read(&text), Area::whole(width, height)).bound();
             assert!(bound <= 1e-12, "{text}: {bound:e}");
         }
     }

@@ -1,14 +1,15 @@
-//! Names and texts that somebody else has chosen: none forges a line, a cell or a formula, and none
-//! acts on a terminal.
+//! Foreign names and texts: none can forge a line, a table cell or a spreadsheet formula, and none
+//! can control a terminal.
 
 use std::fs;
 
-use super::hostile::{SCENE, at_once, folder};
+use super::{SCENE, folder, hostile::run_with_deadline};
 use crate::program::Folder;
 
-/// On a terminal, where `script` is there to open one; to a pipe goes what is in the file.
+/// The terminal is opened by `script`, if that is installed. A pipe gets the text of the file
+/// unchanged.
 #[test]
-fn no_text_of_a_scene_acts_on_a_terminal() {
+fn scene_text_is_escaped_on_a_terminal_and_unchanged_in_a_pipe() {
     let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
     for line in [
         "pinhole check --fix --diff - < a.scn",
@@ -38,7 +39,7 @@ fn no_text_of_a_scene_acts_on_a_terminal() {
 }
 
 #[test]
-fn a_name_forges_no_line_and_no_cell() {
+fn file_names_cannot_forge_lines_or_table_cells() {
     let names = [
         "a\nerror: b",
         "a\tb",
@@ -94,12 +95,12 @@ fn a_name_forges_no_line_and_no_cell() {
             &["explain", &dashed],
         ];
         for arguments in calls {
-            let said = at_once(&folder, arguments);
+            let said = run_with_deadline(&folder, arguments);
             assert_eq!(said.status, 2, "{arguments:?}: {}", said.errors);
             assert_eq!(said.errors.lines().count(), 1, "{:?}", said.errors);
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
         }
-        // One line more than usual would be a forged one.
+        // A forged line would be one more than usual.
         for arguments in [
             &["rendr", name][..],
             &["render", "a.scn", name],
@@ -110,7 +111,8 @@ fn a_name_forges_no_line_and_no_cell() {
                 .iter()
                 .map(|argument| if *argument == name { "x" } else { argument })
                 .collect();
-            let [said, plain] = [arguments, &plain].map(|line| at_once(&folder, line).errors);
+            let [said, plain] =
+                [arguments, &plain].map(|line| run_with_deadline(&folder, line).errors);
             assert!(!said.contains(forged), "{said:?}");
             let lines = [&said, &plain].map(|text| text.lines().count());
             if name != "-a" {
@@ -124,21 +126,21 @@ fn a_name_forges_no_line_and_no_cell() {
             &["check", "--fix", &bad],
             &["fmt", "--check", &bad],
         ] {
-            let said = at_once(&folder, arguments);
+            let said = run_with_deadline(&folder, arguments);
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
             assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         }
-        // Tables and pages.
-        let said = at_once(&folder, &["diff", &picture, "a.scn"]);
+        // Tables and pages of `diff`, `grade` and `report`.
+        let said = run_with_deadline(&folder, &["diff", &picture, "a.scn"]);
         assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
-        let said = at_once(&folder, &["grade", &scene, &picture, &other, "-o", "out"]);
+        let said = run_with_deadline(&folder, &["grade", &scene, &picture, &other, "-o", "out"]);
         assert_eq!(said.status, 2, "{}", said.errors);
         assert_eq!(said.errors.lines().count(), 3, "{:?}", said.errors);
         let told = ["out/index.html", "out/grade.csv"].map(|file| folder.text(file));
         let report = "--samples 1 --runs 1 --methods sobol -o out".split(' ');
         let arguments: Vec<_> = ["report", &scene].into_iter().chain(report).collect();
         fs::remove_dir_all(folder.path("out")).unwrap();
-        let said = at_once(&folder, &arguments);
+        let said = run_with_deadline(&folder, &arguments);
         assert_eq!(said.status, 0, "{}", said.errors);
         let page = folder.text("out/index.html");
         let csv = folder.text("out/report.csv");
@@ -150,13 +152,13 @@ fn a_name_forges_no_line_and_no_cell() {
 }
 
 #[test]
-fn a_text_that_a_table_would_calculate_is_a_text() {
+fn csv_cells_never_start_a_spreadsheet_formula() {
     for start in ["=1+1", "+1", "-1", "@a", "\ta", "\ra", "'a", "a"] {
         let folder = folder();
         let name = format!("{start}.png");
         folder.write(&name, folder.read("a.png"));
         let arguments = ["grade", "a.scn", "-o", "out", "--", &name];
-        assert_eq!(at_once(&folder, &arguments).status, 0);
+        assert_eq!(run_with_deadline(&folder, &arguments).status, 0);
         let csv = folder.text("out/grade.csv");
         let (_, row) = csv.trim_end().split_once('\n').unwrap();
         let is_guarded = row.starts_with("\"'");
@@ -164,7 +166,7 @@ fn a_text_that_a_table_would_calculate_is_a_text() {
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let cells = table.records().next().unwrap().unwrap();
         assert!(cells[2].parse::<f64>().is_ok(), "{row}");
-        // The student is called as the file is.
+        // The student has the name of the file.
         assert_eq!(cells[0], cells[6], "{row}");
     }
 }

@@ -1,24 +1,20 @@
-//! Paths that somebody else has prepared: whatever opens or writes one says so at once, in one
-//! line, and leaves every other file as it is.
+//! Special files at the paths that a command reads or writes: it refuses them at once, in one line,
+//! and leaves every other file as it is.
 
 use std::{
     fs,
     io::Write,
-    os::unix::{ffi::OsStrExt, fs::symlink, net::UnixListener},
+    os::unix::{ffi::OsStringExt, fs::symlink, net::UnixListener},
     path::Path,
-    process::{Command, Stdio},
+    process::Stdio,
     thread,
     time::{Duration, Instant},
 };
 
-use crate::program::{Folder, Said, command};
+use super::{SCENE, folder};
+use crate::program::{Folder, Outcome, command};
 
-pub(super) const SCENE: &str = "image { width 6 height 4 }
-camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
-sphere Ball { center (-1, 1, 0) }
-";
-
-/// What there is at a path, and what is said of it where a file is read.
+/// Kinds of special files at a path, with the message of a command that reads it.
 const HOSTILE: [(&str, &str); 9] = [
     ("pipe", "it is a pipe, not a file"),
     ("link to a pipe", "it is a pipe, not a file"),
@@ -31,16 +27,13 @@ const HOSTILE: [(&str, &str); 9] = [
     ("nothing", "there is no such file or folder"),
 ];
 
-/// Puts it there.
-fn put(what: &str, path: &Path, folder: &Folder) {
-    let pipe = |path: &Path| {
-        let made = Command::new("mkfifo").arg(path).status().unwrap();
-        assert!(made.success());
-    };
+/// Creates a special file of a kind at a path.
+fn create_special_file(what: &str, name: &str, folder: &Folder) {
+    let path = &folder.path(name);
     match what {
-        "pipe" => pipe(path),
+        "pipe" => folder.make_pipe(name),
         "link to a pipe" => {
-            pipe(&folder.path("elsewhere"));
+            folder.make_pipe("elsewhere");
             symlink("elsewhere", path).unwrap();
         }
         "link to a device" => symlink("/dev/zero", path).unwrap(),
@@ -54,30 +47,22 @@ fn put(what: &str, path: &Path, folder: &Folder) {
     }
 }
 
-pub(super) fn folder() -> Folder {
-    let folder = Folder::with([("a.scn", SCENE), ("b.scn", SCENE)]);
-    folder.told("render a.scn", 0);
-    folder
-}
-
-/// All that is in a folder: each name with where it leads to, or what is in it.
-fn all(folder: &Path) -> Vec<(String, Vec<u8>)> {
+/// Returns every entry below a folder: its path and kind, with its link target or its content.
+fn entries(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let found = fs::symlink_metadata(&path).unwrap();
         let name = format!("{path:?} {:?}", found.file_type());
         if found.is_dir() {
-            all.extend(self::all(&path));
+            all.extend(entries(&path));
         }
-        let content = match found.is_symlink() {
-            true => fs::read_link(&path)
-                .unwrap()
-                .as_os_str()
-                .as_bytes()
-                .to_owned(),
-            false if found.is_file() => fs::read(&path).unwrap(),
-            false => Vec::new(),
+        let content = if found.is_symlink() {
+            fs::read_link(&path).unwrap().into_os_string().into_vec()
+        } else if found.is_file() {
+            fs::read(&path).unwrap()
+        } else {
+            Vec::new()
         };
         all.push((name, content));
     }
@@ -85,16 +70,16 @@ fn all(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// What a command says that must not wait for anything.
+/// Runs a command that must not wait for anything, and kills it after a deadline.
 #[track_caller]
-pub(super) fn at_once(folder: &Folder, arguments: &[&str]) -> Said {
+pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome {
     let mut command = command(folder.path("").as_path(), arguments);
     let mut child = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A second on a machine that has nothing else to do.
+    // It takes at most a second on an idle machine.
     let end = Instant::now() + Duration::from_secs(10);
     while child.try_wait().unwrap().is_none() {
         if Instant::now() > end {
@@ -106,22 +91,22 @@ pub(super) fn at_once(folder: &Folder, arguments: &[&str]) -> Said {
     child.wait_with_output().unwrap().into()
 }
 
-/// Runs a command that has to refuse something in one line, and to change nothing.
+/// Asserts that a command refuses something in one line, and changes no file.
 #[track_caller]
-fn refused(folder: &Folder, arguments: &[&str], about: &str) {
-    let before = all(&folder.path(""));
-    let said = at_once(folder, arguments);
+fn assert_refused(folder: &Folder, arguments: &[&str], about: &str) {
+    let before = entries(&folder.path(""));
+    let said = run_with_deadline(folder, arguments);
     let told = (said.status, said.errors.lines().count());
     assert_eq!(told, (2, 1), "{arguments:?}: {}", said.errors);
     assert!(said.output.is_empty(), "{arguments:?}");
     let is_right = said.errors.starts_with("error: ") && said.errors.contains(about);
     assert!(is_right, "{arguments:?}: {}", said.errors);
     assert!(!said.errors.contains("os error"), "{}", said.errors);
-    assert_eq!(all(&folder.path("")), before, "{arguments:?}");
+    assert_eq!(entries(&folder.path("")), before, "{arguments:?}");
 }
 
 #[test]
-fn why_a_folder_cannot_be_made_is_in_words() {
+fn an_output_folder_that_cannot_be_made_is_explained_without_error_numbers() {
     let folder = folder();
     let long = "x".repeat(300);
     for out in ["/proc/pinhole", &long, &format!("{long}/x")] {
@@ -130,18 +115,18 @@ fn why_a_folder_cannot_be_made_is_in_words() {
             "report a.scn --samples 1 --runs 1 -o",
         ] {
             let arguments: Vec<_> = line.split(' ').chain([out]).collect();
-            refused(&folder, &arguments, "cannot write to ");
+            assert_refused(&folder, &arguments, "cannot write to ");
         }
     }
 }
 
 #[test]
-fn what_is_no_file_is_never_read() {
+fn pipes_devices_sockets_and_folders_are_refused_as_input() {
     for (what, about) in HOSTILE {
         let folder = folder();
         for name in ["x.scn", "x.png"] {
             let _ = fs::remove_file(folder.path("elsewhere"));
-            put(what, &folder.path(name), &folder);
+            create_special_file(what, name, &folder);
             for line in [
                 "render X -o out.png",
                 "check X",
@@ -167,33 +152,33 @@ fn what_is_no_file_is_never_read() {
                 if line.ends_with("-o a") {
                     fs::create_dir_all(folder.path("a")).unwrap();
                 }
-                refused(&folder, &arguments, about);
+                assert_refused(&folder, &arguments, about);
             }
-            let before = all(&folder.path(""));
-            let said = at_once(&folder, &["grade", "a.scn", "a.png", name]);
+            let before = entries(&folder.path(""));
+            let said = run_with_deadline(&folder, &["grade", "a.scn", "a.png", name]);
             if what != "folder" {
                 assert_eq!(said.status, 2, "{}", said.errors);
                 assert!(said.errors.contains(about), "{}", said.errors);
                 assert_eq!(said.errors.lines().count(), 3, "{}", said.errors);
             }
-            assert_eq!(all(&folder.path("")), before, "{what}");
+            assert_eq!(entries(&folder.path("")), before, "{what}");
         }
         if what != "nothing" {
-            refused(&folder, &["new", "x.scn"], "x.scn: ");
+            assert_refused(&folder, &["new", "x.scn"], "x.scn: ");
         }
     }
 }
 
 #[test]
-fn nothing_is_written_where_it_is_not_meant_to_go() {
+fn default_and_folder_outputs_never_follow_links_or_special_files() {
     let outside = Folder::with([("secret", "secret"), ("deep/secret", "secret")]);
     for (what, _) in HOSTILE.into_iter().chain([
         ("link to a file outside", ""),
         ("link to a folder outside", ""),
     ]) {
-        // With the scene's name, which nobody gave for it.
+        // Default outputs, named after the scene.
         let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
-        // In a folder that was given.
+        // Files in an output folder.
         let grade = "grade a.scn a.png -o out";
         let report = "report a.scn -o out --samples 1 --runs 1 --methods sobol";
         let both = "report a.scn b.scn -o out --samples 1 --runs 1 --methods sobol";
@@ -215,14 +200,14 @@ fn nothing_is_written_where_it_is_not_meant_to_go() {
             match what {
                 "link to a file outside" => symlink(outside.path("secret"), &path).unwrap(),
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
-                _ => put(what, &path, &folder),
+                _ => create_special_file(what, name, &folder),
             }
-            // A folder is in the way of a file alone, and nothing in that of nobody.
+            // A folder is only in the way of a file, and a missing path is never in the way.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }
             let arguments: Vec<_> = line.split(' ').collect();
-            refused(&folder, &arguments, name);
+            assert_refused(&folder, &arguments, name);
         }
     }
     assert_eq!(outside.text("secret"), "secret");
@@ -230,7 +215,7 @@ fn nothing_is_written_where_it_is_not_meant_to_go() {
 }
 
 #[test]
-fn a_name_that_was_given_may_lead_elsewhere_but_is_never_waited_for() {
+fn an_output_path_to_a_special_file_is_refused_without_waiting() {
     for (what, about) in [
         ("pipe", "it is a pipe that nobody reads"),
         ("link to a pipe", "it is a pipe that nobody reads"),
@@ -242,26 +227,26 @@ fn a_name_that_was_given_may_lead_elsewhere_but_is_never_waited_for() {
     ] {
         let folder = folder();
         folder.told("render b.scn --set Ball.radius=2", 0);
-        put(what, &folder.path("x.png"), &folder);
-        refused(&folder, &["render", "a.scn", "-o", "x.png"], about);
-        let before = all(&folder.path(""));
-        let said = at_once(&folder, &["diff", "a.png", "b.png", "-o", "x.png"]);
+        create_special_file(what, "x.png", &folder);
+        assert_refused(&folder, &["render", "a.scn", "-o", "x.png"], about);
+        let before = entries(&folder.path(""));
+        let said = run_with_deadline(&folder, &["diff", "a.png", "b.png", "-o", "x.png"]);
         assert_eq!(said.status, 2, "{}", said.errors);
         let last = said.errors.lines().last().unwrap();
         let is_right = last.starts_with("error: cannot write to x.png: ") && last.contains(about);
         assert!(is_right, "{}", said.errors);
-        assert_eq!(all(&folder.path("")), before);
+        assert_eq!(entries(&folder.path("")), before);
         for line in ["grade a.scn a.png -o x.png", "report a.scn -o x.png"] {
             let arguments: Vec<_> = line.split(' ').collect();
             if !["dangling link", "folder"].contains(&what) {
-                refused(&folder, &arguments, "x.png: ");
+                assert_refused(&folder, &arguments, "x.png: ");
             }
         }
     }
 }
 
 #[test]
-fn a_large_file_is_refused_by_its_head_and_length() {
+fn oversized_files_and_pictures_are_refused_unless_large_is_given() {
     let folder = folder();
     let grow = |name: &str, to: u64| {
         let mut options = fs::OpenOptions::new();
@@ -288,10 +273,10 @@ fn a_large_file_is_refused_by_its_head_and_length() {
             "more than the 268435456 bytes that are read: `--large` reads it",
         ),
     ] {
-        refused_of_large(&folder, &["diff", "a.png", name], about);
+        assert_refused_without_comparing(&folder, &["diff", "a.png", name], about);
         if name != "none.scn" {
-            refused_of_large(&folder, &["diff", name, "a.png"], about);
-            let said = at_once(&folder, &["grade", "a.scn", name]);
+            assert_refused_without_comparing(&folder, &["diff", name, "a.png"], about);
+            let said = run_with_deadline(&folder, &["grade", "a.scn", name]);
             assert!(
                 said.status == 2 && said.errors.contains(about),
                 "{}",
@@ -299,15 +284,15 @@ fn a_large_file_is_refused_by_its_head_and_length() {
             );
         }
     }
-    let said = at_once(&folder, &["diff", "--large", "a.png", "large.png"]);
+    let said = run_with_deadline(&folder, &["diff", "--large", "a.png", "large.png"]);
     assert_eq!(said.status, 0, "{}", said.errors);
 }
 
-/// Runs a command that has to refuse something in one line, in a folder of files that are too large
-/// to be compared.
+/// Asserts that a command refuses something in one line. Does not compare the folder's files, which
+/// are too large for that.
 #[track_caller]
-fn refused_of_large(folder: &Folder, arguments: &[&str], about: &str) {
-    let said = at_once(folder, arguments);
+fn assert_refused_without_comparing(folder: &Folder, arguments: &[&str], about: &str) {
+    let said = run_with_deadline(folder, arguments);
     let told = (said.status, said.errors.lines().count());
     assert_eq!(told, (2, 1), "{arguments:?}: {}", said.errors);
     assert!(
@@ -318,7 +303,7 @@ fn refused_of_large(folder: &Folder, arguments: &[&str], about: &str) {
 }
 
 #[test]
-fn what_a_shell_connects_is_read() {
+fn standard_input_paths_and_pipes_of_a_shell_are_read() {
     let folder = folder();
     for line in [
         "cat a.scn | pinhole render /dev/stdin -o b.png",
@@ -335,7 +320,7 @@ fn what_a_shell_connects_is_read() {
 }
 
 #[test]
-fn a_picture_is_not_written_over_what_it_is_made_of() {
+fn render_never_overwrites_its_own_input() {
     let folder = folder();
     fs::copy(folder.path("a.png"), folder.path("c.png")).unwrap();
     symlink("c.png", folder.path("d.png")).unwrap();
@@ -347,13 +332,13 @@ fn a_picture_is_not_written_over_what_it_is_made_of() {
         "render ./c.png -o c.png --crop 0,0,2,2",
     ] {
         let arguments: Vec<_> = line.split(' ').collect();
-        refused(&folder, &arguments, about);
+        assert_refused(&folder, &arguments, about);
     }
 }
 
-/// A link to what a picture is made of that comes after the first look at the path.
+/// A link to the input is created after the program has checked the output path.
 #[test]
-fn a_link_that_comes_meanwhile_is_not_followed_to_what_a_picture_is_made_of() {
+fn a_link_created_while_rendering_cannot_redirect_output_onto_an_input() {
     for (line, input, target, about) in [
         (
             "render a.scn -o out.png --threads 1 --set image.width=1200 --set image.height=1200",
@@ -393,7 +378,7 @@ fn a_link_that_comes_meanwhile_is_not_followed_to_what_a_picture_is_made_of() {
             pipe.write_all(&folder.read(input)).unwrap();
         }
         drop(pipe);
-        let said = Said::from(child.wait_with_output().unwrap());
+        let said = Outcome::from(child.wait_with_output().unwrap());
         assert_eq!(said.status, 2, "{line}: {}", said.errors);
         assert!(said.errors.contains(about), "{line}: {}", said.errors);
         assert_eq!(["a.scn", "a.png"].map(|name| folder.read(name)), before);

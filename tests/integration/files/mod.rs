@@ -1,12 +1,12 @@
-//! Files: written whole or not at all and only where they are meant to go, and what is no file is
-//! not waited for.
+//! Files are written completely or not at all and only to the intended places, and special files
+//! are not waited for.
 
 #[cfg(unix)]
 mod forged;
 #[cfg(unix)]
 mod hostile;
 #[cfg(unix)]
-mod meanwhile;
+mod interruptions;
 mod output_folder;
 
 use std::{fs, io, path::Path, sync::atomic::AtomicBool};
@@ -15,7 +15,19 @@ use pinhole::files::{self, Original, Purpose, check_writable};
 
 use crate::program::Folder;
 
-/// Writes a file that somebody named.
+const SCENE: &str = "image { width 6 height 4 }
+camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
+sphere Ball { center (-1, 1, 0) }
+";
+
+/// Returns a folder with the scene in `a.scn` and `b.scn`, and its picture in `a.png`.
+fn folder() -> Folder {
+    let folder = Folder::with([("a.scn", SCENE), ("b.scn", SCENE)]);
+    folder.told("render a.scn", 0);
+    folder
+}
+
+/// Writes a file whose path the user gave.
 fn write(path: &Path, content: &[u8]) -> io::Result<()> {
     files::write(path, Purpose::Named, &AtomicBool::new(false), |out| {
         out.write_all(content)
@@ -46,7 +58,7 @@ fn a_file_stays_as_it_was_until_the_new_one_is_complete() {
 }
 
 #[test]
-fn what_killed_runs_leave_is_removed_and_what_is_being_written_is_left_alone() {
+fn leftover_temporary_files_are_removed_and_those_in_use_are_kept() {
     let folder = Folder::with([]);
     let path = folder.path("a.png");
     let (left, others) = (".pinhole-a.png-abcdef.tmp", ".pinhole-b.png-abcdef.tmp");
@@ -65,7 +77,7 @@ fn what_killed_runs_leave_is_removed_and_what_is_being_written_is_left_alone() {
 
 #[cfg(unix)]
 #[test]
-fn links_permissions_and_devices_stay_what_they_are() {
+fn writing_keeps_links_permissions_and_devices() {
     use std::os::unix::fs::{PermissionsExt, symlink};
 
     let folder = Folder::with([]);
@@ -92,7 +104,7 @@ fn links_permissions_and_devices_stay_what_they_are() {
 }
 
 #[test]
-fn a_new_file_is_whole_or_not_there() {
+fn a_new_file_appears_complete_and_replaces_nothing() {
     let folder = Folder::with([("there", "old")]);
     let new = |name: &str| {
         let path = folder.path(name);
@@ -105,7 +117,7 @@ fn a_new_file_is_whole_or_not_there() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // Also where it comes while the other one is written.
+    // Also if it appears while the other file is being written.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");
@@ -117,7 +129,7 @@ fn a_new_file_is_whole_or_not_there() {
 }
 
 #[test]
-fn what_somebody_else_has_saved_meanwhile_is_left_alone() {
+fn a_file_changed_since_it_was_read_is_not_overwritten() {
     let folder = Folder::with([]);
     let path = folder.path("a.scn");
     let other = folder.path("other");
@@ -151,7 +163,7 @@ fn what_somebody_else_has_saved_meanwhile_is_left_alone() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // It has happened already where the second one is tried.
+                    // For the second purpose, the change has already happened.
                     if number == 0 {
                         meanwhile();
                     }
@@ -167,7 +179,7 @@ fn what_somebody_else_has_saved_meanwhile_is_left_alone() {
 
 #[cfg(unix)]
 #[test]
-fn a_folder_that_becomes_a_link_outwards_meanwhile_is_not_followed() {
+fn a_folder_replaced_by_an_outward_link_is_not_followed() {
     for is_there in [false, true] {
         for number in 0..3 {
             let outside = Folder::with([]);
@@ -176,16 +188,17 @@ fn a_folder_that_becomes_a_link_outwards_meanwhile_is_not_followed() {
             if is_there {
                 fs::write(&path, "old").unwrap();
             }
-            let original = match is_there {
-                true => Original::read(&path, |path| files::read(path, 9)).unwrap(),
-                false => Original::missing(),
+            let original = if is_there {
+                Original::read(&path, |path| files::read(path, 9)).unwrap()
+            } else {
+                Original::missing()
             };
             let again = Purpose::Again {
                 within,
                 original: &original,
             };
             let purpose = [Purpose::Within(within), Purpose::Private(within), again][number];
-            // The file that is being written moves, too.
+            // The file that is being written moves with the folder.
             let (inner, moved) = (folder.path("out/b"), outside.path("b"));
             let written = files::write(&path, purpose, &AtomicBool::new(false), |out| {
                 fs::rename(&inner, &moved)?;
@@ -202,7 +215,7 @@ fn a_folder_that_becomes_a_link_outwards_meanwhile_is_not_followed() {
 
 #[cfg(all(unix, feature = "studio"))]
 #[test]
-fn what_is_kept_of_a_user_is_for_the_user_alone() {
+fn drafts_are_readable_only_by_their_user() {
     use std::os::unix::fs::PermissionsExt;
 
     let folder = Folder::with([]);
@@ -217,7 +230,7 @@ fn what_is_kept_of_a_user_is_for_the_user_alone() {
     files::keep(&path, "old").unwrap();
     let modes = || ["state", "state/drafts", "state/drafts/a.json"].map(mode);
     assert_eq!(modes(), [0o700, 0o700, 0o600]);
-    // Also in folders, and in the place of a file, that everybody can read.
+    // Also in a folder, and in place of a file, that everybody can read.
     set("state/drafts", 0o755);
     set("state/drafts/a.json", 0o644);
     files::keep(&path, "new").unwrap();

@@ -1,17 +1,13 @@
-//! Folders in which only what was made there is replaced.
+//! Output folders, in which a command replaces only files that it has made.
 
 use std::fs;
 
 use pinhole::files::OutputFolder;
 
+use super::folder;
 use crate::program::{Folder, names};
 
-const SCENE: &str = "image { width 6 height 4 }
-camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
-sphere Ball { center (-1, 1, 0) }
-";
-
-/// The commands that fill a folder `out`, each with the files that it makes there.
+/// Commands that fill a folder `out`, with some of the files that they make there.
 const COMMANDS: [(&str, &[&str]); 3] = [
     (
         "grade a.scn a.png -o out",
@@ -27,14 +23,8 @@ const COMMANDS: [(&str, &[&str]); 3] = [
     ),
 ];
 
-fn folder() -> Folder {
-    let folder = Folder::with([("a.scn", SCENE), ("b.scn", SCENE)]);
-    folder.told("render a.scn", 0);
-    folder
-}
-
 #[test]
-fn what_was_made_is_replaced_and_listed_with_its_hashes() {
+fn own_output_files_are_replaced_and_listed_with_their_hashes() {
     for (command, files) in COMMANDS {
         let folder = folder();
         for _ in 0..2 {
@@ -46,7 +36,7 @@ fn what_was_made_is_replaced_and_listed_with_its_hashes() {
         }
         let checked = folder.shell("cd out; sha256sum --check --strict --quiet .pinhole");
         assert_eq!((checked.status, &*checked.errors), (0, ""), "{list}");
-        // One that is gone is made again, and what stands beside is left alone.
+        // A removed file is made again, and another file in the folder is left alone.
         fs::remove_file(folder.path(&format!("out/{}", files[0]))).unwrap();
         folder.write("out/other.html", "mine");
         folder.told(command, 0);
@@ -55,7 +45,7 @@ fn what_was_made_is_replaced_and_listed_with_its_hashes() {
 }
 
 #[test]
-fn what_somebody_else_made_or_changed_is_refused_before_anything_is_written() {
+fn foreign_or_changed_output_files_are_refused_before_anything_is_written() {
     for (command, files) in COMMANDS {
         for file in files {
             let folder = folder();
@@ -72,7 +62,7 @@ fn what_somebody_else_made_or_changed_is_refused_before_anything_is_written() {
             fs::remove_dir_all(folder.path("out")).unwrap();
             folder.told(command, 0);
             folder.write(&path, "changed");
-            // Nor is it read to its end if it has none.
+            // A changed file is not read to its end, which may be very far.
             let huge = fs::OpenOptions::new().write(true).open(folder.path(&path));
             huge.unwrap().set_len(1 << 40).unwrap();
             assert!(folder.told(command, 2).contains("was changed since"));
@@ -87,7 +77,7 @@ fn what_somebody_else_made_or_changed_is_refused_before_anything_is_written() {
 }
 
 #[test]
-fn runs_at_the_same_time_list_what_each_of_them_made() {
+fn concurrent_runs_both_list_their_files() {
     let folder = Folder::with([]);
     let path = folder.path("out");
     let open = |name| OutputFolder::open(&path, [name]).unwrap();
@@ -100,10 +90,10 @@ fn runs_at_the_same_time_list_what_each_of_them_made() {
     assert!(list.contains("  a\n") && list.contains("  b/c\n"), "{list}");
 }
 
-/// What is written again as it was has one hash, so nothing in the list changes, and it stays.
+/// A file that is written again with the same content keeps its hash, so the list does not change.
 #[cfg(unix)]
 #[test]
-fn a_list_to_which_nothing_is_added_is_not_written() {
+fn an_unchanged_file_list_is_not_rewritten() {
     use std::os::unix::fs::MetadataExt;
 
     let folder = Folder::with([]);
@@ -114,7 +104,7 @@ fn a_list_to_which_nothing_is_added_is_not_written() {
         out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
     };
     write();
-    // So that no later file gets its number.
+    // The hard link keeps the inode's number from being reused.
     fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
     let before = inode();
     write();
@@ -122,7 +112,7 @@ fn a_list_to_which_nothing_is_added_is_not_written() {
 }
 
 #[test]
-fn a_list_that_is_none_is_refused() {
+fn an_invalid_file_list_is_refused() {
     for list in ["", "x", "# Files\n", "\0"] {
         let folder = folder();
         folder.write("out/.pinhole", list);

@@ -1,4 +1,4 @@
-//! How far two pictures are apart: what the tests of `diff` do not see.
+//! Distance of two pictures: what the tests of `diff` do not cover.
 
 use pinhole::{
     color::srgb_to_linear,
@@ -14,13 +14,13 @@ fn film(pixels: &[[f64; 3]]) -> Film {
     Film::from_fn(pixels.len() as u32, 1, |x, _| pixels[x as usize]).unwrap()
 }
 
-/// The light of steps of 255.
+/// Returns the linear light of a step of 255.
 fn light(steps: f64) -> f64 {
     srgb_to_linear(steps / 255.0)
 }
 
 #[test]
-fn a_tolerance_takes_its_own_steps_and_the_bound() {
+fn pixels_within_the_tolerance_plus_the_bound_compare_equal() {
     for k in 0..255 {
         let k = f64::from(k);
         for (more, is_equal) in [(0.5, true), (0.501, false)] {
@@ -33,7 +33,7 @@ fn a_tolerance_takes_its_own_steps_and_the_bound() {
     for (other, bound, is_equal, undecided) in [
         (&bright, None, false, 0),
         (&bright, Some([1e-3]), true, 1),
-        // As far as the bound alone may reach, too.
+        // Also where only the bound covers the difference.
         (&dark, Some([1e-3]), true, 1),
         (&dark, Some([1e-6]), true, 0),
     ] {
@@ -47,13 +47,13 @@ fn a_tolerance_takes_its_own_steps_and_the_bound() {
 }
 
 #[test]
-fn sizes_that_differ_are_told() {
+fn comparing_pictures_of_different_sizes_is_an_error() {
     let told = compare(&film(&[[0.0; 3]]), &film(&[[0.0; 3]; 2]), HALF).unwrap_err();
     assert_eq!(told.to_string(), "the sizes differ: 1 × 1 pixels and 2 × 1");
 }
 
 #[test]
-fn heat_grows_ever_brighter() {
+fn heat_map_brightness_increases_with_the_difference() {
     let steps: Vec<_> = (0..256).map(|step| [light(step.into()); 3]).collect();
     let map = heat_map(&film(&[[0.0; 3]; 256]), &film(&steps), HALF).unwrap();
     let pixels = map.pixels().iter();

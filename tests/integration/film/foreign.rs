@@ -1,4 +1,4 @@
-//! Files that the first programs of a class write, and what shells and systems make of them.
+//! Picture files as beginners' programs write them, and as shells and systems alter them.
 
 use std::io::Cursor;
 
@@ -9,7 +9,8 @@ use pinhole::film::{Coding, read_picture};
 /// Two rows of three pixels.
 const TEXT: &str = "P3\n3 2\n255\n1 2 3 4 5 6 7 8 9\n10 11 12 13 14 15 16 17 18\n";
 
-/// The same in bytes; 10 and 13 are a line feed and a carriage return.
+/// Returns the picture of `TEXT` in binary form. Its bytes 10 and 13 are a line feed and a carriage
+/// return.
 fn bytes() -> Vec<u8> {
     let numbers: Vec<u8> = (1..=18).collect();
     [b"P6\n3 2\n255\n", &numbers[..]].concat()
@@ -20,7 +21,7 @@ fn utf16(text: &str, mark: &[u8], bytes: fn(u16) -> [u8; 2]) -> Vec<u8> {
     mark.iter().copied().chain(text).collect()
 }
 
-/// As a C library writes it that takes the file for a text.
+/// Returns the bytes as a C library writes them in text mode, with two bytes per line end.
 fn in_text_mode(bytes: &[u8]) -> Vec<u8> {
     let written = |&byte: &u8| match byte {
         b'\n' => vec![b'\r', b'\n'],
@@ -30,7 +31,7 @@ fn in_text_mode(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn what_was_done_to_a_pnm_is_undone() {
+fn pnm_files_altered_by_shells_are_read_with_a_warning() {
     let right = read_picture(TEXT.as_bytes()).unwrap();
     assert_eq!(right.coding, Coding::Exact);
     let log = "Rendering…\nP3 takes long\n50 %\n";
@@ -64,7 +65,7 @@ fn what_was_done_to_a_pnm_is_undone() {
 }
 
 #[test]
-fn bytes_that_were_written_as_letters_are_read() {
+fn binary_pnm_reencoded_as_utf8_is_read() {
     let numbers: Vec<u8> = [9, 10, 11, 12, 13, 14, 126, 127, 128]
         .into_iter()
         .chain(247..=255)
@@ -86,9 +87,9 @@ fn bytes_that_were_written_as_letters_are_read() {
     assert!(said.contains("as `>` of PowerShell 7 does"), "{said}");
 }
 
-/// What is cut off is no picture with something gray or black below.
+/// A truncated file is an error, or has all pixels of the whole one.
 #[test]
-fn no_part_of_a_picture_file_is_another_picture() {
+fn a_truncated_picture_file_never_reads_as_a_different_picture() {
     let picture = RgbImage::from_fn(24, 20, |x, y| {
         Rgb([9 * x, 11 * y, 7 * (x + y)].map(|n| n as u8))
     });
@@ -122,7 +123,7 @@ fn no_part_of_a_picture_file_is_another_picture() {
 }
 
 #[test]
-fn what_is_no_picture_is_named() {
+fn a_file_of_another_kind_is_named_in_the_error() {
     let cases: [(&[u8], &str); 7] = [
         (b"", "an empty file"),
         (
@@ -143,7 +144,7 @@ fn what_is_no_picture_is_named() {
 }
 
 #[test]
-fn what_is_wrong_with_a_pnm_is_told_with_its_place() {
+fn pnm_errors_name_the_pixel_or_the_line() {
     let cut = |length: usize| bytes()[..length].to_vec();
     let cases: [(Vec<u8>, &str); 17] = [
         (
@@ -210,7 +211,7 @@ fn what_is_wrong_with_a_pnm_is_told_with_its_place() {
     }
 }
 
-/// A file with pixels of these three channels.
+/// Returns an EXR file with three channels of the given names.
 fn exr(names: [&str; 3]) -> Vec<u8> {
     let [a, b, c] = names;
     let channels = SpecificChannels::build()
@@ -225,7 +226,7 @@ fn exr(names: [&str; 3]) -> Vec<u8> {
 }
 
 #[test]
-fn the_only_layer_of_an_exr_is_read_and_other_channels_are_listed() {
+fn an_exr_with_one_rgb_layer_is_read_and_other_channels_are_listed() {
     for names in [["R", "G", "B"], ["beauty.R", "beauty.G", "beauty.B"]] {
         let film = read_picture(&exr(names)).unwrap().film;
         assert_eq!(film.pixels(), [[0.25, 0.5, 0.75]; 2]);

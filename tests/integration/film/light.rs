@@ -1,4 +1,4 @@
-//! The light of a pixel: the mean of its samples, and its bytes.
+//! Light of a pixel: the mean of its samples and its encoding as bytes.
 
 use pinhole::{
     color::{Color, half_byte},
@@ -11,7 +11,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use super::encoded;
 
 #[test]
-fn a_colour_alone_is_its_own_mean() {
+fn the_mean_of_equal_samples_is_their_colour() {
     for bytes in 0..=255 {
         let color = Color::from_bytes([bytes, 255 - bytes, 1]).to_linear();
         for count in [1, 3, 7, 16, 1_000_003, (1 << 53) - 1, 1 << 53] {
@@ -21,7 +21,7 @@ fn a_colour_alone_is_its_own_mean() {
 }
 
 #[test]
-fn a_mean_is_that_of_long_division() {
+fn a_mean_equals_the_quotient_in_extended_precision() {
     let mut rng = CounterRng::seed_from_u64(1);
     for round in 0..100_000 {
         let seen = [0; 3].map(|_: u32| {
@@ -45,19 +45,19 @@ fn a_mean_is_that_of_long_division() {
 
 #[test]
 fn a_mean_is_rounded_once() {
-    // 3 · 0.1 + 7 · 0.3, of which 0.1 is 0.1000000000000000055511151231257827 and 0.3 is
-    // 0.299999999999999988897769753748: 0.24 within 6e-18, a quarter of the distance between
-    // neighbours there.
+    // 3 · 0.1 + 7 · 0.3, where the double 0.1 is 0.1000000000000000055511151231257827 and 0.3 is
+    // 0.299999999999999988897769753748: the mean is 0.24 within 6e-18, a quarter of the distance
+    // between neighbouring doubles.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // 1 of 2^53 samples is half a unit in the last place of the others: exact, where a running sum
-    // would lose it.
+    // One of 2^53 samples is half a unit in the last place of the others: the mean is exact, and a
+    // running sum would lose that sample.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }
 
 #[test]
-fn colours_come_back_as_their_bytes() {
+fn encoding_linear_light_returns_the_bytes_of_its_colour() {
     let encoder = Encoder::default();
     for step in 0..=255 * 64 {
         let channel = f64::from(step) / 64.0;
@@ -68,7 +68,7 @@ fn colours_come_back_as_their_bytes() {
 }
 
 #[test]
-fn the_nearest_byte_is_found_all_the_way() {
+fn encoding_rounds_every_light_to_the_nearest_byte() {
     let encoder = Encoder::default();
     for step in 0..=200_000 {
         let light = f64::from(step) / 200_000.0;

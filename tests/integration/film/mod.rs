@@ -1,4 +1,4 @@
-//! Picture files: what is in them, and that they are whole.
+//! Picture files: their contents, and how damaged or oversized ones are refused.
 
 mod compare;
 mod foreign;
@@ -20,7 +20,7 @@ use png::{BitDepth, ColorType};
 
 use crate::images::png;
 
-/// A film of colours from dark to light, some out of the ordinary.
+/// Returns a film of colours from dark to light.
 fn film(width: u32, height: u32) -> Film {
     Film::from_fn(width, height, |x, y| {
         let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
@@ -29,7 +29,7 @@ fn film(width: u32, height: u32) -> Film {
     .unwrap()
 }
 
-/// What sRGB makes of the light of a channel, by its definition.
+/// Encodes the linear light of a channel by the definition of sRGB.
 fn encoded(light: f64) -> f64 {
     if light <= 0.003_130_8 {
         12.92 * light
@@ -52,7 +52,7 @@ fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
     bytes
 }
 
-/// The chunks of a PNG: their kinds and contents.
+/// Returns the kinds and contents of a PNG's chunks.
 fn chunks(png: &[u8]) -> Vec<(&str, &[u8])> {
     let mut rest = &png[8..];
     iter::from_fn(|| {
@@ -66,7 +66,7 @@ fn chunks(png: &[u8]) -> Vec<(&str, &[u8])> {
 }
 
 #[test]
-fn png_is_true_colour_and_nothing_but() {
+fn a_png_is_truecolour_with_no_unexpected_chunks() {
     let film = film(31, 17);
     let png = png_bytes(&film, &recipe());
     let chunks = chunks(&png);
@@ -84,7 +84,7 @@ fn png_is_true_colour_and_nothing_but() {
 }
 
 #[test]
-fn png_carries_its_recipe_to_the_letter() {
+fn a_png_carries_its_recipe_unchanged() {
     let plain = Recipe {
         overrides: Vec::new(),
         crop: None,
@@ -103,7 +103,7 @@ fn png_carries_its_recipe_to_the_letter() {
 }
 
 #[test]
-fn a_long_recipe_is_left_out() {
+fn a_recipe_beyond_the_text_limit_is_left_out() {
     for (length, fits) in [(TEXT_LIMIT - 38, true), (TEXT_LIMIT - 37, false)] {
         let long = Recipe {
             scene: "/".repeat(length),
@@ -123,9 +123,9 @@ fn a_long_recipe_is_left_out() {
     assert!(!many.fits());
 }
 
-/// What a decoder says of a file may hold a part of it, which can have any length.
+/// A decoder's error may quote a part of the file, which can have any length.
 #[test]
-fn no_error_carries_much_of_a_file() {
+fn picture_errors_are_at_most_300_characters_long() {
     let long = "x".repeat(5000);
     let heads = [
         "P7\nWIDTH LONG\n",
@@ -152,14 +152,14 @@ fn no_error_carries_much_of_a_file() {
 }
 
 #[test]
-fn what_is_damaged_is_told_from_what_is_whole() {
+fn a_damaged_png_never_yields_a_changed_recipe() {
     let png = png_bytes(&film(3, 2), &recipe());
     let idat = png.windows(4).position(|four| four == b"IDAT").unwrap();
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // Whatever bit is wrong, it is no panic; of the header it is found by its checksum; and nothing
-    // behind the scene is looked at.
+    // No wrong bit causes a panic. A wrong bit in the header is found by the checksum, and nothing
+    // behind the scene is read.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -171,7 +171,7 @@ fn what_is_damaged_is_told_from_what_is_whole() {
     }
 }
 
-/// The beginning of a PNG with such texts.
+/// Returns the start of a PNG with text chunks of these keywords and texts.
 fn carrying<'a>(texts: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
     let mut png = SIGNATURE.to_vec();
     for (keyword, text) in texts {
@@ -185,7 +185,7 @@ fn carrying<'a>(texts: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_wrong_with_a_text_is_told() {
+fn recipes_with_too_many_or_non_utf8_overrides_are_refused() {
     let scene = ("pinhole:scene", &b"sphere {}"[..]);
     let with = |count, text| {
         let set = ("pinhole:set", text);
@@ -199,12 +199,12 @@ fn what_is_wrong_with_a_text_is_told() {
         told.ends_with("an override that is not UTF-8 text"),
         "{told}"
     );
-    // What others wrote may be anything.
+    // Texts of other programs may have any content.
     let foreign = ("Comment", &b"\xff"[..]);
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
 }
 
-/// Other formats are written by the tests of `diff`.
+/// The tests of `diff` cover the other formats.
 #[test]
 fn a_lossy_webp_and_a_plain_pnm_are_read() {
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
@@ -216,7 +216,7 @@ fn a_lossy_webp_and_a_plain_pnm_are_read() {
 }
 
 #[test]
-fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
+fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
     let bytes: Vec<u8> = (0..=255).collect();
     let words: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_be_bytes).collect();
     for (size, depth, data, last) in [
@@ -230,10 +230,10 @@ fn every_byte_and_word_of_srgb_is_the_light_that_it_stands_for() {
     }
 }
 
-/// What is not read, an opacity or another layer, says nothing of how the colours are rounded: the
-/// one file has an opacity of 16 bits, the other a green channel.
+/// Channels that are not read, such as opacity or another layer, do not affect how the colours are
+/// taken to be rounded: one file has 16-bit opacity, the other a 16-bit green channel.
 #[test]
-fn only_the_channels_that_are_read_say_how_an_exr_is_rounded() {
+fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [
         (
             &include_bytes!("../../film/half_opacity.exr")[..],
@@ -252,7 +252,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // The limit counts four channels, of as many bytes as they have.
+    // The limit counts four channels of the size of those in the file.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],
@@ -269,7 +269,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
 }
 
 #[test]
-fn a_text_that_unpacks_without_end_is_refused() {
+fn png_text_that_unpacks_beyond_the_limit_is_refused() {
     let mut bomb = Vec::new();
     let mut encoder = png::Encoder::new(&mut bomb, 1, 1);
     encoder.set_color(ColorType::Rgb);
@@ -286,7 +286,7 @@ fn a_text_that_unpacks_without_end_is_refused() {
 }
 
 #[test]
-fn exr_holds_the_means_as_floats_and_where_they_are() {
+fn an_exr_stores_means_as_floats_and_the_position_of_the_crop() {
     let film = film(33, 70);
     let part: Area = "7,5,33,70".parse().unwrap();
     for (part, whole, crop) in [
@@ -296,7 +296,7 @@ fn exr_holds_the_means_as_floats_and_where_they_are() {
         let mut bytes = Cursor::new(Vec::new());
         write_exr(&film, part, whole, &mut bytes).unwrap();
         let bytes = bytes.into_inner();
-        // A film of floats gives the same file.
+        // A film of 32-bit floats gives the same file.
         let floats: Film<[f32; 3]> =
             Film::from_fn(33, 70, |x, y| film.pixel(x, y).map(|light| light as f32)).unwrap();
         let mut same = Cursor::new(Vec::new());

@@ -1,14 +1,15 @@
-//! Which fixes mistakes get and what they make of a text, as `tests/fixes` has it.
+//! Which fixes mistakes get and how they change a text, compared with the files in `tests/fixes`.
 
 use pinhole::{diagnostic::apply, source::SourceId};
 
 use super::{Trial, diagnostics};
 use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
 
-/// A text with all fixes that it gets, one after the other, as one moves those behind it.
+/// Applies the first fix again and again until no problem has one, as each fix moves later ones.
+/// Returns `None` if there is no fix.
 fn mended(text: &str) -> Option<String> {
     let mut trial = Trial::default();
-    trial.type_in(&sources(text), |_, _| true);
+    trial.apply_fixes(&sources(text), |_, _| true);
     assert_eq!(trial.complaints, [""; 0]);
     let mut mended = text.to_owned();
     loop {
@@ -25,9 +26,10 @@ fn mended(text: &str) -> Option<String> {
 const QUESTIONS: [&str; 6] = ["offered", "of_all", "at_the_end", "mended", "kind", "told"];
 
 fn answer(question: &str, text: &str, _: &str) -> String {
-    let camera = match text.contains("camera {") {
-        true => "",
-        false => "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n",
+    let camera = if text.contains("camera {") {
+        ""
+    } else {
+        "camera { eye (0, 1, 5)  lookat (0, 1, 0) }\n"
     };
     assert!(QUESTIONS.contains(&question), "{question}");
     let others = format!("\ncheckerboard {{}}\n{camera}");
@@ -76,13 +78,14 @@ fn answer(question: &str, text: &str, _: &str) -> String {
         format!("{title}: {}", of_text(&fixed))
     });
     let offered: Vec<String> = offered.collect();
-    match offered.is_empty() {
-        true => first.help.unwrap_or_default(),
-        false => offered.join(" | "),
+    if offered.is_empty() {
+        first.help.unwrap_or_default()
+    } else {
+        offered.join(" | ")
     }
 }
 
 #[test]
-fn fixes_are_as_they_stand_there() {
+fn fixes_match_the_files_in_tests_fixes() {
     assert_answers("tests/fixes", answer);
 }

@@ -1,5 +1,5 @@
-//! A brace or a parenthesis is missing: the first report is about it, and no fix takes away what
-//! the author wrote.
+//! A missing brace or parenthesis: the first report is about it, and no fix removes what the author
+//! wrote.
 
 use std::{collections::BTreeSet, fs};
 
@@ -8,7 +8,7 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes with mistakes of their own, most of them in heads.
+/// Scenes with other mistakes, most of them in the heads of blocks.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }
@@ -38,7 +38,7 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// The codes of what may be said first, without `pinhole::`.
+/// Codes that may be reported first, without `pinhole::`.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",
@@ -49,7 +49,8 @@ const OF_DELIMITERS: [&str; 7] = [
     "nested_braces",
 ];
 
-/// A text after all of its fixes, and whether all that was written is still there, in order.
+/// Returns whether a text still has all its characters, in order, after its fixes; white space is
+/// not compared.
 fn keeps_all(text: &str, most: Applicability) -> bool {
     let fixed = scene::fix_all(&sources(text), most).text;
     let mut left = fixed.chars();
@@ -58,7 +59,7 @@ fn keeps_all(text: &str, most: Applicability) -> bool {
 }
 
 #[test]
-fn a_missing_delimiter_is_told_first_and_no_fix_takes_anything_away() {
+fn a_missing_delimiter_is_reported_first_and_fixes_delete_nothing() {
     let folders = ["examples", "examples/course"].into_iter();
     let paths = folders.flat_map(scenes);
     let texts = paths.map(|path| fs::read_to_string(path).unwrap());

@@ -1,5 +1,4 @@
-//! Slips made by a program in scenes that are right: each fix of a problem does away with it, and
-//! makes no new error.
+//! Systematic slips in correct scenes: each fix of a problem removes it and adds no new error.
 
 use std::ops::Range;
 
@@ -8,7 +7,7 @@ use pinhole::syntax::tokens::{Lexer, TokenKind};
 use super::{Trial, diagnostics};
 use crate::scenes::{examples, sources};
 
-/// A scene with what the examples lack.
+/// Scene with the parts of the language that the examples lack.
 const SCENE: &str = "\
 camera { eye (0, 2, 8)  lookat (0, 1, 0)  hfov 60deg  near 1  far 100 }
 sampler { method sobol  total 1_000_000 }
@@ -22,7 +21,7 @@ box D { center (0, 1, 0)  size (1, 2, 3) }
 checkerboard { square 1  colors (red, white) }
 ";
 
-/// The tokens of a scene, without the comments.
+/// Returns the ranges of a scene's tokens, without comments.
 fn tokens(text: &str) -> Vec<Range<usize>> {
     let mut lexer = Lexer::new(text, 0);
     let tokens = std::iter::repeat_with(|| lexer.token());
@@ -31,9 +30,9 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     tokens.map(|token| token.start..token.end).collect()
 }
 
-/// One token is taken away, written twice, replaced by another one, or followed by it.
+/// One token is removed, doubled, replaced by another one, or followed by another one.
 #[test]
-fn every_fix_of_a_slip_in_syntax_helps() {
+fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
     let mut others = others.cycle();
     let mut trial = Trial::default();
@@ -45,19 +44,19 @@ fn every_fix_of_a_slip_in_syntax_helps() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A field without a value is found when the scene is made.
-                trial.type_in(&sources(&wrong), |d, _| {
+                // A field without a value is found when the tree is lowered to a scene.
+                trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });
             }
         }
     }
-    trial.ends_with_more_than(500);
+    trial.finish_with_more_than(500);
 }
 
-/// A word, a number or an innermost list becomes another one.
+/// A word, a number or an innermost list is replaced by another one.
 #[test]
-fn every_fix_of_a_slip_in_meaning_helps() {
+fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();
     for text in [
         include_str!("../../../examples/language_tour.scn"),
@@ -80,16 +79,16 @@ fn every_fix_of_a_slip_in_meaning_helps() {
             end = piece.end;
             for slip in slips_in_meaning(&text[piece.clone()]) {
                 let wrong = format!("{}{slip}{}", &text[..piece.start], &text[end..]);
-                trial.type_in(&sources(&wrong), |d, found| {
+                trial.apply_fixes(&sources(&wrong), |d, found| {
                     d.is_error() && !found.iter().any(|d| d.is_of_syntax)
                 });
             }
         }
     }
-    trial.ends_with_more_than(500);
+    trial.finish_with_more_than(500);
 }
 
-/// What could stand in place of a word, a number or an innermost list.
+/// Returns replacements of a word, a number or an innermost list.
 fn slips_in_meaning(piece: &str) -> Vec<String> {
     let (mut slips, fixed) = match piece.chars().next() {
         Some('(') if piece.len() > 1 => {

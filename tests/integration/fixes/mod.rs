@@ -1,11 +1,11 @@
-//! What diagnostics offer to do: each fix does away with its problem and makes no new error.
+//! Fixes that diagnostics offer: each removes its problem and adds no new error.
 
 mod answers;
 mod delimiters;
-mod kept;
-mod law;
+mod lost_words;
 mod mistyped;
 mod names;
+mod preservation;
 
 use std::collections::BTreeMap;
 
@@ -21,15 +21,15 @@ fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
     scene::read(sources).diagnostics
 }
 
-/// The texts with a fix.
-fn fixed(sources: &Sources, fix: &Fix) -> Sources {
+/// Applies a fix to the file and the `--set` arguments.
+fn with_fix(sources: &Sources, fix: &Fix) -> Sources {
     let sets = sources.sets();
     let sets = sets.map(|(id, set)| apply(fix, id, set.text()));
     let file = apply(fix, SourceId::File, sources.file.text());
     Sources::new(Source::from_text("a.scn", file)).with_sets(sets)
 }
 
-/// How often each thing is said, whatever white space stands in what it quotes.
+/// Counts the diagnostics by code and message, without the spaces in quoted texts.
 fn counted<'d>(
     diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> BTreeMap<(&'d str, String), usize> {
@@ -44,7 +44,7 @@ fn said(diagnostic: &Diagnostic) -> (&str, String) {
     (&diagnostic.code, diagnostic.message.replace(' ', ""))
 }
 
-/// Fixes that are typed in, and what there is to complain of.
+/// Number of fixes applied, and complaints about them.
 #[derive(Default)]
 struct Trial {
     fixes: usize,
@@ -52,9 +52,9 @@ struct Trial {
 }
 
 impl Trial {
-    /// Types in every fix of the problems that are meant, and complains where its problem stays or
-    /// another one comes.
-    fn type_in(
+    /// Applies every fix of the selected problems, and complains if a problem remains or another
+    /// one appears.
+    fn apply_fixes(
         &mut self,
         before_sources: &Sources,
         is_meant: impl Fn(&Diagnostic, &[Diagnostic]) -> bool,
@@ -64,7 +64,7 @@ impl Trial {
         for diagnostic in before.iter().filter(|d| is_meant(d, &before)) {
             for fix in &diagnostic.fixes {
                 self.fixes += 1;
-                let after = diagnostics(&fixed(before_sources, fix));
+                let after = diagnostics(&with_fix(before_sources, fix));
                 let errors = |found: &[Diagnostic]| found.iter().filter(|d| d.is_error()).count();
                 let are_fewer = errors(&after) < errors(&before);
                 let mut complain = |what: &str, said: &(&str, String)| {
@@ -89,17 +89,17 @@ impl Trial {
     }
 
     #[track_caller]
-    fn ends_with_more_than(self, fixes: usize) {
+    fn finish_with_more_than(self, fixes: usize) {
         assert!(self.complaints.is_empty(), "{}", self.complaints.join("\n"));
         assert!(self.fixes > fixes, "{} fixes", self.fixes);
     }
 }
 
 #[test]
-fn every_fix_helps() {
+fn fixes_of_every_fixture_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();
     for (_, sources) in fixtures() {
-        trial.type_in(&sources, |_, _| true);
+        trial.apply_fixes(&sources, |_, _| true);
     }
-    trial.ends_with_more_than(100);
+    trial.finish_with_more_than(100);
 }

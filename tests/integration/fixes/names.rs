@@ -1,12 +1,12 @@
-//! A name that is suggested will do where it is written: every name of the language and of the
-//! text, mistyped in every way, in every place.
+//! Suggested names are valid where they are suggested: every name of the language and of the text,
+//! with every kind of misspelling, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 
 use super::{Trial, diagnostics};
 use crate::scenes::sources;
 
-/// Where a value can stand: `@`.
+/// Places of a value, marked `@`.
 const PLACES: [&str; 22] = [
     "let x = @",
     "let x = -@",
@@ -34,7 +34,7 @@ const PLACES: [&str; 22] = [
 
 const LETS: &str = "let number = 2\nlet angle = 30deg\nlet vector = (1, 2, 3)\nlet shade = red\nlet pair = (red, blue)\nlet negative = -2\nlet k1 = 7\n";
 
-/// A name with a letter dropped, doubled, exchanged or changed, and in capitals.
+/// Returns misspellings of a name: a letter dropped, doubled, swapped or changed, or capitals.
 fn mistyped(name: &str) -> Vec<String> {
     let mut slips = vec![
         name.to_uppercase(),
@@ -65,7 +65,7 @@ fn is_meant(problem: &pinhole::diagnostic::Diagnostic) -> bool {
 }
 
 #[test]
-fn a_suggested_name_will_do_in_its_place() {
+fn suggested_names_are_valid_where_they_are_suggested() {
     let lets = [
         "number", "angle", "vector", "shade", "pair", "negative", "k1",
     ];
@@ -74,7 +74,7 @@ fn a_suggested_name_will_do_in_its_place() {
     names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
     names.extend(method_names().step_by(3).flat_map(mistyped));
     names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
-    // Calls with arguments of each type, and of each number.
+    // Calls with arguments of each type and number.
     for function in FUNCTIONS {
         let arguments = [
             "",
@@ -96,14 +96,14 @@ fn a_suggested_name_will_do_in_its_place() {
         for place in PLACES {
             let camera = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }\n";
             let text = format!("{LETS}{camera}{}\n", place.replace('@', name));
-            trial.type_in(&sources(&text), |problem, _| is_meant(problem));
+            trial.apply_fixes(&sources(&text), |problem, _| is_meant(problem));
         }
     }
-    trial.ends_with_more_than(1000);
+    trial.finish_with_more_than(1000);
 }
 
 #[test]
-fn a_suggested_field_or_target_will_do_in_its_place() {
+fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
     let values = [
         "3",
         "1e15",
@@ -151,7 +151,7 @@ fn a_suggested_field_or_target_will_do_in_its_place() {
                         "{LETS}{} {{ {others}{name} {value} }}\n{camera}",
                         block.name
                     );
-                    trial.type_in(&sources(&text), |problem, _| is_meant(problem));
+                    trial.apply_fixes(&sources(&text), |problem, _| is_meant(problem));
                 }
             }
         }
@@ -173,16 +173,16 @@ fn a_suggested_field_or_target_will_do_in_its_place() {
         "k2",
         "negativ",
     ] {
-        // Whether what a block has goes together is another matter.
+        // Whether a block's values fit together is not tested here.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");
         for value in values {
             let sources = sources(&scene).with_sets([format!("{target}={value}")]);
-            trial.type_in(&sources, |problem, _| is_meant(problem));
+            trial.apply_fixes(&sources, |problem, _| is_meant(problem));
         }
     }
-    // A target that is suggested is one.
+    // A field that the block lacks is an error.
     assert!(!diagnostics(&sources(&scene).with_sets(["Bal.size=3"])).is_empty());
-    trial.ends_with_more_than(500);
+    trial.finish_with_more_than(500);
 }

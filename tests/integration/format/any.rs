@@ -1,22 +1,22 @@
-//! Generated texts: tokens, and what stands between them.
+//! Generated texts: random tokens with random gaps between them.
 
 use proptest::{collection::vec, prelude::*, sample::select};
 
-use super::{formatted, laws::the_laws_hold};
+use super::{formatted, laws::assert_formatter_laws};
 
 fn one_of(words: &'static str, separator: char) -> impl Strategy<Value = &'static str> {
     select(words.split(separator).collect::<Vec<_>>())
 }
 
-/// What may stand between two tokens.
+/// Generates the gaps between tokens: white space and comments.
 pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
-    // Apart by bars, the more frequent ones twice.
+    // Separated by bars; frequent gaps are listed twice.
     let gaps = "|||| | |  |\n|\n|\n\n|\n \n\t\n|\r\n| // c \n|\n// own\n|/* b */| /* b */ |\n/* own */\n|/* two\n lines */|\n\n/* d */ /* e */\n|// f\n// g\n\n";
     vec(one_of(gaps, '|'), 200)
 }
 
-/// A text of tokens, which are apart by blanks, with these gaps. A blank comes first where two
-/// tokens would be one, or the start of a comment.
+/// Joins tokens, given separated by blanks, with gaps. A blank is added where two tokens would
+/// become one, or the start of a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
@@ -43,7 +43,7 @@ fn value() -> impl Strategy<Value = String> {
                     *open != "(" || !values.is_empty()
                 })
                 .prop_map(|(open, values)| format!("{open} {} )", values.join(" , ")));
-            // As it is written by hand: an element a line, and what it is beside it.
+            // As written by hand: one element per line, with a comment beside it.
             let remark = one_of("|\t//\tx|\t//\tof\tthe\tleft|\t/*\ty\t*/|\n//\town", '|');
             let explained = (one_of("(|max (", '|'), vec((inner.clone(), remark), 1..4)).prop_map(
                 |(open, values)| {
@@ -79,7 +79,7 @@ fn item() -> impl Strategy<Value = String> {
 
 proptest! {
     #[test]
-    fn the_laws_hold_of_any_text(
+    fn formatter_laws_hold_for_generated_texts(
         items in vec(item(), 0..8),
         mut gaps in gaps(),
         style in one_of("everywhere|between lines|crlf", '|'),
@@ -94,8 +94,9 @@ proptest! {
         if style == "crlf" {
             text = text.replace("\r\n", "\n").replace('\n', "\r\n");
         }
-        // What looks like another language's comment is told so, though it may be a difference.
+        // `--` looks like another language's comment and is reported, although it may be a
+        // subtraction.
         prop_assume!(!text.contains("-- ") && !text.contains("--\t"));
-        the_laws_hold(&text, &formatted(&text).unwrap());
+        assert_formatter_laws(&text, &formatted(&text).unwrap());
     }
 }

@@ -1,4 +1,5 @@
-//! What holds of every layout: the same tokens, comments and tree; twice is once.
+//! Laws of the formatter: tokens, comments and tree stay the same, and formatting twice equals
+//! formatting once.
 
 use pinhole::{
     source::{Source, SourceId},
@@ -6,10 +7,9 @@ use pinhole::{
 };
 
 use super::{all_scenes, formatted};
-use crate::{diagnostics::found, syntax::tokens};
+use crate::{diagnostics::diagnose, syntax::tokens};
 
-/// Tokens and comments in their order, without the white space at the ends of the lines of
-/// comments.
+/// Returns tokens and comments in order, without the white space at line ends in comments.
 fn words(text: &str) -> Vec<String> {
     let tidy = |token: &str| {
         let lines = token.lines();
@@ -22,7 +22,7 @@ fn words(text: &str) -> Vec<String> {
     tokens(text).into_iter().map(tidy).collect()
 }
 
-/// The tree without its places.
+/// Returns the tree without its spans.
 fn tree(text: &str) -> String {
     let source = Source::from_text("a.scn", text);
     let printed = format!("{:?}", syntax::parse(&source, SourceId::File).tree);
@@ -34,7 +34,7 @@ fn tree(text: &str) -> String {
     shape
 }
 
-pub fn the_laws_hold(text: &str, formatted_text: &str) {
+pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     assert_eq!(formatted(formatted_text).as_deref(), Ok(formatted_text));
     assert_eq!(tree(text), tree(formatted_text));
     assert_eq!(words(text), words(formatted_text));
@@ -44,7 +44,7 @@ pub fn the_laws_hold(text: &str, formatted_text: &str) {
     for line in formatted_text.lines() {
         assert_eq!(line.trim_end_matches([' ', '\t']), line);
     }
-    // But for those that stand in a comment.
+    // There are no two empty lines in a row, except within a comment.
     for (at, _) in formatted_text.match_indices("\n\n\n") {
         // `/*/` opens a comment.
         let before = formatted_text[..at].replace("/*/", "/* ");
@@ -56,11 +56,11 @@ pub fn the_laws_hold(text: &str, formatted_text: &str) {
     assert!(!formatted_text.ends_with("\n\n"));
 }
 
-/// Nor does what is wrong with a scene depend on its white space.
+/// The diagnostics of a scene do not depend on its white space.
 #[test]
-fn the_laws_hold_of_every_scene() {
+fn formatter_laws_hold_for_every_scene() {
     let said = |text: &str| {
-        let found = found(text, &[]).into_iter();
+        let found = diagnose(text, &[]).into_iter();
         let mut said: Vec<_> = found.map(|d| (d.code, d.message)).collect();
         said.sort();
         said
@@ -69,11 +69,11 @@ fn the_laws_hold_of_every_scene() {
     for text in all_scenes() {
         for text in [text.replace(' ', "\n"), text] {
             let Ok(formatted) = formatted(&text) else {
-                assert!(found(&text, &[]).iter().any(|d| d.is_error()), "{text}");
+                assert!(diagnose(&text, &[]).iter().any(|d| d.is_error()), "{text}");
                 wrong += 1;
                 continue;
             };
-            the_laws_hold(&text, &formatted);
+            assert_formatter_laws(&text, &formatted);
             assert_eq!(said(&text), said(&formatted), "{text}");
             right += 1;
             of_meaning += usize::from(!said(&text).is_empty());

@@ -1,4 +1,4 @@
-//! The canonical layout: what it looks like, as `tests/format` says, and what holds of every text.
+//! The canonical layout: its form, compared with the files in `tests/format`, and its laws.
 //!
 //! Beside each `NAME.scn` of `tests/format` stands `NAME.formatted.scn`.
 
@@ -9,10 +9,10 @@ use std::{fs, path::Path, time::Instant};
 
 use pinhole::{format::format, source::Source};
 
-use self::laws::the_laws_hold;
+use self::laws::assert_formatter_laws;
 use crate::{program::Folder, scenes::scenes, snapshot::assert_file};
 
-/// The canonical layout, or the codes of the mistakes, of which there is an error.
+/// Formats a text. Returns the codes of its mistakes if one of them is an error.
 pub fn formatted(text: &str) -> Result<String, Vec<String>> {
     format(&Source::from_text("a.scn", text)).map_err(|mistakes| {
         assert!(mistakes.iter().any(|d| d.is_error()), "{text}");
@@ -20,7 +20,8 @@ pub fn formatted(text: &str) -> Result<String, Vec<String>> {
     })
 }
 
-/// The texts of all scenes below the folders of the examples and the tests, right or wrong.
+/// Returns the texts of all scenes below the folders of the examples and the tests, including wrong
+/// ones.
 pub fn all_scenes() -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut texts, mut folders) = (Vec::new(), vec![root.join("examples"), root.join("tests")]);
@@ -37,7 +38,7 @@ pub fn all_scenes() -> Vec<String> {
 }
 
 #[test]
-fn the_layout_is_as_it_stands_beside() {
+fn formatted_scenes_match_the_files_beside_them() {
     for path in scenes("tests/format") {
         if path.file_stem().unwrap().to_string_lossy().contains('.') {
             continue;
@@ -48,7 +49,7 @@ fn the_layout_is_as_it_stands_beside() {
 }
 
 #[test]
-fn deep_and_long_values_are_laid_out() {
+fn deep_and_long_values_are_formatted() {
     let deep = format!("let a = {}1{}\n", "(".repeat(256), ")".repeat(256));
     assert_eq!(formatted(&deep).as_ref(), Ok(&deep));
     let signs = format!("let a = {}(2 - {}1)\n", "-".repeat(100), "-".repeat(100));
@@ -56,14 +57,14 @@ fn deep_and_long_values_are_laid_out() {
     let sum = format!("let a = 1{}", "+ 22 * 3".repeat(10_000));
     let [.., sum] = [signs, calls, sum].map(|text| {
         let formatted = formatted(&text).unwrap();
-        the_laws_hold(&text, &formatted);
+        assert_formatter_laws(&text, &formatted);
         formatted
     });
     assert!(sum.lines().all(|line| line.len() <= 100));
 }
 
 #[test]
-fn the_difference_of_long_texts_takes_time_in_proportion() {
+fn fmt_check_compares_long_texts_in_linear_time() {
     let lines = 40_000;
     let blank = "\n".repeat(lines);
     let mixed = "\n\n\nsphere {}\n\n".repeat(lines);
@@ -73,7 +74,7 @@ fn the_difference_of_long_texts_takes_time_in_proportion() {
         let folder = Folder::with([("a.scn", &*text)]);
         let start = Instant::now();
         let told = folder.told("fmt --check a.scn", 1);
-        // Looking at pairs of lines takes minutes.
+        // Comparing all pairs of lines would take minutes.
         assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
         assert!(told.starts_with("--- a.scn\n+++ a.scn, formatted\n@@ -1"));
     }

@@ -1,10 +1,10 @@
-//! What is said to `pinhole studio` over the web socket of a page that has shown its token.
+//! Random messages to `pinhole studio` over the web socket of a page with a valid token.
 
 use serde_json::{Value, json};
 use tungstenite::Message;
 
-use super::{any_text, below, each, flip, one};
-use crate::{lsp::client::Carrier, studio::client::studio};
+use super::{any_text, each, flip};
+use crate::{lsp::client::Transport, studio::client::studio};
 
 const METHODS: [&str; 6] = [
     "studio/save",
@@ -15,9 +15,9 @@ const METHODS: [&str; 6] = [
     "textDocument/hover",
 ];
 
-/// Whatever is said, the conversation goes on, and the file is what was saved last or what it was.
+/// After any message, the host still answers and the file is unchanged.
 #[test]
-fn no_message_ends_the_conversation() {
+fn no_studio_message_ends_the_conversation_or_changes_the_file() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     let before = folder.text("a.scn");
@@ -33,27 +33,27 @@ fn no_message_ends_the_conversation() {
         let text = any_text(random);
         let mut params = json!({ "text": text, "base": text, "name": "b.scn", "id": 7 });
         for key in ["text", "base", "name"] {
-            if below(random, 3) == 0 {
-                params[key] = one(random, &any).clone();
+            if random.below(3) == 0 {
+                params[key] = random.one_of(&any).clone();
             }
         }
-        // Nothing that is in the file is said to be known, so nothing is saved over it.
+        // No message gives the file's content as its base, so none may overwrite it.
         assert_ne!(params["base"], json!(before));
-        let method = *one(random, &METHODS);
+        let method = *random.one_of(&METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });
         let mut bytes = message.to_string().into_bytes();
-        if below(random, 3) > 0 {
+        if random.below(3) > 0 {
             flip(random, &mut bytes);
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        page.carrier.0.send(Message::text(text)).unwrap();
-        // It still answers: what comes before that is the answer to the message.
+        page.transport.0.send(Message::text(text)).unwrap();
+        // The host still answers; earlier messages are answers to the random one.
         let last = json!({ "jsonrpc": "2.0", "id": "last", "method": "studio/x", "params": {} });
-        page.carrier.write(&last.to_string());
+        page.transport.write(&last.to_string());
         while page.read()["id"] != "last" {}
     });
     assert_eq!(folder.text("a.scn"), before);
-    // What is saved under another name is a new scene beside it.
+    // Texts saved under another name are new scenes beside the file.
     let names = folder.names();
     assert!(names.iter().all(|name| name.ends_with(".scn")), "{names:?}");
     let _: Value = page.respond("studio/x", json!({}));

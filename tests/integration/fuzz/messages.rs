@@ -1,14 +1,14 @@
-//! What editors and pages say, and what no editor would: each request is answered once, and the
-//! server's text stays the client's.
+//! Messages of editors and pages, right and wrong ones: each request is answered once, and the
+//! server's text stays that of the client.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::{any_text, below, each, flip, one};
+use super::{any_text, each, flip};
 use crate::{
-    lsp::{client::Carrier, talk::Talk},
-    tracer::Random,
+    lsp::{client::Transport, local_client::LocalClient},
+    random::Random,
 };
 
 const METHODS: [&str; 26] = [
@@ -40,9 +40,9 @@ const METHODS: [&str; 26] = [
     "$/nothing",
 ];
 
-/// A value that may stand anywhere.
+/// Returns a random JSON value.
 fn value(random: &mut Random, depth: usize) -> Value {
-    match below(random, if depth == 0 { 12 } else { 14 }) {
+    match random.below(if depth == 0 { 12 } else { 14 }) {
         0 => Value::Null,
         1 => json!(true),
         2 => json!(-1),
@@ -55,7 +55,7 @@ fn value(random: &mut Random, depth: usize) -> Value {
         9 => json!(3),
         10 => json!([]),
         11 => json!({}),
-        12 => (0..below(random, 4))
+        12 => (0..random.below(4))
             .map(|_| value(random, depth - 1))
             .collect(),
         _ => params(random, depth - 1),
@@ -64,27 +64,28 @@ fn value(random: &mut Random, depth: usize) -> Value {
 
 fn position(random: &mut Random) -> Value {
     let [line, character] = [0; 2].map(|_| {
-        let far = *one(random, &[7, 40, 2_147_483_647]);
-        below(random, far)
+        let far = *random.one_of(&[7, 40, 2_147_483_647]);
+        random.below(far)
     });
     json!({ "line": line, "character": character })
 }
 
-/// Parameters that are right for most requests, but for some that are anything.
+/// Returns parameters that suit most requests, with some of them removed or replaced by random
+/// values.
 fn params(random: &mut Random, depth: usize) -> Value {
     let [start, end] = [0; 2].map(|_| position(random));
     let mut params = json!({
         "position": start, "range": { "start": start, "end": end }, "positions": [end],
         "context": { "diagnostics": [], "includeDeclaration": true },
-        "options": { "tabSize": 2, "insertSpaces": true }, "newName": *one(random, &["b", "", "let", "a b"]),
+        "options": { "tabSize": 2, "insertSpaces": true }, "newName": *random.one_of(&["b", "", "let", "a b"]),
         "color": { "red": 0.5, "green": 1, "blue": 0, "alpha": 1 },
-        "scale": *one(random, &[1, 2, 8, 0, -1]), "object": below(random, 5), "handle": *one(random, &["center", "orbit", "radius", ""]),
-        "from": [10.5, 3], "to": [below(random, 900), 1e9], "at": [0.5, below(random, 400)], "x": 1, "y": 2, "version": 1,
+        "scale": *random.one_of(&[1, 2, 8, 0, -1]), "object": random.below(5), "handle": *random.one_of(&["center", "orbit", "radius", ""]),
+        "from": [10.5, 3], "to": [random.below(900), 1e9], "at": [0.5, random.below(400)], "x": 1, "y": 2, "version": 1,
     });
-    for _ in 0..below(random, 3) {
+    for _ in 0..random.below(3) {
         let keys: Vec<String> = params.as_object().unwrap().keys().cloned().collect();
-        let key = one(random, &keys).clone();
-        match below(random, 3) {
+        let key = random.one_of(&keys).clone();
+        match random.below(3) {
             0 => drop(params.as_object_mut().unwrap().remove(&key)),
             _ => params[key] = value(random, depth),
         }
@@ -92,14 +93,14 @@ fn params(random: &mut Random, depth: usize) -> Value {
     params
 }
 
-/// A place in a text as UTF-16 counts it, and where it is.
+/// Returns a random offset in a text, and its position with columns counted in UTF-16.
 fn place(random: &mut Random, text: &str) -> (usize, Value) {
     let places: Vec<usize> = (0..=text.len())
         .filter(|at| text.is_char_boundary(*at))
         .collect();
-    // Between the two characters of a line's end is no place.
+    // There is no position between the two characters of a line end.
     let is_within = |at: usize| text[..at].ends_with('\r') && text[at..].starts_with('\n');
-    let mut at = *one(random, &places);
+    let mut at = *random.one_of(&places);
     if is_within(at) {
         at -= 1;
     }
@@ -111,36 +112,38 @@ fn place(random: &mut Random, text: &str) -> (usize, Value) {
 }
 
 #[test]
-fn each_request_is_answered_once_and_the_text_is_the_clients() {
+fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
     each(12, |random| {
         let mut text = any_text(random).to_owned();
-        let mut talk = Talk::with(&text);
+        let mut client = LocalClient::with(&text);
         let mut asked = Vec::new();
-        for version in 2..2 + below(random, 12) {
+        for version in 2..2 + random.below(12) {
             let [(a, first), (b, second)] = [0; 2].map(|_| place(random, &text));
-            let ((from, start), (to, end)) = match a <= b {
-                true => ((a, first), (b, second)),
-                false => ((b, second), (a, first)),
+            let ((from, start), (to, end)) = if a <= b {
+                ((a, first), (b, second))
+            } else {
+                ((b, second), (a, first))
             };
             let new = String::from_utf8_lossy(&super::scene(random)).into_owned();
-            let new: String = new.chars().take(below(random, 30)).collect();
-            // Lines that end in the middle of an edit are counted otherwise before and after it.
+            let new: String = new.chars().take(random.below(30)).collect();
+            // A carriage return at the end of an edit may join with a line feed, which changes the
+            // line count.
             if !new.contains('\r') && !text.contains('\r') {
                 text.replace_range(from..to, &new);
                 let change = json!({ "range": { "start": start, "end": end }, "text": new });
-                talk.change(version, change);
+                client.change(version, change);
             }
-            for _ in 0..below(random, 6) {
-                let method = *one(random, &METHODS);
-                asked.push(talk.request(method, params(random, 2)));
+            for _ in 0..random.below(6) {
+                let method = *random.one_of(&METHODS);
+                asked.push(client.request(method, params(random, 2)));
             }
-            if below(random, 3) == 0 {
-                talk.carrier.step();
+            if random.below(3) == 0 {
+                client.transport.step();
             }
         }
-        while talk.carrier.step() {}
+        while client.transport.step() {}
         let mut answers = BTreeMap::<_, usize>::new();
-        for said in talk.carrier.said.iter() {
+        for said in client.transport.said.iter() {
             let message: Value = serde_json::from_str(said).unwrap();
             if message.get("method").is_none() {
                 *answers.entry(message["id"].as_i64().unwrap()).or_default() += 1;
@@ -149,53 +152,54 @@ fn each_request_is_answered_once_and_the_text_is_the_clients() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // The edited text has the words and the mistakes of the same text when it is opened.
-        let mut again = Talk::with(&text);
-        while again.carrier.step() {}
-        let ask = |talk: &mut Talk| talk.ask("textDocument/semanticTokens/full", json!({}));
-        assert_eq!(ask(&mut talk), ask(&mut again), "{text}");
-        let told = |talk: &mut Talk| {
-            let said = talk.heard.drain(..);
+        // The edited text has the same tokens and diagnostics as when it is opened anew.
+        let mut again = LocalClient::with(&text);
+        while again.transport.step() {}
+        let ask =
+            |client: &mut LocalClient| client.ask("textDocument/semanticTokens/full", json!({}));
+        assert_eq!(ask(&mut client), ask(&mut again), "{text}");
+        let told = |client: &mut LocalClient| {
+            let said = client.unread.drain(..);
             let mut told = said.filter(|it| it["method"] == "textDocument/publishDiagnostics");
             told.next_back()
                 .map(|mut told| told["params"]["diagnostics"].take())
         };
-        assert_eq!(told(&mut talk), told(&mut again), "{text}");
+        assert_eq!(told(&mut client), told(&mut again), "{text}");
     });
 }
 
 #[test]
-fn any_bytes_are_a_message_or_get_an_error() {
+fn the_server_still_answers_after_any_message() {
     each(60, |random| {
-        let mut talk = Talk::with(any_text(random));
+        let mut client = LocalClient::with(any_text(random));
         for _ in 0..20 {
-            let method = *one(random, &METHODS);
+            let method = *random.one_of(&METHODS);
             let id = value(random, 1);
             let message =
                 json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": value(random, 2) });
             let mut bytes = message.to_string().into_bytes();
-            if below(random, 2) == 0 {
+            if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // An answer to nothing, which nobody answers, makes the carrier panic.
+            // A malformed message without an answer makes the transport panic.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
-                talk.carrier.write(&text);
+                client.transport.write(&text);
             }
         }
-        while talk.carrier.step() {}
-        // Whatever was said, it still answers.
-        talk.carrier.said.clear();
+        while client.transport.step() {}
+        // After any message, the server still answers.
+        client.transport.said.clear();
         let document = json!({ "textDocument": { "uri": "file:///b.scn", "languageId": "scn", "version": 1, "text": "sphere {}" } });
-        talk.send(
+        client.send(
             &json!({ "jsonrpc": "2.0", "method": "textDocument/didOpen", "params": document }),
         );
-        while talk.carrier.step() {}
+        while client.transport.step() {}
         let is_told = |said: &String| said.contains("b.scn") && said.contains("missing_field");
         assert!(
-            talk.carrier.said.iter().any(is_told),
+            client.transport.said.iter().any(is_told),
             "{:?}",
-            talk.carrier.said
+            client.transport.said
         );
     });
 }

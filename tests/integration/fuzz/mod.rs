@@ -1,9 +1,8 @@
-//! Inputs that nobody would write, as many as somebody wants: whatever is read, nothing panics or
-//! hangs, and what is promised of it holds.
+//! Fuzzing: for random inputs, nothing panics or hangs, and the promised properties hold.
 //!
-//! Each target tries a few in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries
-//! a million in each, and `PINHOLE_FUZZ_FIRST` is the number of the first one. An input depends on
-//! its number alone.
+//! Each target tries a few inputs in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz`
+//! tries a million for each target, and `PINHOLE_FUZZ_FIRST` is the number of the first one. An
+//! input depends only on its number.
 
 #[cfg(feature = "studio")]
 mod host;
@@ -24,20 +23,20 @@ use std::{
     time::Duration,
 };
 
-use crate::{diagnostics::fixtures, format::all_scenes, tracer::Random};
+use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// The time that an input may take. It takes milliseconds; a busy machine may stop for longer.
+/// Maximum time for an input. An input takes milliseconds, but a busy machine may stall for longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Runs something that has to end soon. What hangs cannot be stopped, so it ends the tests, and
-/// says what it was.
+/// Runs something that must end soon. A hanging thread cannot be stopped, so the test process is
+/// aborted with a description of the input.
 pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -> T {
     let (done, is_done) = mpsc::channel::<()>();
     let what = &what;
     thread::scope(|scope| {
         scope.spawn(move || {
             if is_done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                // What a test prints is shown when it ends, and this one does not.
+                // Output of a test is shown only when the test ends, which it does not here.
                 let _ = writeln!(io::stderr(), "this does not end: {}", what());
                 process::abort();
             }
@@ -48,15 +47,14 @@ pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -
     })
 }
 
-/// What is done to texts: names, numbers and signs that stand in the place of others, apart by
-/// bars.
+/// Replacements in random texts: names, numbers and signs, separated by bars.
 const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
     (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
     let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
-/// Tries inputs: as many as the environment says, or as are usual. A test that fails or hangs says
-/// which one it was.
+/// Tries a number of inputs, which the environment may override. A test that fails or hangs prints
+/// the number of its input.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Number {
@@ -80,15 +78,7 @@ pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     }
 }
 
-fn below(random: &mut Random, end: usize) -> usize {
-    (random.bits() % end.max(1) as u64) as usize
-}
-
-fn one<'t, T>(random: &mut Random, of: &'t [T]) -> &'t T {
-    &of[below(random, of.len())]
-}
-
-/// All scenes of the repository that are no longer than a page or two, right and wrong ones.
+/// Returns all scenes of the repository below 4000 bytes, including wrong ones.
 fn scenes() -> &'static [String] {
     static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
         let wrong = fixtures().map(|(_, sources)| sources.file.text().to_owned());
@@ -98,31 +88,31 @@ fn scenes() -> &'static [String] {
     &SCENES
 }
 
-/// One of them.
+/// Returns the text of a random scene of the repository.
 fn any_text(random: &mut Random) -> &'static str {
-    one::<String>(random, scenes())
+    random.one_of::<String>(scenes())
 }
 
-/// A scene in which a few tokens were taken out, doubled, moved or replaced, or that was cut.
+/// Returns a scene with a few tokens removed, doubled, moved or replaced, or cut off.
 fn scene(random: &mut Random) -> Vec<u8> {
     let text = any_text(random);
     let mut tokens = tokens(text);
     let words: Vec<&str> = WORDS.split('|').collect();
-    for _ in 0..=below(random, 6) {
+    for _ in 0..=random.below(6) {
         let (at, other) = (
-            below(random, tokens.len() + 1),
-            below(random, tokens.len() + 1),
+            random.below(tokens.len() + 1),
+            random.below(tokens.len() + 1),
         );
         let (from, to) = (at.min(other), at.max(other));
-        match below(random, 12) {
+        match random.below(12) {
             0..=3 => {
-                let end = tokens.len().min(at + below(random, 2));
-                tokens.splice(at..end, [*one(random, &words)]);
+                let end = tokens.len().min(at + random.below(2));
+                tokens.splice(at..end, [*random.one_of(&words)]);
             }
-            4..=5 => drop(tokens.drain(at..tokens.len().min(at + 1 + below(random, 3)))),
+            4..=5 => drop(tokens.drain(at..tokens.len().min(at + 1 + random.below(3)))),
             6 if to < tokens.len() => tokens.swap(from, to),
             7 if at < tokens.len() => {
-                let times = [1, 2, 300][below(random, 3)];
+                let times = [1, 2, 300][random.below(3)];
                 let token = tokens[at];
                 tokens.splice(at..at, [token].repeat(times));
             }
@@ -130,10 +120,10 @@ fn scene(random: &mut Random) -> Vec<u8> {
                 let part = tokens[from..to.min(from + 40)].to_vec();
                 tokens.splice(at..at, part);
             }
-            9 if below(random, 4) == 0 => tokens.truncate(at),
+            9 if random.below(4) == 0 => tokens.truncate(at),
             10 => {
                 let other = self::tokens(any_text(random));
-                let start = below(random, other.len());
+                let start = random.below(other.len());
                 let end = other.len().min(start + 30);
                 tokens.splice(at..at, other[start..end].iter().copied());
             }
@@ -141,7 +131,7 @@ fn scene(random: &mut Random) -> Vec<u8> {
         }
     }
     let mut bytes = tokens.concat().into_bytes();
-    match below(random, 20) {
+    match random.below(20) {
         0 => bytes.splice(0..0, *b"\xef\xbb\xbf").for_each(drop),
         1 => {
             let text = String::from_utf8_lossy(&bytes).replace('\n', "\r\n");
@@ -153,7 +143,7 @@ fn scene(random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// A text's words, numbers, single signs, and what is white between them.
+/// Splits a text into words, numbers, runs of spaces and single other characters.
 fn tokens(text: &str) -> Vec<&str> {
     let kind = |c: char| match c {
         _ if c.is_alphanumeric() || matches!(c, '_' | '.') => 0,
@@ -175,30 +165,30 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// Changes some bytes: single ones, numbers of four, lengths; and takes parts out or doubles them.
+/// Changes some bytes: single ones, 32-bit numbers, and parts, which are removed or doubled.
 fn flip(random: &mut Random, bytes: &mut Vec<u8>) {
-    for _ in 0..=below(random, 8) {
-        let at = below(random, bytes.len());
-        let end = bytes.len().min(at + 1 + below(random, 16));
-        match below(random, 8) {
-            0 if !bytes.is_empty() => bytes[at] ^= 1 << below(random, 8),
-            1 if !bytes.is_empty() => bytes[at] = *one(random, &[0, 1, 0x7f, 0x80, 0xff]),
-            2 => bytes[at..end].fill(*one(random, &[0, 0xff])),
+    for _ in 0..=random.below(8) {
+        let at = random.below(bytes.len());
+        let end = bytes.len().min(at + 1 + random.below(16));
+        match random.below(8) {
+            0 if !bytes.is_empty() => bytes[at] ^= 1 << random.below(8),
+            1 if !bytes.is_empty() => bytes[at] = *random.one_of(&[0, 1, 0x7f, 0x80, 0xff]),
+            2 => bytes[at..end].fill(*random.one_of(&[0, 0xff])),
             3 => drop(bytes.drain(at..end)),
             4 => {
                 let part = bytes[at..end].to_vec();
                 bytes.splice(at..at, part);
             }
-            5 if below(random, 8) == 0 => bytes.truncate(at),
+            5 if random.below(8) == 0 => bytes.truncate(at),
             6 if at + 4 <= bytes.len() => {
-                let value = *one(random, &[0_u32, 1, 0x7fff_ffff, u32::MAX, 65_536, 1 << 28]);
-                let value = match below(random, 2) {
+                let value = *random.one_of(&[0_u32, 1, 0x7fff_ffff, u32::MAX, 65_536, 1 << 28]);
+                let value = match random.below(2) {
                     0 => value.to_be_bytes(),
                     _ => value.to_le_bytes(),
                 };
                 bytes[at..at + 4].copy_from_slice(&value);
             }
-            _ => bytes.extend((0..below(random, 9)).map(|_| random.bits() as u8)),
+            _ => bytes.extend((0..random.below(9)).map(|_| random.bits() as u8)),
         }
     }
 }

@@ -1,18 +1,18 @@
-//! Pictures of other programs: whatever their bytes are, they are read or refused, and never
-//! decoded to more than is allowed.
+//! Pictures of other programs: any bytes are read or refused, and never decoded beyond the limit.
 
 use std::{io::Cursor, sync::LazyLock};
 
 use image::{DynamicImage, ImageFormat, RgbImage};
 use pinhole::film::read_picture_up_to;
 
-use super::{below, each, flip, one};
+use super::{each, flip};
 use crate::program::Folder;
 
-/// Maximum number of decoded bytes: a small picture's, so that a head that lies is found out.
+/// Maximum number of decoded bytes. It suits small pictures, so that a header with a wrong size is
+/// caught.
 const LIMIT: u64 = 1 << 20;
 
-/// A small picture in each format and in some of their kinds.
+/// Returns a small picture in each format and several colour types.
 fn pictures() -> &'static [Vec<u8>] {
     static PICTURES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
         let picture = RgbImage::from_fn(19, 11, |x, y| {
@@ -57,14 +57,14 @@ fn pictures() -> &'static [Vec<u8>] {
 }
 
 #[test]
-fn any_bytes_are_read_or_refused() {
+fn random_picture_bytes_are_read_or_refused_within_the_limit() {
     each(300, |random| {
-        let mut bytes = one(random, pictures()).clone();
-        match below(random, 16) {
-            // A head of one format before the rest of another.
+        let mut bytes = random.one_of(pictures()).clone();
+        match random.below(16) {
+            // The start of one file before the rest of another.
             0 => {
-                let other = one(random, pictures());
-                let at = below(random, bytes.len());
+                let other = random.one_of(pictures());
+                let at = random.below(bytes.len());
                 bytes.truncate(at);
                 bytes.extend(&other[at.min(other.len())..]);
             }
@@ -72,7 +72,7 @@ fn any_bytes_are_read_or_refused() {
         }
         if let Ok(picture) = read_picture_up_to(&bytes, LIMIT) {
             let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
-            // A pixel is decoded to four bytes at least.
+            // A pixel is decoded to at least four bytes.
             assert!((1..=LIMIT / 4).contains(&pixels), "{pixels}");
         }
     });

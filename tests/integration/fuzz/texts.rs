@@ -1,4 +1,4 @@
-//! Texts: what is read of them, what is offered to mend them, and how they are laid out.
+//! Random texts are read, fixed and formatted.
 
 use pinhole::{
     diagnostic::{Applicability, apply},
@@ -8,35 +8,34 @@ use pinhole::{
 
 use super::{each, scene as any_scene};
 use crate::{
-    format::{formatted, laws::the_laws_hold},
+    format::{formatted, laws::assert_formatter_laws},
     parts, robustness,
 };
 
 #[test]
-fn whatever_is_read_gets_an_answer() {
-    each(60, |random| gets_an_answer(any_scene(random)));
+fn random_texts_are_read_without_panics_or_hangs() {
+    each(60, |random| assert_read(any_scene(random)));
 }
 
-fn gets_an_answer(bytes: Vec<u8>) {
+fn assert_read(bytes: Vec<u8>) {
     if let Ok(text) = str::from_utf8(&bytes) {
-        parts::check(text, 1 + bytes.len() % 99, &[]);
+        parts::assert_same_in_parts(text, 1 + bytes.len() % 99, &[]);
     }
     robustness::read(bytes);
 }
 
-/// Each fix changes the text, and all of them together come to an end: what is done again changes
-/// nothing.
+/// Each fix changes the text, and fixing all problems a second time changes nothing.
 #[test]
-fn fixes_change_what_is_there_and_come_to_an_end() {
+fn every_fix_changes_the_text_and_fixing_twice_equals_fixing_once() {
     each(60, |random| {
-        // What is no text is not mended.
+        // Bytes that are not UTF-8 get no fixes.
         if let Ok(text) = String::from_utf8(any_scene(random)) {
-            is_mended(text);
+            assert_fixes(text);
         }
     });
 }
 
-fn is_mended(text: String) {
+fn assert_fixes(text: String) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let text = sources.file.text();
     for problem in &scene::read(&sources).diagnostics {
@@ -52,26 +51,26 @@ fn is_mended(text: String) {
 }
 
 #[test]
-fn what_can_be_laid_out_means_the_same_afterwards() {
+fn formatting_a_random_text_keeps_its_meaning() {
     each(60, |random| {
         if let Ok(text) = str::from_utf8(&any_scene(random)) {
-            is_laid_out(text);
+            assert_formatted(text);
         }
     });
 }
 
-fn is_laid_out(text: &str) {
+fn assert_formatted(text: &str) {
     if let Ok(laid_out) = formatted(text) {
-        the_laws_hold(text, &laid_out);
+        assert_formatter_laws(text, &laid_out);
     }
 }
 
-/// Texts that once were not: fixes that take the same space away, a label in the middle of a sign,
-/// a parenthesis for each of two hundred fixes in one place, and a comment with empty lines. A
-/// comment in the middle of a hyphenated name, and functions of other languages and values on a new
-/// line. Indices without a `{` in the place of a field.
+/// Texts that once failed: fixes that remove the same space, a label in the middle of a character,
+/// a parenthesis for each of two hundred fixes in one place, a comment with empty lines, a comment
+/// in the middle of a hyphenated name, functions of other languages and values on a new line, and
+/// indices without a `{` in the place of a field.
 #[test]
-fn what_was_found_stays_mended() {
+fn texts_found_by_fuzzing_stay_fixed() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));
     for text in [
         "sphere { center (0, 1, 0), , }".to_owned(),
@@ -85,8 +84,8 @@ fn what_was_found_stays_mended() {
         "camera { e for i < 8 image".to_owned(),
         "sphere { radius\nr - color olive\n(1) }".to_owned(),
     ] {
-        gets_an_answer(text.clone().into());
-        is_laid_out(&text);
-        is_mended(text);
+        assert_read(text.clone().into());
+        assert_formatted(&text);
+        assert_fixes(text);
     }
 }

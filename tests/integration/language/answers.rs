@@ -1,4 +1,4 @@
-//! What texts mean and what is said of them, as `tests/language` has it.
+//! Meanings and diagnostics of texts, compared with the files in `tests/language`.
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
@@ -10,7 +10,7 @@ use pinhole::{
 
 use super::{CAMERA, overrides};
 use crate::{
-    format::{formatted, laws::the_laws_hold},
+    format::{formatted, laws::assert_formatter_laws},
     scenes::{json_of, sources},
     snapshot::assert_answers,
 };
@@ -19,8 +19,8 @@ fn code(found: &Diagnostic) -> String {
     found.code.replace("pinhole::", "")
 }
 
-/// What is wrong, its argument (counted from 1; 0 is the file), the text of its first label, and
-/// what to do.
+/// Returns the code, the number of the argument (counted from 1; 0 is the file), the text under the
+/// first label, and the help.
 fn place(sources: &Sources, found: &Diagnostic) -> String {
     let span = found.labels[0].span;
     let argument = sources.sets().position(|(id, _)| id == span.source);
@@ -33,15 +33,15 @@ fn place(sources: &Sources, found: &Diagnostic) -> String {
     )
 }
 
-/// What is said first of a problem, at its place, and what to do.
+/// Returns the code, the message, the first label and the help.
 fn said(_: &Sources, found: &Diagnostic) -> String {
     let help = found.help.as_deref().unwrap_or_default();
     let label = &found.labels[0].message;
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// The text without what stands in brackets, which is what is removed, and what is told of
-/// comments.
+/// Removes the bracketed part of a text with a fix, and appends the fix's title, which mentions
+/// removed comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));
@@ -104,7 +104,7 @@ fn answer(question: &str, text: &str, other: &str) -> String {
         "layout" => match formatted(text) {
             Err(codes) => codes.join(" ").replace("pinhole::", ""),
             Ok(layout) => {
-                the_laws_hold(text, &layout);
+                assert_formatter_laws(text, &layout);
                 let marked = formatted(&format!("\u{feff}{text}"));
                 assert_eq!(marked, Ok(format!("\u{feff}{layout}")));
                 layout
@@ -115,6 +115,6 @@ fn answer(question: &str, text: &str, other: &str) -> String {
 }
 
 #[test]
-fn texts_mean_what_stands_there() {
+fn meanings_of_texts_match_the_files_in_tests_language() {
     assert_answers("tests/language", answer);
 }

@@ -1,16 +1,16 @@
-//! What scenes mean, and the language's reference, held against the program.
+//! Meanings of scenes, and the language's reference compared with the program.
 
 mod answers;
+mod help;
 mod overrides;
 mod reference;
 mod repetition;
-mod seen;
 mod text;
-mod ways_out;
+mod visibility;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// The codes of what is wrong with a scene, apart by blanks.
+/// Returns the codes of a scene's diagnostics, separated by spaces.
 fn codes(text: &str) -> String {
     crate::diagnostics::codes(text, &[]).join(" ")
 }

@@ -1,4 +1,4 @@
-//! `--set`, on the command line's terms.
+//! Overrides by `--set`.
 
 use pinhole::{
     scene::{self, Reading},
@@ -16,7 +16,7 @@ box Crate { center middle size (1, 1, 1) }
 checkerboard { }
 ";
 
-/// The settings of a scene, and its shapes.
+/// Returns the settings of a scene, and its shapes.
 pub fn meaning(sources: &Sources) -> [String; 2] {
     let Reading { scene, diagnostics } = scene::read(sources);
     let scene = scene.unwrap_or_else(|| panic!("{diagnostics:#?}"));
@@ -25,9 +25,9 @@ pub fn meaning(sources: &Sources) -> [String; 2] {
     [format!("{settings:?}"), format!("{shapes:?}")]
 }
 
-/// What is set, which is as if it stood in the text: in place of the second cell the third.
+/// An override equals the text in which the second cell of a row is replaced by the third.
 #[test]
-fn what_is_set_stands_in_the_text() {
+fn a_set_argument_equals_the_edited_text() {
     let table = "
         camera.roll=30deg -> d 3 -> d 3 roll 30deg
         Ball.center=(0, 2, 0) -> Ball { center middle -> Ball { center (0, 2, 0)

@@ -1,11 +1,11 @@
-//! The language's reference, held against the program.
+//! The language's reference, compared with the program.
 
 use pinhole::schema::{self, Preset};
 
 const REFERENCE: &str = include_str!("../../../grammar/language.md");
 
 #[test]
-fn the_reference_has_every_row_of_the_table() {
+fn the_reference_lists_every_field_with_its_type_default_and_conditions() {
     let mut block = "";
     let mut rows = Vec::new();
     for line in REFERENCE.lines().filter(|line| line.starts_with('|')) {
@@ -50,9 +50,9 @@ fn the_reference_has_every_row_of_the_table() {
     assert_eq!(rows.len(), header_and_rule, "{rows:?}");
 }
 
-/// d of a lens is exact, and the angle beside it right to the last digit.
+/// The `d` of a lens is exact, and the angle beside it is correct in its last digit.
 #[test]
-fn the_lenses_are_right_to_the_last_digit() {
+fn the_lens_table_of_the_reference_is_exact() {
     let mut lenses = 0;
     for line in REFERENCE.lines() {
         let Some((lens, row)) = line.split_once(" mm | ") else {
@@ -72,7 +72,7 @@ fn the_reference_has_every_method_function_and_name() {
     for (method, _) in schema::METHODS {
         assert!(REFERENCE.contains(&format!("| {} |", method.name())));
     }
-    // Elsewhere, a name such as `min` may be a field's.
+    // In other sections, a name such as `min` may be a field.
     let (_, functions) = REFERENCE.split_once("## Functions").unwrap();
     let functions = functions.split("## ").next().unwrap_or_default();
     let rows = functions.lines().filter(|line| line.starts_with('|'));

@@ -1,14 +1,15 @@
-//! Objects that are repeated, held against the same objects written one by one.
+//! Repeated objects, compared with the same objects written one by one.
 
 use pinhole::{format, inspect, scene};
 
 use super::{CAMERA, overrides::meaning};
 use crate::{
+    diagnostics::codes,
     scenes::{json_of, sources},
     table::rows,
 };
 
-/// In the first cell a repeated object, in the second its names, in the third what it stands for.
+/// Rows of a repeated object, its names, and the objects that it stands for.
 const REPEATED: &str = "
     sphere B for i < 3 { center (i, 1, 0) } -> B[0] B[1] B[2] \
         -> sphere { center (0, 1, 0) } sphere { center (1, 1, 0) } sphere { center (2, 1, 0) }
@@ -41,7 +42,7 @@ const REPEATED: &str = "
 ";
 
 #[test]
-fn a_repeated_object_is_as_if_each_were_written() {
+fn a_repeated_object_equals_its_copies_written_out() {
     for [repeated, names, written] in rows(REPEATED) {
         let repeated = CAMERA.to_owned() + &repeated.replace("\\n", "\n");
         let found = sources(&repeated);
@@ -79,7 +80,7 @@ fn a_repeated_object_is_as_if_each_were_written() {
 }
 
 #[test]
-fn a_repeated_object_that_is_set_changes_as_a_whole() {
+fn set_changes_every_copy_of_a_repeated_object() {
     let text = CAMERA.to_owned() + "let n = 2 sphere B for i < n { center (i, 1, 0) radius 1 }";
     for (set, before, after) in [
         ("B.radius=2", "radius 1", "radius 2"),
@@ -96,9 +97,9 @@ fn a_repeated_object_that_is_set_changes_as_a_whole() {
     }
 }
 
-/// Mistakes in repeated objects, with the places of all labels.
+/// Rows of a mistake in a repeated object, and its code with the texts of all labels.
 #[test]
-fn a_mistake_of_many_objects_is_reported_once() {
+fn a_mistake_in_a_repeated_object_is_reported_once() {
     let table = "
         sphere for i < 9 { center (i, 1, 0) radius 3 - i } -> out_of_range: 3 - i, for i < 9 here i = 3
         sphere for i < 9, j < 9 { center (1 / (i - j), 1, 0) } -> not_finite: /, for i < 9, j < 9 here i = 0, j = 0
@@ -142,9 +143,9 @@ fn a_mistake_of_many_objects_is_reported_once() {
     }
 }
 
-/// A fix keeps an index that its place depends on, whatever is wrong with the value.
+/// A fix that replaces a value with an index keeps the index, whatever is wrong with the value.
 #[test]
-fn no_fix_puts_the_value_at_one_index_for_all() {
+fn fixes_in_repeated_objects_keep_their_index() {
     let fields = "
         sphere -> center | radius | color
         triangle -> centroid | normal | sides | spin | v0 | color
@@ -181,39 +182,34 @@ fn no_fix_puts_the_value_at_one_index_for_all() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A head that is not written so leaves the next block alone; a board that is repeated is one
-/// warning; a `let` further down is another name, also where something is set.
+/// A wrong head leaves the next block alone, a repeated board gives one warning, and a `let`
+/// further down may reuse the index's name, also if something is overridden.
 #[test]
-fn what_stands_around_a_repetition_stays() {
+fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [
         (
             "sphere for i in 5\nbox { min (0, 0, 0) max (1, 1, 1) }",
-            None,
+            &[][..],
             "bad_repetition",
         ),
         (
             "checkerboard for i < 9 { y -i square 1e-200 }",
-            None,
+            &[],
             "squares_too_small",
         ),
         (
             "sphere for i < 3 { center (i, 0, 0) }\nlet i = 5\nsphere B { center (i, 1, 0) }",
-            Some("B.color=red"),
+            &["B.color=red"],
             "",
         ),
     ] {
-        let mut sources = sources(&(CAMERA.to_owned() + text));
-        set.into_iter().for_each(|set| sources.push_set(set));
-        let found = scene::read(&sources).diagnostics;
-        let codes = found
-            .iter()
-            .map(|it| it.code.trim_start_matches("pinhole::"));
-        assert_eq!(Vec::from_iter(codes).join(" "), expected, "{text}");
+        let codes = codes(&(CAMERA.to_owned() + text), set);
+        assert_eq!(codes.join(" "), expected, "{text}");
     }
 }
 
 #[test]
-fn a_head_is_laid_out_like_a_value() {
+fn repetition_heads_are_formatted_like_values() {
     for (written, laid_out) in [
         (
             "sphere   B for   i<3,j<2*i{center(i,j,0)}",

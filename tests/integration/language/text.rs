@@ -6,17 +6,17 @@ use super::{CAMERA, codes};
 use crate::format::any::{gaps, spaced};
 
 proptest! {
-    /// White space separates, and otherwise means nothing.
+    /// White space separates tokens and has no other meaning.
     #[test]
-    fn white_space_means_nothing_else(items in shuffled_items(), gaps in gaps()) {
+    fn white_space_only_separates_tokens(items in shuffled_items(), gaps in gaps()) {
         for text in [items.join(" "), spaced(&items.join(" "), &gaps)] {
             prop_assert_eq!(codes(&text), "", "{}", text);
         }
     }
 }
 
-/// Items of which a scene can be made in any order. Their names are often those of kinds, and the
-/// values of the definitions end in every way that there is.
+/// Generates the items of a scene in any order. Their names are often those of kinds, and the
+/// values of the definitions end in every possible way.
 fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
     let items = vec![
         "let a = 2",
@@ -49,8 +49,8 @@ fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
 }
 
 #[test]
-fn nesting() {
-    // As the value of a field, too, where the first minus follows a name.
+fn nesting_beyond_256_levels_is_an_error() {
+    // The value stands in a definition and in a field, where the first minus follows a name.
     let of = |open: &str, inner: &str, close: &str, depth: usize| {
         let value = format!("{}{inner}{}", open.repeat(depth), close.repeat(depth));
         let [of_let, of_field] =
@@ -71,7 +71,7 @@ fn nesting() {
         assert_eq!(of(open, inner, close, levels), "", "{open}");
         assert_eq!(of(open, inner, close, levels + 1), "too_deep", "{open}");
     }
-    // What stands beside does not add up.
+    // Terms beside each other do not count as nesting.
     let wide = vec!["-(1)"; 5000].join(" + ");
     assert_eq!(of("", &wide, "", 0), "");
 }

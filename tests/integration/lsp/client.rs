@@ -1,4 +1,4 @@
-//! A plain client: it writes messages, and reads every one that comes back.
+//! A plain client, which writes messages and reads all that come back.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -10,9 +10,9 @@ use std::{
 
 use serde_json::{Value, json};
 
-/// What carries the texts of messages.
-pub trait Carrier {
-    /// The document that the conversation is about.
+/// Transport of the texts of messages.
+pub trait Transport {
+    /// URI of the only document.
     const URI: &'static str;
 
     fn write(&mut self, text: &str);
@@ -20,38 +20,38 @@ pub trait Carrier {
 }
 
 pub struct Client<C> {
-    pub carrier: C,
+    pub transport: C,
     requests: i32,
-    /// What was said, and not asked for yet.
-    pub heard: Vec<Value>,
+    /// Messages received and not asked for yet.
+    pub unread: Vec<Value>,
 }
 
-impl<C: Carrier> Client<C> {
-    pub fn new(carrier: C) -> Self {
+impl<C: Transport> Client<C> {
+    pub fn new(transport: C) -> Self {
         Self {
-            carrier,
+            transport,
             requests: 0,
-            heard: Vec::new(),
+            unread: Vec::new(),
         }
     }
 
     pub fn send(&mut self, message: &Value) {
-        self.carrier.write(&message.to_string());
+        self.transport.write(&message.to_string());
     }
 
     pub fn read(&mut self) -> Value {
-        serde_json::from_str(&self.carrier.read()).expect("JSON")
+        serde_json::from_str(&self.transport.read()).expect("JSON")
     }
 
-    /// Tells something; of the document, if it is about one.
-    pub fn tell(&mut self, method: &str, mut params: Value) {
+    /// Sends a notification; adds the document if the method is about one.
+    pub fn notify(&mut self, method: &str, mut params: Value) {
         if method.starts_with("textDocument/") {
             params["textDocument"]["uri"] = C::URI.into();
         }
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    /// Asks, and does not wait for the answer.
+    /// Sends a request without waiting for the response. Returns its identifier.
     pub fn request(&mut self, method: &str, mut params: Value) -> i32 {
         if method.starts_with("textDocument/") || method.starts_with("pinhole/") {
             params["textDocument"] = json!({ "uri": C::URI });
@@ -62,18 +62,18 @@ impl<C: Carrier> Client<C> {
         id
     }
 
-    /// The next message of a kind, since the last one that was asked for.
+    /// Returns the first unread message that a condition selects; waits for one if there is none.
     fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
-        while !self.heard.iter().any(&is_meant) {
+        while !self.unread.iter().any(&is_meant) {
             let message = self.read();
             assert_eq!(message["jsonrpc"], "2.0", "{message}");
-            self.heard.push(message);
+            self.unread.push(message);
         }
-        let place = self.heard.iter().position(is_meant);
-        self.heard.remove(place.expect("it was heard"))
+        let place = self.unread.iter().position(is_meant);
+        self.unread.remove(place.expect("it was heard"))
     }
 
-    /// The whole response to a request.
+    /// Returns the whole response to a request.
     pub fn response(&mut self, id: i32) -> Value {
         self.next(|message| message["id"] == id)
     }
@@ -83,48 +83,47 @@ impl<C: Carrier> Client<C> {
         self.response(id)
     }
 
-    /// The result of a request.
+    /// Sends a request and returns its result.
     pub fn ask(&mut self, method: &str, params: Value) -> Value {
         let response = self.respond(method, params);
         assert!(response.get("error").is_none(), "{response}");
         response["result"].clone()
     }
 
-    /// The parameters of the next notification of this name.
-    pub fn told(&mut self, method: &str) -> Value {
+    /// Returns the parameters of the next notification of a method.
+    pub fn notification(&mut self, method: &str) -> Value {
         self.next(|message| message["method"] == method)["params"].take()
     }
 
-    /// What is wrong with the text that it is told of next.
+    /// Returns the parameters of the next published diagnostics.
     pub fn diagnostics(&mut self) -> Value {
-        self.told("textDocument/publishDiagnostics")
+        self.notification("textDocument/publishDiagnostics")
     }
 
-    /// Opens a text, after what comes before that.
+    /// Initializes the server and opens a text.
     pub fn open(&mut self, capabilities: Value, text: &str) {
         self.ask("initialize", json!({ "capabilities": capabilities }));
-        self.tell("initialized", json!({}));
+        self.notify("initialized", json!({}));
         let document = json!({ "languageId": "scn", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        self.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
-    /// Tells of a change that makes a version of the text.
+    /// Sends a change of the text, with the version that it makes.
     pub fn change(&mut self, version: usize, change: Value) {
         let document = json!({ "version": version });
         let params = json!({ "textDocument": document, "contentChanges": [change] });
-        self.tell("textDocument/didChange", params);
+        self.notify("textDocument/didChange", params);
     }
 }
 
-/// The longest that anything may take.
+/// Maximum time to wait for anything.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The program's standard streams.
+/// Standard streams of the program.
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    /// The texts of its messages, which a thread of its own reads, so that none is waited for
-    /// without end.
+    /// Texts of the server's messages. A thread reads them, so that waiting for one can time out.
     said: Receiver<String>,
 }
 
@@ -136,7 +135,7 @@ impl Pipes {
     }
 }
 
-impl Carrier for Pipes {
+impl Transport for Pipes {
     const URI: &'static str = "file:///home/somebody/a%20scene.scn";
 
     fn write(&mut self, text: &str) {
@@ -149,7 +148,7 @@ impl Carrier for Pipes {
     }
 }
 
-/// The text of the next message; everything up to it belongs to it.
+/// Reads the text of the next message. Returns `None` at the end of the output.
 fn message(output: &mut impl BufRead) -> Option<String> {
     let mut header = String::new();
     for _ in 0..2 {
@@ -167,7 +166,7 @@ fn message(output: &mut impl BufRead) -> Option<String> {
 }
 
 impl Client<Pipes> {
-    /// The server, to which nothing was said yet.
+    /// Starts a server, without sending it anything.
     pub fn start() -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
         let command = command.arg("lsp").stdin(Stdio::piped());
@@ -187,18 +186,18 @@ impl Client<Pipes> {
         })
     }
 
-    /// Takes its leave, as it should be.
-    pub fn leave(mut self) {
+    /// Shuts the server down as the protocol requires.
+    pub fn shut_down(mut self) {
         assert_eq!(self.ask("shutdown", Value::Null), Value::Null);
-        self.tell("exit", Value::Null);
+        self.notify("exit", Value::Null);
         assert_eq!(self.end(), (Some(0), String::new()));
     }
 
-    /// Says nothing more: the status, and what was said on standard error.
+    /// Closes the input. Returns the exit status and the standard error.
     pub fn end(self) -> (Option<i32>, String) {
-        let Pipes { child, input, said } = self.carrier;
+        let Pipes { child, input, said } = self.transport;
         drop(input);
-        // Its standard output ends, so that it has nothing more to do.
+        // The standard output ends, so no message is left.
         let rest = said.recv_timeout(PATIENCE);
         assert_eq!(rest, Err(RecvTimeoutError::Disconnected));
         let output = child.wait_with_output().expect("it ends");

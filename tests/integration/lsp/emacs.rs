@@ -1,6 +1,6 @@
-//! A real editor talks to the server: Emacs without its window, by each of its two clients. It has
-//! to be there, as `emacs` on the path, with eglot and lsp-mode: `cargo test -- --ignored emacs`.
-//! Emacs 28.2, eglot 1.9 and lsp-mode 8.0 are known to work.
+//! Emacs in batch mode uses the server, by each of its two clients. Needs `emacs` on the path, with
+//! eglot and lsp-mode: `cargo test -- --ignored emacs`. Emacs 28.2, eglot 1.9 and lsp-mode 8.0 are
+//! known to work.
 
 use std::{path::Path, process::Command};
 
@@ -14,16 +14,16 @@ camera { eye (0, 1, 5)   lookat (0, r, 0) }
 sphere Ball { center (0, r, 0)  radus 2*r }
 ";
 
-/// After the fix of `radus`, with `r` renamed, and formatted.
+/// The scene after the fix of `radus`, the renaming of `r`, and formatting.
 const EDITED: &str = "let height = 1
 camera { eye (0, 1, 5)  lookat (0, height, 0) }
 sphere Ball { center (0, height, 0)  radius 2 * height }
 ";
 
-/// It does what `tests/lsp/emacs.el` says.
+/// Emacs runs the script `tests/lsp/emacs.el`.
 #[test]
 #[ignore = "needs Emacs"]
-fn emacs_writes_a_scene() {
+fn emacs_completes_fixes_renames_and_formats_a_scene() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for client in ["eglot", "lsp-mode"] {
         let folder = Folder::with([("scene.scn", SCENE)]);

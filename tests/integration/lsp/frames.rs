@@ -1,9 +1,9 @@
-//! Frames: the pixels of a render, in slices, as long as they are wanted.
+//! Frames have the pixels of a render, are computed in slices, and can be cancelled.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
 
-use super::talk::Talk;
+use super::local_client::LocalClient;
 use crate::{program::Folder, table::rows};
 
 pub const SCENE: &str = "\
@@ -18,19 +18,19 @@ checkerboard {}
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
 
-/// The scene with another size.
+/// Returns the scene with another size.
 fn sized(width: &str, height: &str) -> String {
     let size = format!("width {width}  height {height}");
     SCENE.replace("width 83  height 61", &size)
 }
 
-/// The code of the error that a request has got.
-pub fn code(talk: &mut Talk, request: i32) -> Value {
-    assert!(talk.has_answered(request));
-    talk.response(request)["error"]["code"].take()
+/// Returns the error code of a request that has been answered.
+pub fn code(client: &mut LocalClient, request: i32) -> Value {
+    assert!(client.has_answered(request));
+    client.response(request)["error"]["code"].take()
 }
 
-/// The bytes of a picture with its size.
+/// Returns the size of a picture and the bytes of its pixels.
 fn pixels(png: &[u8]) -> (u32, u32, Vec<u8>) {
     let picture = image::load_from_memory(png).expect("a picture");
     let rgb = picture.to_rgb8();
@@ -47,7 +47,7 @@ fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
     found
 }
 
-/// What `pinhole render` makes of a scene, with so many `--set`.
+/// Returns the picture that `pinhole render` makes of a scene with `--set` arguments.
 fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
     let folder = Folder::with([("a.scn", text)]);
     let sets = sets.split_whitespace().map(|set| format!(" --set {set}"));
@@ -74,13 +74,13 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // So many that a slice is a small part of the picture.
+            // With so many samples, a slice is a small part of the picture.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),
         };
         let params: Value = serde_json::from_str(params).expect("JSON");
-        let frame = Talk::with(&text).ask("pinhole/frame", params);
+        let frame = LocalClient::with(&text).ask("pinhole/frame", params);
         assert!(shown(&frame) == rendered(&text, sets), "{name} {sets}");
         assert_eq!(frame["version"], 1);
         assert_eq!(frame["size"], json!(size));
@@ -88,45 +88,45 @@ fn a_frame_has_the_pixels_of_a_render() {
 }
 
 #[test]
-fn a_frame_is_made_of_the_newest_text_or_not_at_all() {
-    let mut talk = Talk::with(SCENE);
-    let old = talk.request("pinhole/frame", json!({}));
-    // Its diagnostics, and what is begun of the frame.
-    assert!(talk.carrier.step() && !talk.has_answered(old));
+fn a_frame_of_an_outdated_text_is_refused() {
+    let mut client = LocalClient::with(SCENE);
+    let old = client.request("pinhole/frame", json!({}));
+    // The step publishes the diagnostics and does not complete the frame.
+    assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
-    talk.change(2, json!({ "text": changed }));
-    let new = talk.request("pinhole/frame", json!({}));
-    assert_eq!(talk.response(old)["error"]["code"], CONTENT_MODIFIED);
-    let frame = talk.response(new)["result"].clone();
+    client.change(2, json!({ "text": changed }));
+    let new = client.request("pinhole/frame", json!({}));
+    assert_eq!(client.response(old)["error"]["code"], CONTENT_MODIFIED);
+    let frame = client.response(new)["result"].clone();
     assert_eq!(frame["version"], 2);
     assert!(shown(&frame) == rendered(&changed, ""));
 }
 
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
-    // Ten thousand slices, which would take minutes.
+    // The frame has ten thousand slices, which would take minutes.
     let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
-    let mut talk = Talk::with(&text);
-    let frame = talk.request("pinhole/frame", json!({}));
-    let hover = |talk: &mut Talk| {
+    let mut client = LocalClient::with(&text);
+    let frame = client.request("pinhole/frame", json!({}));
+    let hover = |client: &mut LocalClient| {
         let position = json!({ "line": 0, "character": 1 });
-        talk.request("textDocument/hover", json!({ "position": position }))
+        client.request("textDocument/hover", json!({ "position": position }))
     };
-    let early = hover(&mut talk);
+    let early = hover(&mut client);
     for _ in 0..4 {
-        assert!(talk.carrier.step());
+        assert!(client.transport.step());
     }
-    // What comes later is answered in between.
-    assert!(talk.has_answered(early) && !talk.has_answered(frame));
-    let later = hover(&mut talk);
-    assert!(talk.carrier.step() && talk.has_answered(later));
-    talk.tell("$/cancelRequest", json!({ "id": frame }));
-    assert_eq!(code(&mut talk, frame), CANCELLED);
-    assert!(!talk.carrier.step());
+    // Later requests are answered between slices.
+    assert!(client.has_answered(early) && !client.has_answered(frame));
+    let later = hover(&mut client);
+    assert!(client.transport.step() && client.has_answered(later));
+    client.notify("$/cancelRequest", json!({ "id": frame }));
+    assert_eq!(code(&mut client, frame), CANCELLED);
+    assert!(!client.transport.step());
 
-    let frame = talk.request("pinhole/frame", json!({}));
-    talk.carrier.step();
-    let shutdown = talk.request("shutdown", json!({}));
-    assert_eq!(code(&mut talk, frame), CANCELLED);
-    assert!(talk.has_answered(shutdown));
+    let frame = client.request("pinhole/frame", json!({}));
+    client.transport.step();
+    let shutdown = client.request("shutdown", json!({}));
+    assert_eq!(code(&mut client, frame), CANCELLED);
+    assert!(client.has_answered(shutdown));
 }

@@ -1,19 +1,20 @@
-//! The language server: the binary over pipes (`session`, `neovim`, `emacs`), and in this process,
-//! where it is known what it has done by when.
+//! The language server: the binary over pipes (`session`, `neovim`, `emacs`), and a server in this
+//! process, whose steps of work a test can control.
 
 pub mod client;
 mod emacs;
 mod frames;
+pub mod local_client;
 mod neovim;
-mod ranges;
 mod session;
-pub mod talk;
+mod sliders;
 mod transcripts;
 mod viewport;
 
 use std::{env, ffi::OsString, path::Path};
 
-/// The path for an editor that starts the server by its name: the program under test comes first.
+/// Returns a search path on which the program under test comes first, for an editor that starts the
+/// server by its name.
 fn path_with_program() -> OsString {
     let program = Path::new(env!("CARGO_BIN_EXE_pinhole"));
     let own = [program.parent().expect("a folder").to_owned()];

@@ -1,5 +1,5 @@
-//! A real editor talks to the server: Neovim without its window. It has to be there, as `nvim` on
-//! the path: `cargo test -- --ignored neovim`. Versions 0.7 and 0.11 are known to do.
+//! Neovim in headless mode uses the server. Needs `nvim` on the path: `cargo test -- --ignored
+//! neovim`. Versions 0.7 and 0.11 are known to work.
 
 use std::{
     fs,
@@ -22,7 +22,7 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Neovim in a home of its own, which does what a script says and then ends. The program under test
+/// Returns a command that runs a script in Neovim with its own home folder. The program under test
 /// comes first on its path.
 fn neovim(folder: &Folder, script: &Path) -> Command {
     let home = folder.path("");
@@ -47,24 +47,24 @@ fn answers(folder: &Folder, mut neovim: Command) -> Value {
     serde_json::from_slice(&folder.read("answers.json")).expect("JSON")
 }
 
-/// It does what `tests/lsp/neovim.lua` says, and gets the answers beside that.
+/// Neovim runs `tests/lsp/neovim.lua` and gets the answers in the JSON file beside it.
 #[test]
 #[ignore = "needs Neovim"]
-fn neovim_writes_a_scene() {
+fn neovim_gets_the_recorded_answers() {
     let folder = Folder::with([("scene.scn", SCENE)]);
     let script = root("tests/lsp/neovim.lua");
     let mut found = answers(&folder, neovim(&folder, &script));
-    // Lua keeps no order.
+    // Lua tables have no order.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
 }
 
-/// A text, keys, and the line that they make of it.
+/// Text, keys to type at `$0`, and the resulting line.
 type Typed = [&'static str; 3];
 
-/// Asked for by `CTRL-X CTRL-O`. Neovim 0.7 puts in the whole of a completion, 0.11 its word, so
-/// that only what both begin with is compared.
+/// Completions requested by `CTRL-X CTRL-O`. Neovim 0.7 inserts the whole completion and 0.11 its
+/// word, so only their common start is compared.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],
@@ -76,9 +76,9 @@ const ASKED: &[Typed] = &[
     ],
 ];
 
-/// Offered while typing, as the page on editors sets up Neovim 0.11.
+/// Completions offered while typing, as the page on editors configures Neovim 0.11.
 const OFFERED: &[Typed] = &[
-    // Nothing is put in before it is chosen.
+    // Nothing is inserted before it is chosen.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",
@@ -100,10 +100,10 @@ const OFFERED: &[Typed] = &[
 
 #[test]
 #[ignore = "needs Neovim"]
-fn neovim_completes_what_is_typed() {
+fn neovim_completes_while_typing() {
     let version = Command::new("nvim").arg("--version").output();
     let version = String::from_utf8(version.expect("Neovim is on the path").stdout).expect("text");
-    // The one of the language server's client in 0.11 is called `vim.lsp.completion`.
+    // `vim.lsp.completion` exists since Neovim 0.11.
     let is_new = !["v0.7.", "v0.8.", "v0.9.", "v0.10."]
         .iter()
         .any(|old| version.contains(old));
@@ -132,7 +132,8 @@ fn neovim_completes_what_is_typed() {
     assert!(behind.contains("no field `radus`"), "{behind}");
 }
 
-/// What comes of rows, with a snippet in the editor's configuration or without one.
+/// Types the keys of rows, with or without a snippet in the editor's configuration. Returns the
+/// resulting lines and what else the script reports.
 fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
     let rows = rows.iter().map(|[text, keys, _]| {
         let keys: Vec<&str> = keys.split(' ').collect();

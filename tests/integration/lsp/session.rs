@@ -1,4 +1,4 @@
-//! Conversations over pipes.
+//! Sessions of the program over pipes.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ camera { eye (0, 1, 5)  lookat ball  d 1 }
 sphere Ball { center ball  color olive }
 ";
 
-/// Letter by letter, with what an editor asks after each.
+/// Sends each letter as a change, with the requests that an editor makes after it.
 #[test]
 fn a_scene_is_typed_letter_by_letter() {
     let mut client = Client::start();
@@ -32,38 +32,38 @@ fn a_scene_is_typed_letter_by_letter() {
         told = client.diagnostics();
     }
     assert_eq!(told["diagnostics"], json!([]));
-    client.leave();
+    client.shut_down();
 }
 
 #[test]
-fn who_leaves_without_a_word_is_remembered() {
+fn a_client_that_leaves_without_shutdown_ends_the_server_with_status_1() {
     assert_eq!(Client::start().end().0, Some(1));
     let mut client = Client::start();
     client.ask("initialize", json!({ "capabilities": {} }));
-    client.tell("exit", Value::Null);
+    client.notify("exit", Value::Null);
     assert_eq!(client.end(), (Some(1), String::new()));
 }
 
 #[test]
-fn nonsense_is_passed_over() {
+fn malformed_lsp_input_is_logged_and_skipped() {
     let mut client = Client::start();
-    client.carrier.put("hello\r\n\r\n");
-    // A response to nothing is not answered.
+    client.transport.put("hello\r\n\r\n");
+    // A response without a request is not answered.
     client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
     client.change(2, json!({ "text": "" }));
-    client.tell("textDocument/didOpen", json!({}));
+    client.notify("textDocument/didOpen", json!({}));
     client.ask("shutdown", Value::Null);
-    client.tell("exit", Value::Null);
+    client.notify("exit", Value::Null);
     let (status, log) = client.end();
     assert_eq!(status, Some(0));
     assert!(log.contains("malformed"), "{log}");
     assert!(log.contains("is not open"), "{log}");
 }
 
-/// A range that is null says neither which part changes nor that all of it does.
+/// A null range says neither which part of the text changes nor that all of it does.
 #[test]
-fn a_change_without_a_right_range_leaves_the_text_as_it_is() {
+fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
     let mut client = Client::start();
     client.open(json!({}), SCENE);
     assert_eq!(client.diagnostics()["diagnostics"], json!([]));
@@ -73,27 +73,27 @@ fn a_change_without_a_right_range_leaves_the_text_as_it_is() {
         let found = client.ask("textDocument/definition", json!({ "position": position }));
         assert_ne!(found, Value::Null, "{range}");
     }
-    // Where it is left out, the text is a whole one.
+    // Without a range, the change is the whole new text.
     client.change(2, json!({ "text": "x" }));
     assert_ne!(client.diagnostics()["diagnostics"], json!([]));
     client.ask("shutdown", Value::Null);
-    client.tell("exit", Value::Null);
+    client.notify("exit", Value::Null);
     let (_, log) = client.end();
     let refused = log.matches("textDocument/didChange: invalid type: null");
     assert_eq!(refused.count(), 2, "{log}");
 }
 
 #[test]
-fn what_is_no_json_gets_an_answer() {
+fn invalid_json_gets_a_parse_error_response() {
     let mut client = Client::start();
-    // A header's name is known whatever its letters.
+    // The case of a header's name does not matter.
     for (header, text) in [
         ("Content-Length", "not JSON!"),
         ("content-length", "{\"id\":1,"),
     ] {
         let length = text.len();
         client
-            .carrier
+            .transport
             .put(&format!("{header}: {length}\r\n\r\n{text}"));
         let answer = client.read();
         assert_eq!(
@@ -102,20 +102,20 @@ fn what_is_no_json_gets_an_answer() {
         );
     }
     client.ask("initialize", json!({ "capabilities": {} }));
-    client.leave();
+    client.shut_down();
 }
 
 #[test]
-fn memory_is_not_taken_for_what_is_only_announced() {
+fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // It is as long as may be, and ends early.
+        // The announced length is the maximum, and the message ends early.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();
         client
-            .carrier
+            .transport
             .put(&format!("Content-Length: {length}\r\n\r\n{{}}"));
         let (status, log) = client.end();
         assert_eq!(status, Some(1));

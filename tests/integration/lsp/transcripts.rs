@@ -1,23 +1,22 @@
-//! Conversations, as `tests/lsp` has them: what is said to the server, and below it what the server
-//! says.
+//! Transcripts in `tests/lsp`: messages to the server, and below them its answers.
 //!
 //! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other
-//! message; the document is added to their parameters. What stands without an empty line between
-//! has come before the server begins to work. `#` begins a remark. `PINHOLE_BLESS=1 cargo test`
-//! writes anew what the server answers, `<`, and what its log says, `?`.
+//! message. The document is added to their parameters. Messages without an empty line between them
+//! arrive before the server starts to work. `#` begins a remark. `PINHOLE_BLESS=1 cargo test`
+//! writes the server's answers, `<`, and its log, `?`, anew.
 
 use std::path::Path;
 
 use serde_json::Value;
 
 use super::{
-    client::{Carrier, Client},
-    talk::{Inside, logged},
+    client::{Client, Transport},
+    local_client::{InProcess, logged},
 };
 use crate::{program::names, snapshot::assert_file};
 
-/// A message in a line: whole, but for what is the same in each, for pictures and for the version
-/// of the program.
+/// Prints a message in one line, without the JSON-RPC version, pictures and the version of the
+/// program.
 fn line(message: &str) -> String {
     let mut message: Value = serde_json::from_str(message).expect("JSON");
     let members = message.as_object_mut().expect("a message");
@@ -30,9 +29,9 @@ fn line(message: &str) -> String {
     format!("< {message}\n").replace(version, "\"version\":\"…\"")
 }
 
-/// A conversation with what the server says now.
-fn held(transcript: &str) -> String {
-    let mut client = Client::new(Inside::default());
+/// Replays a transcript and returns it with the server's current answers.
+fn replayed(transcript: &str) -> String {
+    let mut client = Client::new(InProcess::default());
     let block = |block: &str| {
         let mut text = String::new();
         for said in block.lines().filter(|said| !said.starts_with(['<', '?'])) {
@@ -42,13 +41,13 @@ fn held(transcript: &str) -> String {
             let params = || serde_json::from_str(params).expect(said);
             match sign {
                 ">" => drop(client.request(method, params())),
-                "!" => client.tell(method, params()),
-                "=" => client.carrier.write(rest),
+                "!" => client.notify(method, params()),
+                "=" => client.transport.write(rest),
                 _ => assert_eq!(sign, "#", "{said}"),
             }
         }
-        while client.carrier.step() {}
-        text.extend(client.carrier.said.drain(..).map(|said| line(&said)));
+        while client.transport.step() {}
+        text.extend(client.transport.said.drain(..).map(|said| line(&said)));
         text.extend(logged().iter().map(|said| format!("? {said}\n")));
         text
     };
@@ -60,11 +59,11 @@ fn held(transcript: &str) -> String {
 }
 
 #[test]
-fn conversations_go_as_they_stand_there() {
+fn lsp_transcripts_match_the_server() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp");
     for name in names(&folder).iter().filter(|name| name.ends_with(".txt")) {
         let path = folder.join(name);
         let transcript = std::fs::read_to_string(&path).expect("a transcript");
-        assert_file(&path, &held(&transcript));
+        assert_file(&path, &replayed(&transcript));
     }
 }

@@ -1,39 +1,38 @@
-//! What a hand does in the picture: what it is shown of the objects, what it adds, and what it
-//! drags.
+//! Editing in the picture: overlays of objects, new objects, and drags.
 
 use serde_json::{Value, json};
 
 use super::{
     frames::{SCENE, code},
-    talk::Talk,
+    local_client::LocalClient,
 };
 
 const FAILED: i32 = -32803;
 
-/// Of very many objects those that one can tell apart, and the one that is asked for.
+/// A picture of very many objects has overlays for the first 1000 and the requested one.
 #[test]
-fn overlays_are_not_more_than_a_page_can_show() {
+fn at_most_1000_overlays_and_the_requested_object_are_sent() {
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
-    let mut talk = Talk::with(&(SCENE.to_owned() + &many.collect::<String>()));
+    let mut client = LocalClient::with(&(SCENE.to_owned() + &many.collect::<String>()));
     for (further, count, last) in [
         (None, 1000, 999),
         (Some(1400), 1001, 1400),
         (Some(1), 1000, 999),
         (Some(1503), 1000, 999),
     ] {
-        let found = talk.ask("pinhole/overlays", json!({ "object": further }));
+        let found = client.ask("pinhole/overlays", json!({ "object": further }));
         let objects = found["objects"].as_array().expect("a list");
         let found = (objects.len(), &objects[count - 1]["index"]);
         assert_eq!(found, (count, &json!(last)));
-        let listed = talk.ask("pinhole/objects", json!({ "object": further }));
+        let listed = client.ask("pinhole/objects", json!({ "object": further }));
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
-    // Objects stand on the floor, wherever it stands.
+    // The first board is listed wherever it stands in the text, as objects stand on it.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
     let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
-    let listed = Talk::with(&(camera.to_owned() + &floor)).ask("pinhole/objects", json!({}));
+    let listed = LocalClient::with(&(camera.to_owned() + &floor)).ask("pinhole/objects", json!({}));
     let last = &listed.as_array().expect("a list")[1000..];
     assert_eq!(last.len(), 1);
     assert_eq!(last[0]["kind"], "checkerboard");
@@ -42,36 +41,36 @@ fn overlays_are_not_more_than_a_page_can_show() {
         (json!([1400, 3]), vec![3, 1400]),
         (json!([1504]), vec![]),
     ] {
-        let found = talk.ask("pinhole/overlays", json!({ "only": only }));
+        let found = client.ask("pinhole/overlays", json!({ "only": only }));
         let objects = found["objects"].as_array().expect("a list");
         let found: Vec<_> = objects.iter().map(|it| it["index"].as_u64()).collect();
         assert_eq!(found, indices.into_iter().map(Some).collect::<Vec<_>>());
     }
 }
 
-/// A board's square is drawn where it is seen, and not across what stands in front of it.
+/// The outline of a board's square is not drawn across objects in front of it.
 #[test]
-fn outlines_of_boards_are_not_drawn_over_other_objects() {
+fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
     let camera = "camera { eye (0, 1, 5) lookat (0, 0, 0) }";
-    // How large a square is, and what stands there; how many lines are left of the square.
+    // Size of a square, objects, and the number of visible parts of the square's outline.
     for (square, before, count) in [
         (2, "", 1),
         (2, "sphere { center (0, -5, 0) radius 1 }", 1),
         (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
         (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
-        // Whoever stands on a square has sides of it far outside of the picture.
+        // From above a large square, some of its sides are far outside the picture.
         (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
         let board = format!("{camera} checkerboard {{ square {square} }}");
-        let mut talk = Talk::with(&format!("{board} {before}"));
-        let overlays = talk.ask("pinhole/overlays", json!({ "only": [0] }));
+        let mut client = LocalClient::with(&format!("{board} {before}"));
+        let overlays = client.ask("pinhole/overlays", json!({ "only": [0] }));
         let lines: Vec<Vec<[f64; 2]>> =
             serde_json::from_value(overlays["objects"][0]["outline"].clone()).expect("lines");
         assert_eq!(lines.len(), count, "{before}: {lines:?}");
         for ends in lines.iter().flat_map(|line| line.windows(2)) {
             for part in [0.1, 0.5, 0.9] {
                 let at = [0, 1].map(|axis| ends[0][axis] + part * (ends[1][axis] - ends[0][axis]));
-                let pick = talk.ask("pinhole/pick", json!({ "point": at }));
+                let pick = client.ask("pinhole/pick", json!({ "point": at }));
                 let object = &pick["object"];
                 assert!(
                     object.is_null() || object["index"] == 0,
@@ -82,9 +81,9 @@ fn outlines_of_boards_are_not_drawn_over_other_objects() {
     }
 }
 
-/// What is added is right, has a name that is free, and is seen.
+/// A new object is valid, has an unused name and is in the picture.
 #[test]
-fn what_is_added_is_seen() {
+fn an_added_object_is_visible_and_has_an_unused_name() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
     for before in [
         "",
@@ -100,8 +99,8 @@ fn what_is_added_is_seen() {
             ("box", "Box1"),
             ("checkerboard", "Checkerboard1"),
         ] {
-            let mut talk = Talk::with(before);
-            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let mut client = LocalClient::with(before);
+            let found = client.ask("pinhole/add", json!({ "kind": kind }));
             let written = found["edits"][0]["newText"].as_str().expect("a text");
             let name_found = found["name"].as_str().expect("a name");
             assert!(name_found.starts_with(name), "{found}");
@@ -115,8 +114,8 @@ fn what_is_added_is_seen() {
                 "{camera}{}{written}\n",
                 before.trim_end().replace("radios", "radius")
             );
-            let mut talk = Talk::with(&text);
-            let overlays = talk.ask("pinhole/overlays", json!({}));
+            let mut client = LocalClient::with(&text);
+            let overlays = client.ask("pinhole/overlays", json!({}));
             let objects = overlays["objects"]
                 .as_array()
                 .unwrap_or_else(|| panic!("{text}"));
@@ -129,9 +128,9 @@ fn what_is_added_is_seen() {
     }
 }
 
-/// What is added one after the other is at different places, also where the text has errors.
+/// Objects added one after another get different positions, also if the text has errors.
 #[test]
-fn what_is_added_is_beside_what_is_there() {
+fn objects_added_one_after_another_get_distinct_positions() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
     for before in [
         "",
@@ -145,7 +144,7 @@ fn what_is_added_is_beside_what_is_there() {
         let mut places = Vec::new();
         for i in 0..12 {
             let kind = ["sphere", "box", "triangle"][i % 3];
-            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": kind }));
+            let found = LocalClient::with(&text).ask("pinhole/add", json!({ "kind": kind }));
             let written = found["edits"][0]["newText"].as_str().expect("a text");
             let (_, place) = written.split_once('(').expect("a place");
             let (place, _) = place.split_once(')').expect("a vector");
@@ -156,10 +155,9 @@ fn what_is_added_is_beside_what_is_there() {
     }
 }
 
-/// What is added lies within the picture, however much is there already, in colours that are told
-/// apart.
+/// A new object lies within the picture, however many objects there are, in a colour of its own.
 #[test]
-fn what_is_added_is_within_the_picture() {
+fn added_objects_lie_within_the_picture_in_distinct_colours() {
     let board = "checkerboard { y 0 }\n";
     let figure = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
     for before in [
@@ -167,21 +165,21 @@ fn what_is_added_is_within_the_picture() {
         format!("{figure}{board}"),
         format!("image {{ width 300 height 500 }}\n{figure}{board}"),
         format!("camera {{ eye (0, 1, 6) lookat (0, 1, 0) fov 30deg }}\n{board}"),
-        // The board is not in the picture.
+        // Here the board is not in the picture.
         format!("camera {{ eye (0, 2, 6) lookat (0, 9, 0) }}\n{board}"),
     ] {
         let mut text = before.clone();
         let mut colors = vec!["gray".to_owned(), "white".to_owned()];
         for i in 0..9 {
             let kind = ["box", "sphere", "triangle"][i % 3];
-            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": kind }));
+            let found = LocalClient::with(&text).ask("pinhole/add", json!({ "kind": kind }));
             let written = found["edits"][0]["newText"].as_str().expect("a text");
             text = format!("{}{written}\n", text.trim_end());
             let (_, color) = written.split_once("color ").expect("a colour");
             let color = color.trim_end_matches(" }").to_owned();
             assert!(!colors.contains(&color), "{text}");
             colors.push(color);
-            let overlays = Talk::with(&text).ask("pinhole/overlays", json!({}));
+            let overlays = LocalClient::with(&text).ask("pinhole/overlays", json!({}));
             let size: [f64; 2] = serde_json::from_value(overlays["size"].clone()).expect("a size");
             let objects = overlays["objects"].as_array().expect("a list");
             let lines = objects[objects.len() - 1]["outline"].as_array();
@@ -198,9 +196,9 @@ fn what_is_added_is_within_the_picture() {
     }
 }
 
-/// The first of a kind has the kind's own colour, unless something has that already.
+/// The first object of a kind gets the kind's colour, unless that is in use.
 #[test]
-fn what_is_added_has_a_colour_of_its_own() {
+fn an_added_object_takes_a_colour_that_is_not_in_use() {
     for (before, kind, color) in [
         ("", "sphere", "olive"),
         ("", "triangle", "teal"),
@@ -221,17 +219,17 @@ fn what_is_added_has_a_colour_of_its_own() {
         ("image { background olive }", "sphere", "teal"),
     ] {
         let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }";
-        let mut talk = Talk::with(&format!("{camera}\n{before}"));
-        let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+        let mut client = LocalClient::with(&format!("{camera}\n{before}"));
+        let found = client.ask("pinhole/add", json!({ "kind": kind }));
         let written = found["edits"][0]["newText"].as_str().expect("a text");
         let end = format!("  color {color} }}");
         assert!(written.ends_with(&end), "{before}: {written}");
     }
 }
 
-/// What is added touches the board, whatever its height is, and where the board comes later.
+/// A new object touches the board at any height, also if the board is added later.
 #[test]
-fn what_is_added_stands_on_the_board() {
+fn an_added_object_stands_on_the_checkerboard() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
     for (before, floor) in [
         ("", 0.0),
@@ -241,13 +239,14 @@ fn what_is_added_stands_on_the_board() {
         ("checkerboard { y -0.2 }\ncheckerboard { y -3 }", -0.2),
     ] {
         for kind in ["sphere", "box"] {
-            let mut talk = Talk::with(&format!("{camera}{before}"));
-            let found = talk.ask("pinhole/add", json!({ "kind": kind }));
+            let mut client = LocalClient::with(&format!("{camera}{before}"));
+            let found = client.ask("pinhole/add", json!({ "kind": kind }));
             let written = found["edits"][0]["newText"].as_str().expect("a text");
             let text = format!("{camera}{before}{written}");
-            let found = Talk::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
+            let found =
+                LocalClient::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
             let board = found["edits"][0]["newText"].as_str().expect("a text");
-            // The number of the name, the middle, and the radius or the size.
+            // Numbers of the name, the centre, and the radius or the size.
             let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
             let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
             let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
@@ -259,9 +258,9 @@ fn what_is_added_stands_on_the_board() {
     }
 }
 
-/// A board is under what is there, and not where another one is.
+/// A new board is below all objects, and at a height that no other board has.
 #[test]
-fn a_board_is_added_under_everything() {
+fn an_added_checkerboard_lies_below_all_objects() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
     for (before, y) in [
         ("", "y 0 }"),
@@ -275,16 +274,16 @@ fn a_board_is_added_under_everything() {
         ("checkerboard { y 0 }", "y -1 }"),
         ("checkerboard { y 0 }\ncheckerboard { y -1 }", "y -2 }"),
     ] {
-        let mut talk = Talk::with(&format!("{camera}{before}"));
-        let found = talk.ask("pinhole/add", json!({ "kind": "checkerboard" }));
+        let mut client = LocalClient::with(&format!("{camera}{before}"));
+        let found = client.ask("pinhole/add", json!({ "kind": "checkerboard" }));
         let written = found["edits"][0]["newText"].as_str().expect("a text");
         assert!(written.ends_with(y), "{before}: {written}");
     }
 }
 
-/// A comment behind a block stays behind it when the block is copied.
+/// A comment behind a block stays there when the block is copied.
 #[test]
-fn a_copy_leaves_the_comment() {
+fn copying_a_block_does_not_move_its_trailing_comment() {
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
     let block = "sphere Ball { center (0, 0, 0) }";
     for behind in [
@@ -294,7 +293,7 @@ fn a_copy_leaves_the_comment() {
         "  sphere { center (1, 1, 1) }",
     ] {
         let text = format!("{camera}{block}{behind}");
-        let found = Talk::with(&text).ask("pinhole/add", json!({ "object": 0 }));
+        let found = LocalClient::with(&text).ask("pinhole/add", json!({ "object": 0 }));
         let edit = &found["edits"][0];
         let at = &edit["range"]["start"];
         let own = behind.lines().next().unwrap_or_default();
@@ -315,38 +314,37 @@ fn a_copy_leaves_the_comment() {
     }
 }
 
-/// What shares its number with another field is refused at each place alike, with a step and
-/// without.
+/// A drag of a number shared with another field is refused everywhere, with a step or without.
 #[test]
-fn a_shared_number_is_not_dragged() {
+fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
                 sphere { center (r, 0, 0) radius r }";
     for by in [3.0, 7.0, 12.0, 30.0, 100.0] {
         for step in [json!(8), Value::Null] {
-            let mut talk = Talk::with(text);
-            let objects = talk.ask("pinhole/overlays", json!({}));
+            let mut client = LocalClient::with(text);
+            let objects = client.ask("pinhole/overlays", json!({}));
             let at = &objects["objects"][0]["handles"][0]["at"];
             let to = [at[0].as_f64().expect("a number") + by, 225.0];
             let about = json!({ "object": 0, "handle": "center", "to": to, "step": step });
-            let drag = talk.request("pinhole/drag", about);
-            talk.carrier.step();
-            assert_eq!(code(&mut talk, drag), FAILED, "{by} {step}");
+            let drag = client.request("pinhole/drag", about);
+            client.transport.step();
+            assert_eq!(code(&mut client, drag), FAILED, "{by} {step}");
         }
     }
 }
 
-/// With a step, numbers are those of a grid, and the place of the press leaves the text as it is.
+/// With a step, numbers are round, and a drag to the starting point leaves the text unchanged.
 #[test]
-fn a_drag_snaps() {
+fn a_drag_with_a_step_snaps_to_round_numbers() {
     let text =
         "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nsphere { center (0.123, 0, 0) radius 1 }";
-    let mut talk = Talk::with(text);
-    let held = talk.ask("pinhole/overlays", json!({}))["objects"][0]["handles"][0]["at"][0]
+    let mut client = LocalClient::with(text);
+    let held = client.ask("pinhole/overlays", json!({}))["objects"][0]["handles"][0]["at"][0]
         .as_f64()
         .unwrap();
     for by in [-200.0, -35.0, -7.0, 0.0, 2.0, 4.9, 12.0, 81.0, 333.0] {
         let about = json!({ "object": 0, "handle": "center", "to": [held + by, 225], "step": 8 });
-        let found = talk.ask("pinhole/drag", about);
+        let found = client.ask("pinhole/drag", about);
         let edits = found["edits"].as_array().expect("edits");
         let x: Option<f64> = edits.first().map(|edit| {
             edit["newText"]
@@ -355,7 +353,7 @@ fn a_drag_snaps() {
                 .parse()
                 .expect("a number")
         });
-        // A metre has 90 pixels here, so that a hundredth has 0.9 and a tenth 9.
+        // A metre has 90 pixels here, so a hundredth has 0.9 and a tenth 9.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {
@@ -369,10 +367,9 @@ fn a_drag_snaps() {
     }
 }
 
-/// Who drags a ball that the camera looks at hears that the camera moves.
-/// Of several objects that one block stands for one is dragged, and all others move with it.
+/// A drag of one object of a repeated block moves all objects of the block.
 #[test]
-fn an_object_of_many_is_dragged_with_all_of_its_block() {
+fn dragging_one_repeated_object_moves_its_whole_block() {
     for (blocks, object, handle, to, written, value, also) in [
         (
             "sphere Ball for i < 3 { center (i - 1, 0, 0) radius 0.3 }",
@@ -438,11 +435,11 @@ fn an_object_of_many_is_dragged_with_all_of_its_block() {
             "",
         ),
     ] {
-        let mut talk = Talk::with(&format!(
+        let mut client = LocalClient::with(&format!(
             "camera {{ eye (0, 0, 5) lookat (0, 0, 0) }}\n{blocks}"
         ));
         let about = json!({ "object": object, "handle": handle, "to": to });
-        let found = talk.ask("pinhole/drag", about);
+        let found = client.ask("pinhole/drag", about);
         let list = |key: &str| {
             let texts = found[key].as_array().unwrap().iter();
             texts
@@ -459,12 +456,12 @@ fn an_object_of_many_is_dragged_with_all_of_its_block() {
 }
 
 #[test]
-fn a_drag_tells_what_else_moves() {
+fn a_drag_lists_what_else_moves() {
     let text = "let ball = (0, 0, 0)\ncamera { eye (0, 0, 5) lookat ball }\nsphere Ball { center ball }\nsphere { center (0, 2, 0) }";
-    let mut talk = Talk::with(text);
+    let mut client = LocalClient::with(text);
     for (object, also) in [(0, json!(["camera.lookat"])), (1, json!([]))] {
         let about = json!({ "object": object, "handle": "center", "to": [430, 225] });
-        let found = talk.ask("pinhole/drag", about);
+        let found = client.ask("pinhole/drag", about);
         assert_eq!(found["also"], also, "{found}");
     }
 }

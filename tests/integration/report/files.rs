@@ -1,4 +1,4 @@
-//! The files of a report: charts, tables, and a page that stands alone.
+//! Files of a report: charts, tables, and a self-contained page.
 
 use std::fs;
 
@@ -12,7 +12,7 @@ use crate::program::{self, Folder};
 
 const XHTML: &str = "http://www.w3.org/1999/xhtml";
 
-/// The size of the picture within an element.
+/// Returns the size of the picture in an `img` element.
 fn size(element: Node) -> (u32, u32) {
     let data = element.attribute("src").unwrap();
     let png = data.strip_prefix("data:image/png;base64,").unwrap();
@@ -21,7 +21,7 @@ fn size(element: Node) -> (u32, u32) {
     (film.width(), film.height())
 }
 
-/// The elements of a document that are called so.
+/// Returns the elements of a document with a name.
 fn elements<'d>(
     document: &'d Document,
     name: &'static str,
@@ -30,7 +30,7 @@ fn elements<'d>(
     all.filter(move |node| node.tag_name().name() == name)
 }
 
-/// The texts of a chart, each with the height at which it stands.
+/// Returns the labels of a chart with their vertical positions.
 fn labels(chart: &str) -> Vec<(String, i32)> {
     let document = parsed(chart);
     let root = document.root_element();
@@ -43,7 +43,7 @@ fn labels(chart: &str) -> Vec<(String, i32)> {
 }
 
 #[test]
-fn a_folder_gets_whole_files() {
+fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let folder = folder();
     folder.told(
         "report a.scn -o new/speed --samples 1,4 --runs 2 --set Ball.radius=1.2",
@@ -65,7 +65,7 @@ fn a_folder_gets_whole_files() {
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
     }
-    // The exact method has a bound, which is no measured error.
+    // The exact method has a bound instead of a measured error.
     for name in ["per_pixel", "rmse", "slope"] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
@@ -80,7 +80,7 @@ fn a_folder_gets_whole_files() {
         let labels = labels(&read(&format!("error-against-{of}.svg")));
         let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
         assert!(has("1/256") && has("exact") == has_exact, "{of}");
-        // Labels do not lie upon each other.
+        // Labels do not overlap.
         let is_method = |label: &str| methods.iter().any(|m| label.split(' ').next() == Some(m));
         let labels = labels.iter().filter(|(label, _)| is_method(label));
         let mut heights: Vec<i32> = labels.map(|(_, height)| *height).collect();
@@ -94,10 +94,10 @@ fn a_folder_gets_whole_files() {
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
-    // The exact picture twice, as a whole and beside the others, and those of the sampled methods.
+    // The exact picture appears twice, whole and beside the others, and each sampled method's once.
     let counts = [count("script"), count("table"), count("img")];
     assert_eq!(counts, [0, 1, 2 + methods.len()]);
-    // First what to do, then the charts, the table, the pictures.
+    // The recommendation comes first, then the charts, the table and the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
@@ -105,7 +105,7 @@ fn a_folder_gets_whole_files() {
         assert!(!image.attribute("alt").unwrap().is_empty());
         assert_eq!(size(image), (48, 32));
     }
-    // Nothing is fetched from elsewhere.
+    // Nothing is fetched from other addresses.
     for node in document.descendants() {
         for name in ["src", "href"] {
             let target = node.attribute(name).unwrap_or("data:");
@@ -115,7 +115,7 @@ fn a_folder_gets_whole_files() {
 }
 
 #[test]
-fn a_large_picture_is_shown_whole_and_small() {
+fn the_page_shows_a_large_picture_reduced() {
     let folder = Folder::with([("a.scn", SCENE.replace("checkerboard {}", "").as_str())]);
     folder.told(
         "report a.scn -o out --methods sobol --samples 1 --runs 1 --set image.width=1300 --set image.height=700",
@@ -128,7 +128,7 @@ fn a_large_picture_is_shown_whole_and_small() {
     assert_eq!(size(whole), (434, 234));
     assert!(page.contains("reduced to 434 × 234 pixels"));
     assert!(page.len() < 500_000, "{}", page.len());
-    // Nothing is said of what was not measured.
+    // The page does not mention what was not measured.
     assert!(page.contains("What sobol makes of the picture"));
     for absent in ["Exact makes no error", "Exact takes", "±", "same CPU time"] {
         assert!(!page.contains(absent), "{absent}");
@@ -137,7 +137,7 @@ fn a_large_picture_is_shown_whole_and_small() {
 
 #[cfg(unix)]
 #[test]
-fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
+fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let folder = Folder::with([]);
     let names = [
         "...scn",
@@ -159,7 +159,7 @@ fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'));
-    // Beside the folder of the scenes there is nothing new, and within it the report's alone.
+    // Nothing new is outside the scenes' folder, and only the report's folder is new in it.
     assert_eq!(folder.names(), ["work"]);
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());
@@ -175,7 +175,7 @@ fn no_name_leads_out_of_the_folder_or_breaks_a_file() {
             parsed(&folder.text(&format!("work/out/{made}/{file}")));
         }
     }
-    // Each has its chapter.
+    // Each scene has a chapter.
     let page = folder.text("work/out/index.html");
     let document = parsed(&page);
     let titles = elements(&document, "h2").filter(|node| node.has_tag_name((XHTML, "h2")));

@@ -1,4 +1,4 @@
-//! Speed against error: the binary's tables, files and page.
+//! Reports of speed against error: tables, files and page.
 
 mod files;
 #[cfg(unix)]
@@ -15,17 +15,17 @@ const SCENE: &str =
 sampler { method sobol per_pixel 4 seed 7 } sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// A folder with the scene in `a.scn`.
+/// Returns a folder with the scene in `a.scn`.
 fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
 }
 
-/// What people are told of the scene.
+/// Returns the report of the scene as people see it.
 fn table(arguments: &str) -> String {
     folder().told(&format!("report a.scn {arguments}"), 0)
 }
 
-/// The report of the scene for programs, and whether it is complete.
+/// Returns the report of the scene as JSON, and asserts that it is complete.
 fn report(arguments: &str) -> Value {
     let answer = folder().done(&format!("report a.scn --format json {arguments}"));
     assert_eq!(answer.json()["complete"], true);
@@ -42,7 +42,7 @@ fn parsed(text: &str) -> roxmltree::Document<'_> {
 }
 
 #[test]
-fn people_get_a_table_and_an_answer() {
+fn a_report_prints_a_table_and_one_recommendation() {
     let text = table("--samples 1,2,4,16 --runs 2");
     let start = "a.scn: 48 × 32 pixels, 2 runs, ";
     assert!(text.starts_with(start), "{text}");
@@ -52,9 +52,9 @@ fn people_get_a_table_and_an_answer() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // Slope, ±, its error, samples, two times with their units.
+        // The columns are the slope, ±, its error, the samples, and two times with their units.
         assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
-        // So few samples do not come to 1/256.
+        // With so few samples, an error of 1/256 is extrapolated.
         let are_first = [(1, '−'), (4, '~'), (5, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }
@@ -65,7 +65,7 @@ fn people_get_a_table_and_an_answer() {
     let answers = text.lines().filter(|line| line.starts_with("Use "));
     assert_eq!(answers.count(), 1, "{text}");
 
-    // Each error has a table.
+    // Each requested error has a table.
     let several = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
     for error in ["1/256", "0.0101", "0.0104"] {
         let answer = format!("use exact for an error of {error}: ");
@@ -81,7 +81,7 @@ fn people_get_a_table_and_an_answer() {
 }
 
 #[test]
-fn programs_get_json_and_errors_fall() {
+fn report_json_is_complete_and_errors_fall_with_samples() {
     let report =
         report("--samples 64,1,16,4,16 --runs 3 --error 0.5 --error 1e-6 --error 0.02 --threads 1");
     for (key, value) in [
@@ -122,7 +122,7 @@ fn programs_get_json_and_errors_fall() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
-        // That of which everybody is told, and those that were asked for.
+        // The default error, and the requested ones.
         for (at, error) in [1.0 / 256.0, 0.5, 1e-6, 0.02].into_iter().enumerate() {
             let needed = &method["needed"][at];
             assert_eq!(number(&needed["error"]), error);
@@ -132,7 +132,7 @@ fn programs_get_json_and_errors_fall() {
         assert_eq!(method["needed"][1]["per_pixel"], 1.0, "{name}");
     }
     assert_eq!(report["verdicts"].as_array().unwrap().len(), 4);
-    // Each run draws its own seed's samples, and the errors of the seeds differ.
+    // Each run has a seed of its own, and the errors of the seeds differ.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
     let runs = &random.next().unwrap()["measured"][3]["runs"]["rmse"];
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
@@ -143,22 +143,22 @@ fn number(value: &Value) -> f64 {
 }
 
 #[test]
-fn samples_go_on_until_the_error_is_reached() {
+fn sample_counts_grow_until_the_error_is_reached() {
     let report = report(
         "--methods random,sobol --runs 1 --budget 600 --error 0.05 --set image.width=24 --set image.height=16",
     );
     for method in report["methods"].as_array().unwrap() {
         assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
     }
-    // Not beyond.
+    // No more samples are taken than needed.
     let random = report["methods"][0]["measured"].as_array().unwrap();
     let is_enough = |point: &Value| number(&point["rmse"]) <= 1.0 / 256.0;
     assert_eq!(random.iter().position(is_enough), Some(random.len() - 1));
 }
 
 #[test]
-fn no_method_comes_nearer_than_the_reference_is_known() {
-    // Where the bound is, and below what any number of samples is worth.
+fn no_method_claims_an_error_below_the_reference_bound() {
+    // An error below the reference's bound cannot be reached.
     let report = report("--methods exact,sobol --samples 1,4 --runs 1 --error 1e-17");
     let bound = number(&report["reference"]["root_mean_square_bound"]);
     let largest = number(&report["exact"]["bound"]);
@@ -183,7 +183,7 @@ fn a_picture_of_one_colour_has_no_error() {
 }
 
 #[test]
-fn exact_alone_has_a_time_and_no_samples() {
+fn a_report_of_exact_alone_has_times_and_no_samples() {
     let folder = folder();
     folder.told("report a.scn --methods exact -o out --runs 2", 0);
     let json: Value = serde_json::from_str(&folder.text("out/report.json")).unwrap();

@@ -1,4 +1,4 @@
-//! Numbers about numbers: medians, slopes, what an error takes, and what is said of that.
+//! Statistics: medians, slopes, the cost of reaching an error, and verdicts.
 
 use std::{cell::RefCell, time::Duration};
 
@@ -21,7 +21,7 @@ use crate::{
 };
 
 #[test]
-fn the_median_is_the_middle_one() {
+fn median_and_root_mean_square_match_values_computed_by_hand() {
     assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
     assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);
     assert!(median(&[]).is_nan());
@@ -29,15 +29,15 @@ fn the_median_is_the_middle_one() {
 }
 
 #[test]
-fn the_slopes_standard_error_is_that_of_the_textbook() {
-    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 has x̄ = 1.5, ȳ = −1, S = 5, b = −3/5,
-    // residuals −0.1, 0.3, −0.3, 0.1 but for signs, Σr² = 0.2, and the standard error √(0.2 / 2
-    // / 5) = √0.02.
+fn the_slope_has_the_standard_error_of_the_textbook_formula() {
+    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 have x̄ = 1.5, ȳ = −1, S = 5, b =
+    // −3/5, residuals 0.1, −0.3, 0.3, −0.1, Σr² = 0.2, and the standard error √(0.2 / 2 / 5) =
+    // √0.02.
     let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // Few points have a line and next to nothing to judge it by, one has none, and an error of 0
-    // has no logarithm.
+    // Two or three points have a line without a standard error, one point has none, and an error of
+    // 0 has no logarithm.
     let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
     for few in [&few[..], &few[1..]] {
         let few = PowerLaw::fit(few).unwrap();
@@ -47,7 +47,7 @@ fn the_slopes_standard_error_is_that_of_the_textbook() {
     assert_eq!(PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.0)]), None);
 }
 
-/// Numbers of samples with their seconds and errors, in one run.
+/// Returns a series of one run, from rows of samples per pixel, seconds and errors.
 fn series(method: Method, points: &[[f64; 3]]) -> Series {
     let point = |&[per_pixel, cpu, error]: &[f64; 3]| Point {
         per_pixel: per_pixel as u64,
@@ -73,10 +73,10 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Rows of points, and of errors with the samples and the CPU time that each takes, as far as they
-/// are known, and whether they are extrapolated.
+/// Rows of measured points, and of an error with the samples and the CPU time that it takes, as far
+/// as they are known, and whether they are extrapolated.
 #[test]
-fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
+fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
         -- Half-way in logarithms, and a third of the way in time.
         1 0.5 0.4  4 1 0.2  16 3 0.1 -> 0.1414213572373095 8 1.6666666666666667 0
@@ -112,7 +112,7 @@ fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
         assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.cpu_runs, [found.cpu; 2]);
     }
-    // An error that comes back was not reached: a grid falls into step with the picture.
+    // An error that rises again was not reached: a grid may align with the picture by chance.
     let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
     let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
@@ -126,9 +126,9 @@ fn what_an_error_takes_lies_on_the_line_between_the_points_on_either_side() {
 }
 
 #[test]
-fn multi_jittered_takes_as_many_samples_as_make_a_grid() {
+fn multi_jittered_estimates_round_to_a_full_grid() {
     let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
-    // The last is the last number.
+    // The last measured point limits the count.
     let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
     let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
     for (samples, grid) in samples.into_iter().zip(grids) {
@@ -151,7 +151,7 @@ fn subject() -> Subject {
 }
 
 #[test]
-fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
+fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let request = Request {
         methods: vec![Method::Sobol],
         samples: vec![4, 1, 4],
@@ -164,14 +164,14 @@ fn progress_comes_to_its_end_though_samples_are_asked_for_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The first run goes up, the second in an order of its own.
+    // The first run measures in ascending order, and the second in another order.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
 }
 
-/// Methods with the CPU times of some runs, each with 4 and 16 samples, which come to errors of 0.2
-/// and 0.1.
+/// Returns a measurement of methods with the CPU times of some runs. Each has 4 and 16 samples with
+/// errors of 0.2 and 0.1.
 fn measured(methods: &str) -> Measurement {
     let timed = |times: &str, share: f64, error: f64| -> Vec<_> {
         let run = |time: f64| Run {
@@ -213,7 +213,7 @@ fn measured(methods: &str) -> Measurement {
 }
 
 #[test]
-fn an_answer_is_as_sure_as_what_it_rests_on() {
+fn verdicts_state_ties_single_runs_and_extrapolation() {
     for [methods, error, expected] in rows("
         -- Apart, within the spread of one method's runs, and in a single run.
         sobol 1 1.1 1.2; halton 1.3 1.4 1.5 -> 0.1 -> Use sobol for an error of 0.1: it takes the least CPU time, 1.10 s, with 16 samples per pixel. For comparison, halton takes 1.40 s, with 16 samples per pixel.

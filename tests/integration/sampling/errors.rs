@@ -1,10 +1,10 @@
-//! How far means of points are from the truth, and how fast that falls.
+//! Errors of the means of sample points, and how fast they fall.
 
 use super::*;
 
-/// For each of some boxes, the mean share of the points within it over many pixels is its area.
+/// For several boxes, the mean share of points in the box, over many pixels, is its area.
 #[test]
-fn all_but_regular_are_unbiased() {
+fn every_method_except_regular_and_scatter_is_unbiased() {
     for method in Method::SAMPLED {
         if matches!(method, Method::Regular | Method::Scatter) {
             continue;
@@ -12,7 +12,7 @@ fn all_but_regular_are_unbiased() {
         for n in [1, 2, 3, 5, 7, 12, 17] {
             let sampling = sampling(method, n, 1);
             let pixels = Area::whole(64, 64).iter();
-            let pixels = pixels.map(|(x, y)| placed(&sampling, [x, y], 0..n));
+            let pixels = pixels.map(|(x, y)| points_at(&sampling, [x, y], 0..n));
             let pixels: Vec<_> = pixels.collect();
             for (min, max) in [
                 (DVec2::new(-0.5, -0.5), DVec2::new(-0.2, 0.1)),
@@ -32,7 +32,7 @@ fn all_but_regular_are_unbiased() {
     }
 }
 
-/// The mean of some numbers, and its standard error.
+/// Returns the mean of numbers and its standard error.
 fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / count;
@@ -40,22 +40,23 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
-/// An edge: its normal, its distance from the pixel's middle, and the area on its inner side. Where
-/// strata hold one point each that is unbiased, edges parallel to them tell nothing more.
+/// Edge of a half-plane: its normal, its distance from the pixel's centre, and the area on its
+/// inner side. Edges parallel to strata with one unbiased point each would add no information.
 type Edge = (DVec2, f64, f64);
 
-/// For each edge the error of the share of points on its inner side, each in a pixel of its own.
+/// Returns for each edge the error of the share of points on its inner side, in a pixel of its own.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
-        let points = placed(&sampling, [i % 64, i / 64], 0..n);
+        let points = points_at(&sampling, [i % 64, i / 64], 0..n);
         let inside = points.iter().filter(|point| point.dot(normal) < distance);
         inside.count() as f64 / n as f64 - area
     };
     (0..).zip(edges).map(error).collect()
 }
 
-/// The mean of the squares of some errors less what they should be, and its standard error.
+/// Returns the mean difference of squared errors from their expected values, and its standard
+/// error.
 fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     let squares = errors.iter().map(|error| error * error);
     mean_and_error(
@@ -66,8 +67,8 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// The area of the part of the pixel where normal · p < distance: of four quadrants beyond its
-/// corners, cut off by the edge.
+/// Returns the area of the pixel where normal · p < distance, as a sum over four quadrants beyond
+/// the pixel's corners, each cut off by the edge.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -76,7 +77,7 @@ fn area(normal: DVec2, distance: f64) -> f64 {
         + triangle(distance - sum)
 }
 
-/// Edges at random angles through a random point of the pixel.
+/// Returns edges at random angles through random points of the pixel.
 fn edges() -> Vec<Edge> {
     let points = points(Method::Random, 4 * 900, 123, [1, 1]);
     let edge = |pair: &[DVec2]| {
@@ -88,17 +89,17 @@ fn edges() -> Vec<Edge> {
     points.chunks_exact(2).map(edge).collect()
 }
 
-/// The powers of 4 at which errors are looked at.
+/// Numbers of samples at which errors are measured: powers of 4.
 const COUNTS: [u64; 5] = [16, 64, 256, 1024, 4096];
 
-/// The variance of n independent points' share of an area.
-fn independent(n: u64, (_, _, area): Edge) -> f64 {
+/// Returns the variance of the share of n independent points in an area.
+fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// The variance of one point in each of n square cells, of which only those count that the edge
-/// cuts.
-fn one_in_each_cell(n: u64, (normal, distance, _): Edge) -> f64 {
+/// Returns the variance of the share of one point in each of n square cells. Only cells that the
+/// edge cuts contribute.
+fn variance_of_one_point_per_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
     let cells = (0..n).map(|i| DVec2::new(middle(i % side), middle(i / side)));
@@ -109,7 +110,7 @@ fn one_in_each_cell(n: u64, (normal, distance, _): Edge) -> f64 {
 }
 
 #[test]
-fn squared_errors_are_what_theory_says() {
+fn squared_errors_match_theory() {
     let edges = edges();
     for n in COUNTS {
         let beyond = |method, variance: &dyn Fn(Edge) -> f64| {
@@ -117,21 +118,27 @@ fn squared_errors_are_what_theory_says() {
             let (excess, error) = excess(errors(method, n, &edges), expected);
             excess / error
         };
-        let off = beyond(Method::Random, &|edge| independent(n, edge));
+        let off = beyond(Method::Random, &|edge| {
+            variance_of_independent_points(n, edge)
+        });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        let off = beyond(Method::Jittered, &|edge| one_in_each_cell(n, edge));
+        let off = beyond(Method::Jittered, &|edge| {
+            variance_of_one_point_per_cell(n, edge)
+        });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // A Latin hypercube is no worse than one point less of independent ones (Owen 1997, "Monte
-        // Carlo variance of scrambled net quadrature").
-        let off = beyond(Method::NRooks, &|edge| independent(n - 1, edge));
+        // A Latin hypercube of n points is no worse than n − 1 independent points (Owen 1997,
+        // "Monte Carlo variance of scrambled net quadrature").
+        let off = beyond(Method::NRooks, &|edge| {
+            variance_of_independent_points(n - 1, edge)
+        });
         assert!(off < 4.0, "{n}: {off}");
     }
 }
 
-/// Where cells hold one point each, the error falls with a slope of −3/4 (Mitchell 1996), as it
-/// does for scrambled nets (He and Owen 2014).
+/// If cells hold one point each, the error falls with a slope of −3/4 (Mitchell 1996), as it does
+/// for scrambled nets (He and Owen 2014).
 #[test]
-fn errors_fall_as_fast_as_they_should() {
+fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
     let edges = edges();
     for method in [
         Method::MultiJittered,
@@ -139,7 +146,7 @@ fn errors_fall_as_fast_as_they_should() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // The slope of the least squares line through five equidistant logarithms, and its standard
+        // Slope of the least-squares line through five equidistant logarithms, and its standard
         // error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {

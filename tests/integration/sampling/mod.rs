@@ -1,4 +1,4 @@
-//! Each method's defining property.
+//! The defining property of each sampling method.
 
 mod errors;
 mod strata;
@@ -14,7 +14,8 @@ use pinhole::{
     scene::{Count, Method, Sampler},
 };
 
-/// The counts that every property is tested on: small ones, primes, powers and their neighbours.
+/// Returns the numbers of samples for which properties are tested: small numbers, primes, powers
+/// and their neighbours.
 fn counts() -> impl Iterator<Item = u64> {
     (1..=72).chain([
         97, 100, 101, 127, 128, 144, 210, 243, 251, 256, 257, 509, 1000, 1024, 4093, 4096, 4097,
@@ -23,11 +24,16 @@ fn counts() -> impl Iterator<Item = u64> {
 }
 
 fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
-    shared(method, 64 * 64 * n, seed, [64, 64])
+    sampling_with_total(method, 64 * 64 * n, seed, [64, 64])
 }
 
-/// The samples of a picture, so many in all.
-fn shared(method: Method, total: u64, seed: u64, [width, height]: [u32; 2]) -> Sampling {
+/// Returns the samples of a picture with a total number.
+fn sampling_with_total(
+    method: Method,
+    total: u64,
+    seed: u64,
+    [width, height]: [u32; 2],
+) -> Sampling {
     let count = Count::Total(total);
     let sampler = Sampler {
         method,
@@ -37,17 +43,17 @@ fn shared(method: Method, total: u64, seed: u64, [width, height]: [u32; 2]) -> S
     Sampling::new(&sampler, width, height)
 }
 
-/// The points of a pixel with these indices.
-pub fn placed(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
+/// Returns the points of a pixel with the given indices.
+pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
     let count = sampling.count(x, y);
     sampling.place(SimdWidth::Widest, [x, y], count, indices, &mut points);
     points.iter().collect()
 }
 
-/// The points of one pixel.
+/// Returns the n points of a pixel.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
-    let points = placed(&sampling(method, n, seed), [x, y], 0..n);
+    let points = points_at(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);
     points
 }
@@ -58,24 +64,24 @@ fn points_asked_for_in_parts_are_the_same() {
         for n in [1, 7, 16, 100, 5003] {
             let sampling = sampling(method, n, 11);
             let n = sampling.count(9, 8);
-            let whole = placed(&sampling, [9, 8], 0..n);
+            let whole = points_at(&sampling, [9, 8], 0..n);
             let parts = [0..n / 3, n / 3..n / 3, n / 3..n / 2, n / 2..n];
-            let parts = parts.map(|part| placed(&sampling, [9, 8], part));
+            let parts = parts.map(|part| points_at(&sampling, [9, 8], part));
             assert_eq!(whole, parts.concat());
         }
     }
 }
 
 #[test]
-fn seeds_and_pixels_have_points_of_their_own() {
+fn seeds_and_pixels_share_no_points() {
     for method in Method::SAMPLED {
         if matches!(method, Method::Regular) {
             continue;
         }
-        // As many as `scatter` puts there, too.
+        // `scatter` has another number of points in each pixel.
         let of = |seed, pixel: [u32; 2]| {
             let sampling = sampling(method, 5, seed);
-            placed(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
+            points_at(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
         };
         let base = of(1, [3, 4]);
         assert_eq!(base, of(1, [3, 4]));
@@ -88,9 +94,8 @@ fn seeds_and_pixels_have_points_of_their_own() {
 }
 
 #[test]
-fn points_stay_where_they_are() {
-    // The eighth point of a pixel, for the pictures that exist already, and for machines other than
-    // the one these come from.
+fn sample_points_match_stored_values() {
+    // The eighth point of a pixel must stay the same, for existing pictures and on other machines.
     let expected = [
         DVec2::new(0.375, -0.125),
         DVec2::new(-0.48383530042028894, -0.350440702956024),
@@ -103,9 +108,9 @@ fn points_stay_where_they_are() {
         DVec2::new(0.49924405020095936, -0.3561122876778888),
     ];
     for (method, point) in Method::SAMPLED.into_iter().zip(expected) {
-        let sampling = shared(method, 64 * 64 * 16 + 1000, 5, [64, 64]);
+        let sampling = sampling_with_total(method, 64 * 64 * 16 + 1000, 5, [64, 64]);
         let count = sampling.count(20, 30);
-        let points = placed(&sampling, [20, 30], 0..count);
+        let points = points_at(&sampling, [20, 30], 0..count);
         let expected = match method {
             Method::Scatter => 14,
             _ => 16,

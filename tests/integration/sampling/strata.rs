@@ -1,18 +1,19 @@
-//! Where points lie: each method's strata, offsets taken apart with whole numbers.
+//! Strata of each method's points, computed with integers.
 
 use std::collections::HashSet;
 
 use super::*;
 
-/// Seeds and pixels that properties are tested on.
+/// Seeds and pixels for which properties are tested.
 const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
-/// Which of n strata an offset lies in: ⌊(offset + 1/2)·n⌋, without rounding.
+/// Returns which of n strata an offset lies in: ⌊(offset + 1/2)·n⌋, without rounding.
 fn stratum(offset: f64, n: u64) -> u64 {
     ((fraction(offset) * u128::from(n)) >> 54) as u64
 }
 
-/// offset + 1/2 in units of 2^−54. Every offset but the regular ones is a whole number of them.
+/// Returns offset + 1/2 in units of 2^−54. Every offset except those of `regular` is an integer
+/// number of units.
 fn fraction(offset: f64) -> u128 {
     assert!((-0.5..0.5).contains(&offset), "{offset}");
     let scaled = offset * (1_u64 << 54) as f64;
@@ -20,22 +21,22 @@ fn fraction(offset: f64) -> u128 {
     (scaled as i64 + (1 << 53)) as u128
 }
 
-/// Whether these numbers are 0, 1 … in some order.
+/// Returns whether the numbers are 0, 1 … in some order.
 fn each_once(numbers: impl Iterator<Item = u64>) -> bool {
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_unstable();
     (0..).zip(numbers).all(|(i, number)| number == i)
 }
 
-/// There is one point in each cell of a grid of as many columns and rows.
+/// Asserts that there is one point in each cell of a grid of columns and rows.
 #[track_caller]
-fn one_in_each(points: &[DVec2], columns: u64, rows: u64) {
+fn assert_one_in_each_cell(points: &[DVec2], columns: u64, rows: u64) {
     assert_eq!(points.len() as u64, columns * rows);
     let cell = |point: &DVec2| stratum(point.y, rows) * columns + stratum(point.x, columns);
     assert!(each_once(points.iter().map(cell)), "{columns} × {rows}");
 }
 
-/// The lengths of the rows of `n` cells, as the reference describes them.
+/// Returns the lengths of the rows of `n` cells, as the language's reference describes them.
 fn rows(n: u64) -> Vec<u64> {
     let root = (n as f64).sqrt();
     let count = (1..=n)
@@ -50,7 +51,7 @@ fn rows(n: u64) -> Vec<u64> {
 }
 
 #[test]
-fn rows_of_cells_are_as_even_as_they_can_be() {
+fn rows_of_the_regular_grid_have_nearly_equal_lengths() {
     for (n, lengths) in [
         (1, &[1][..]),
         (2, &[2]),
@@ -94,7 +95,7 @@ fn jittered_has_one_point_in_each_cell() {
             let mut first = 0;
             for cells in rows(n) {
                 let row = &points[first as usize..(first + cells) as usize];
-                one_in_each(row, cells, 1);
+                assert_one_in_each_cell(row, cells, 1);
                 let rows = first..first + cells;
                 assert!(row.iter().all(|point| rows.contains(&stratum(point.y, n))));
                 first += cells;
@@ -104,14 +105,14 @@ fn jittered_has_one_point_in_each_cell() {
 }
 
 #[test]
-fn rooks_do_not_take_each_other() {
+fn rook_methods_have_one_point_in_each_row_and_column() {
     for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
         for n in counts() {
             for (seed, pixel) in PLACES {
                 let points = points(method, n, seed, pixel);
-                one_in_each(&points, n, 1);
+                assert_one_in_each_cell(&points, n, 1);
                 if method != Method::Hammersley || n.is_power_of_two() {
-                    one_in_each(&points, 1, n);
+                    assert_one_in_each_cell(&points, 1, n);
                 }
             }
         }
@@ -119,19 +120,19 @@ fn rooks_do_not_take_each_other() {
 }
 
 #[test]
-fn multi_jittered_has_one_point_in_each_cell_too() {
+fn multi_jittered_has_one_point_in_each_cell() {
     for n in counts() {
         let rows = (1..=n).filter(|b| n % b == 0 && b * b <= n).max().unwrap();
-        one_in_each(&points(Method::MultiJittered, n, 9, [2, 1]), n / rows, rows);
+        assert_one_in_each_cell(&points(Method::MultiJittered, n, 9, [2, 1]), n / rows, rows);
     }
 }
 
 #[test]
-fn halton_is_its_sequence_shifted() {
+fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // The distance from the first point, around the edge, in 2^−53, give or take one.
+    // Distance from the first point, around the edge, in units of 2^−53, within one unit.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };
@@ -155,7 +156,7 @@ fn sobol_has_one_point_in_each_elementary_interval() {
             let points = points(Method::Sobol, n, seed, pixel);
             for m in 0..=n.ilog2() {
                 for block in points.chunks_exact(1 << m).take(3) {
-                    (0..=m).for_each(|a| one_in_each(block, 1 << a, 1 << (m - a)));
+                    (0..=m).for_each(|a| assert_one_in_each_cell(block, 1 << a, 1 << (m - a)));
                 }
             }
         }
@@ -163,34 +164,36 @@ fn sobol_has_one_point_in_each_elementary_interval() {
 }
 
 #[test]
-fn sobol_goes_on_beyond_2_to_the_32() {
+fn sobol_keeps_its_strata_beyond_2_to_the_32() {
     let sampling = sampling(Method::Sobol, 1 << 41, 0);
     for first in [1_u64 << 32, (1 << 41) - 4096] {
-        let mut points = placed(&sampling, [3, 4], first..first + 4096);
-        (0..=12).for_each(|a| one_in_each(&points, 1 << a, 1 << (12 - a)));
+        let mut points = points_at(&sampling, [3, 4], first..first + 4096);
+        (0..=12).for_each(|a| assert_one_in_each_cell(&points, 1 << a, 1 << (12 - a)));
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         points.dedup_by_key(|point| point.x);
         assert_eq!(points.len(), 4096);
     }
     let n = 1 << 53;
-    let whole = shared(Method::Sobol, n, 0, [1, 1]);
-    one_in_each(&placed(&whole, [0, 0], n - 1024..n), 1024, 1);
+    let whole = sampling_with_total(Method::Sobol, n, 0, [1, 1]);
+    assert_one_in_each_cell(&points_at(&whole, [0, 0], n - 1024..n), 1024, 1);
 }
 
 #[test]
 fn the_largest_counts_keep_their_strata() {
-    // Too many to look at each: distinct strata among a run of indices.
+    // There are too many points to look at each, so a range of indices must have distinct strata.
     for n in [(1 << 53) - 111, 1 << 53, 1 << 33] {
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
-            let sampling = shared(method, n, 4, [1, 1]);
+            let sampling = sampling_with_total(method, n, 4, [1, 1]);
             let parts = [n / 2..n / 2 + 3000, n - 1..n];
-            let points = parts.map(|part| placed(&sampling, [0, 0], part)).concat();
+            let points = parts
+                .map(|part| points_at(&sampling, [0, 0], part))
+                .concat();
             let columns: HashSet<_> = points.iter().map(|point| stratum(point.x, n)).collect();
             assert_eq!(columns.len(), 3001);
         }
         for method in Method::SAMPLED {
-            let sampling = shared(method, n, 4, [1, 1]);
-            let points = placed(&sampling, [0, 0], n - 10..n);
+            let sampling = sampling_with_total(method, n, 4, [1, 1]);
+            let points = points_at(&sampling, [0, 0], n - 10..n);
             assert_eq!(points.len(), 10);
             let half = DVec2::splat(0.5);
             let is_inside = |point: &DVec2| point.cmpge(-half).all() && point.cmplt(half).all();

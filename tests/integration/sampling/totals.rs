@@ -1,16 +1,16 @@
-//! Totals shared out among pixels, and scattered points.
+//! Totals distributed among pixels, and scattered points.
 
 use super::*;
 
 #[test]
-fn a_total_is_shared_out_to_the_last_sample() {
+fn a_total_is_distributed_exactly_among_the_pixels() {
     for (width, height) in [(1, 1), (7, 3), (16, 16), (30, 17), (64, 1)] {
         let whole = Area::whole(width, height);
         let pixels = whole.pixels();
         for method in Method::SAMPLED {
             let around = [pixels.max(2) - 1, pixels, pixels + 1, 5 * pixels / 2];
             for total in [1, 2, 1000 * pixels + 7].into_iter().chain(around) {
-                let sampling = shared(method, total, 2, [width, height]);
+                let sampling = sampling_with_total(method, total, 2, [width, height]);
                 let counts = sampling.counts(whole);
                 assert_eq!(counts.iter().sum::<u64>(), total, "{method:?}");
                 assert_eq!(sampling.total(), total);
@@ -20,7 +20,7 @@ fn a_total_is_shared_out_to_the_last_sample() {
                         assert!(count == total / pixels || count == total.div_ceil(pixels));
                     }
                     if count <= 2000 {
-                        let points = placed(&sampling, [x, y], 0..count);
+                        let points = points_at(&sampling, [x, y], 0..count);
                         assert_eq!(points.len() as u64, count);
                     }
                 }
@@ -42,7 +42,7 @@ fn a_total_is_shared_out_to_the_last_sample() {
 fn the_extra_samples_are_spread_evenly_in_both_directions() {
     let (width, height) = (100, 60);
     for extra in [1, 37, 600, 1500, 3000, 4321, 5999] {
-        let sampling = shared(Method::Random, 6000 * 4 + extra, 0, [width, height]);
+        let sampling = sampling_with_total(Method::Random, 6000 * 4 + extra, 0, [width, height]);
         let density = extra as f64 / 6000.0;
         for side in [2, 4, 8, 16, 32] {
             for tile in Area::whole(width, height).tiles(side) {
@@ -55,17 +55,17 @@ fn the_extra_samples_are_spread_evenly_in_both_directions() {
 }
 
 #[test]
-fn the_largest_picture_has_a_last_pixel() {
+fn the_last_pixel_of_the_largest_picture_gets_the_extra_sample() {
     let side = 1 << 20;
-    // The curve ends at the top right.
-    let sampling = shared(Method::Random, (1 << 40) + 1, 0, [side, side]);
+    // The Hilbert curve ends at the top right.
+    let sampling = sampling_with_total(Method::Random, (1 << 40) + 1, 0, [side, side]);
     let corners = [(0, 0), (0, side - 1), (side - 1, side - 1), (side - 1, 0)];
     assert_eq!(corners.map(|(x, y)| sampling.count(x, y)), [1, 1, 1, 2]);
 }
 
 #[test]
-fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
-    let sampling = shared(Method::Random, 64 * 64 / 2, 0, [64, 64]);
+fn half_a_sample_per_pixel_gives_a_checkerboard() {
+    let sampling = sampling_with_total(Method::Random, 64 * 64 / 2, 0, [64, 64]);
     let first = sampling.count(0, 0);
     for (x, y) in Area::whole(64, 64).iter() {
         assert_eq!(sampling.count(x, y), first ^ u64::from((x + y) % 2));
@@ -73,13 +73,13 @@ fn half_a_sample_more_is_a_checkerboard_and_not_stripes() {
 }
 
 #[test]
-fn scattered_points_fall_like_rain() {
-    // 40 × 25 pixels with 20 points each on average: χ² with 999 degrees of freedom, for some
+fn scattered_counts_follow_the_poisson_distribution() {
+    // 40 × 25 pixels have 20 points each on average: χ² with 999 degrees of freedom, for several
     // seeds.
     let area = Area::whole(40, 25);
     let mut empty = 0;
     for seed in 0..20 {
-        let of = |total| shared(Method::Scatter, total, seed, [40, 25]).counts(area);
+        let of = |total| sampling_with_total(Method::Scatter, total, seed, [40, 25]).counts(area);
         let counts = of(20_000);
         let terms = counts
             .iter()
@@ -94,9 +94,9 @@ fn scattered_points_fall_like_rain() {
 }
 
 #[test]
-fn the_largest_scatter_sums_up() {
+fn the_largest_scatter_has_the_expected_mean_count() {
     let side = 1 << 20;
-    let sampling = shared(Method::Scatter, 1 << 53, 0, [side, side]);
+    let sampling = sampling_with_total(Method::Scatter, 1 << 53, 0, [side, side]);
     let corner = Area {
         x: side - 30,
         y: side - 20,
@@ -104,7 +104,8 @@ fn the_largest_scatter_sums_up() {
         height: 20,
     };
     let counts = sampling.counts(corner);
-    // 8192 each on average; the standard deviation of one is 90.5, of the mean of 600 it is 3.7.
+    // The average is 8192 points. The standard deviation of one pixel is 90.5, and of the mean of
+    // 600 pixels 3.7.
     let mean = counts.iter().sum::<u64>() as f64 / 600.0;
     assert!((mean - 8192.0).abs() < 15.0, "{mean}");
     assert!(counts.iter().all(|n| n.abs_diff(8192) < 450));

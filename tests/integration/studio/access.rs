@@ -1,4 +1,4 @@
-//! Who is let in, and to what.
+//! Access: which clients are admitted, and to which resources.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -27,7 +27,7 @@ fn header<'a>(response: &'a str, name: &str) -> &'a str {
     values[0].1
 }
 
-/// Waits until the other end closes a connection. Returns what it says before that.
+/// Reads until the host closes a connection. Returns what it sent before.
 fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
     let mut said = Vec::new();
     match stream.read_to_end(&mut said) {
@@ -36,7 +36,7 @@ fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
     }
 }
 
-/// The head of a request for a web socket. The key is the example of RFC 6455.
+/// Returns the head of a request for a web socket. The key is the example of RFC 6455.
 fn upgrade(studio: &Studio) -> String {
     let host = studio.host();
     format!(
@@ -44,8 +44,8 @@ fn upgrade(studio: &Studio) -> String {
     )
 }
 
-/// A page shows the token, and gets what it asks for.
-fn a_page_works(studio: &Studio) {
+/// Asserts that a page with the token gets what it asks for.
+fn assert_page_works(studio: &Studio) {
     let (mut page, _) = studio.page();
     page.open(json!({}), SMALLEST);
     assert_eq!(page.diagnostics()["diagnostics"], json!([]));
@@ -56,7 +56,7 @@ fn a_page_works(studio: &Studio) {
 }
 
 #[test]
-fn the_page_may_use_what_is_its_own_and_nothing_else() {
+fn the_page_may_load_only_its_own_resources() {
     let (_folder, studio) = studio();
     let nonces = [0, 1].map(|_| {
         let response = studio.get("/", "");
@@ -79,8 +79,7 @@ fn the_page_may_use_what_is_its_own_and_nothing_else() {
         ("/studio.css", "text/css"),
         ("/x", "text/plain; charset=utf-8"),
     ] {
-        // Whatever other servers of this machine have set, it says nothing here, and nothing is
-        // added to it.
+        // Cookies of other servers on this machine have no effect, and none is set.
         let response = studio.get(path, &format!("Cookie: token={}\r\n", studio.token));
         for (name, value) in [
             ("content-type", kind),
@@ -97,7 +96,7 @@ fn the_page_may_use_what_is_its_own_and_nothing_else() {
 }
 
 #[test]
-fn other_hosts_and_pages_are_refused() {
+fn requests_with_a_foreign_host_or_origin_are_refused() {
     let (_folder, studio) = studio();
     let port = studio.port;
     let ask = |path: &str, headers: &str| {
@@ -130,7 +129,7 @@ fn other_hosts_and_pages_are_refused() {
         for path in ["/", "/studio.js", "/socket"] {
             assert_eq!(status(&ask(path, headers)), "403", "{path} {headers}");
         }
-        // The same where all else of a web socket is right.
+        // The same for a request of a web socket that is otherwise correct.
         let upgrade = upgrade(&studio);
         let socket = upgrade.lines().filter(|line| {
             let own = ["Connection", "Upgrade", "Sec-"];
@@ -143,7 +142,7 @@ fn other_hosts_and_pages_are_refused() {
 }
 
 #[test]
-fn there_is_no_other_path_and_no_other_method() {
+fn unknown_paths_and_methods_are_refused() {
     let (_folder, studio) = studio();
     let host = studio.host();
     let paths = r"/a.scn /index.html /studio.js/ // /.. /../a.scn /..%2fa.scn /%2e%2e/a.scn /..\a.scn
@@ -153,7 +152,7 @@ fn there_is_no_other_path_and_no_other_method() {
         assert_eq!(status(&response), "404", "{path}");
         assert!(!response.contains("camera") && !response.contains("root:"));
     }
-    // The address of another host, as a proxy is asked.
+    // An absolute address, as in a request to a proxy.
     for target in ["http://127.0.0.1/studio.js", "http://example.org/"] {
         assert_eq!(status(&studio.get(target, "")), "403", "{target}");
     }
@@ -167,7 +166,7 @@ fn there_is_no_other_path_and_no_other_method() {
 }
 
 #[test]
-fn a_web_socket_names_its_page_and_is_one() {
+fn a_web_socket_request_needs_each_of_its_headers() {
     let (_folder, studio) = studio();
     let all = upgrade(&studio);
     for line in all.lines().skip(1).filter(|line| !line.is_empty()) {
@@ -192,7 +191,7 @@ fn a_web_socket_names_its_page_and_is_one() {
 }
 
 #[test]
-fn there_is_no_conversation_without_the_token() {
+fn a_connection_without_the_token_is_closed() {
     let (_folder, studio) = studio();
     let token = &studio.token;
     assert_eq!(token.len(), 32);
@@ -212,7 +211,7 @@ fn there_is_no_conversation_without_the_token() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // No message but a text, and no other end is told anything.
+    // Messages other than texts get no answer.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
@@ -222,18 +221,18 @@ fn there_is_no_conversation_without_the_token() {
         let said = socket.read();
         assert!(!matches!(said, Ok(Message::Text(_))), "{said:?}");
     }
-    // Another run has another token.
+    // Another process has another token.
     let (_folder, other) = self::studio();
     assert_eq!(other.admitted(token).err(), Some(unknown));
-    a_page_works(&studio);
+    assert_page_works(&studio);
 }
 
-/// What strangers say, and then no more.
+/// Each client sends the start of something and then stops, or continues slowly.
 #[test]
-fn whoever_shows_no_token_in_five_seconds_is_not_waited_for() {
+fn a_client_without_the_token_is_disconnected_after_five_seconds() {
     let (_folder, studio) = studio();
     let upgrade = upgrade(&studio);
-    // A ping, as a client sends it; and the start of a text that is 100 bytes long.
+    // A ping of a client, and the start of a text frame of 100 bytes.
     let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
     let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
     thread::scope(|scope| {
@@ -266,7 +265,8 @@ fn whoever_shows_no_token_in_five_seconds_is_not_waited_for() {
                 let time = begun.elapsed();
                 let start = String::from_utf8_lossy(start);
                 assert!(time < Duration::from_secs(8), "{start}: {time:?}");
-                // Whoever has said that nothing more comes, or something else, is not waited for.
+                // A client that has closed its side, or has sent something else, is disconnected at
+                // once.
                 assert!(
                     is_early || time > Duration::from_secs(4),
                     "{start}: {time:?}"
@@ -274,21 +274,21 @@ fn whoever_shows_no_token_in_five_seconds_is_not_waited_for() {
             });
         }
     });
-    a_page_works(&studio);
+    assert_page_works(&studio);
 }
 
 #[test]
-fn those_who_wait_without_the_token_keep_nobody_out() {
+fn idle_connections_without_the_token_do_not_block_pages() {
     let (_folder, studio) = studio();
     let (mut before, _) = studio.page();
     for count in [64, 200] {
         let idle: Vec<TcpStream> = (0..count).map(|_| studio.stream()).collect();
-        a_page_works(&studio);
+        assert_page_works(&studio);
         let sockets: Vec<_> = (0..count).map(|_| studio.socket()).collect();
-        a_page_works(&studio);
+        assert_page_works(&studio);
         drop((idle, sockets));
     }
-    // More pages than there are places for strangers, and each works on.
+    // More pages than places for clients without a token all keep working.
     let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
     for page in pages.iter_mut().chain([&mut before]) {
         page.open(json!({}), SMALLEST);
@@ -297,11 +297,11 @@ fn those_who_wait_without_the_token_keep_nobody_out() {
 }
 
 #[test]
-fn what_is_no_request_does_no_harm() {
+fn malformed_requests_and_frames_do_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
     let upgrade = upgrade(&studio);
-    // The head of a frame of text that is 64 MiB long, and such a text.
+    // The head of a text frame of 64 MiB, and a part of the text.
     let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
     let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [
@@ -311,8 +311,8 @@ fn what_is_no_request_does_no_harm() {
         b"GET\r\n\r\n",
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        // A reserved operation, a frame without a mask, a frame that goes on without a start, a
-        // text that is no UTF-8.
+        // A reserved opcode, a frame without a mask, a continuation without a start, and a text
+        // that is not UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
         &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),
@@ -321,7 +321,7 @@ fn what_is_no_request_does_no_harm() {
     ] {
         let begun = Instant::now();
         let mut stream = studio.stream();
-        // It may be closed before all is written.
+        // The connection may be closed before everything is written.
         let _ = stream.write_all(wrong);
         let said = until_closed(&mut stream);
         let (said, wrong) = (
@@ -332,14 +332,14 @@ fn what_is_no_request_does_no_harm() {
         let is_refused = said.is_empty() || matches!(status(&said), "400" | "431" | "101");
         assert!(is_refused, "{wrong:.60}: {said}");
     }
-    a_page_works(&studio);
+    assert_page_works(&studio);
 }
 
-/// All of 127.0.0.0/8 leads to this machine, where Linux is concerned, and what listens at any
-/// address is found there.
+/// On Linux all of 127.0.0.0/8 leads to this machine, so a server that listens at every address
+/// would be found at 127.0.0.2.
 #[cfg(target_os = "linux")]
 #[test]
-fn only_one_address_is_listened_at() {
+fn studio_listens_only_at_127_0_0_1() {
     let (_folder, studio) = studio();
     assert!(TcpStream::connect(("127.0.0.1", studio.port)).is_ok());
     assert!(TcpStream::connect(("127.0.0.2", studio.port)).is_err());

@@ -1,4 +1,4 @@
-//! The program, and a plain client that says what a browser would say.
+//! The program, and a plain client that sends what a browser would send.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -15,22 +15,22 @@ use tungstenite::{
 };
 
 use crate::{
-    lsp::client::{Carrier, Client, PATIENCE},
+    lsp::client::{Client, PATIENCE, Transport},
     program::Folder,
 };
 
-/// The program, which serves the smallest scene as `a.scn`, in a folder of its own.
+/// Starts the program in a new folder, with the smallest scene as `a.scn`.
 pub fn studio() -> (Folder, Studio) {
     let folder = Folder::with([("a.scn", SMALLEST)]);
     let studio = Studio::start(folder.command("studio --no-open a.scn"));
     (folder, studio)
 }
 
-/// The program while it serves.
+/// Running program that serves a scene.
 pub struct Studio {
     pub child: Child,
     pub port: u16,
-    /// In the printed address.
+    /// Token in the printed address.
     pub token: String,
 }
 
@@ -60,7 +60,7 @@ impl Studio {
         stream
     }
 
-    /// The response to what is sent.
+    /// Sends a request and returns its response.
     pub fn response(&self, request: &str) -> String {
         let mut stream = self.stream();
         stream.write_all(request.as_bytes()).unwrap();
@@ -69,7 +69,7 @@ impl Studio {
         response
     }
 
-    /// The response to a request for a path, with the host and these lines of the head.
+    /// Requests a path with the host and further header lines, and returns the response.
     pub fn get(&self, path: &str, headers: &str) -> String {
         let host = self.host();
         self.response(&format!(
@@ -77,7 +77,7 @@ impl Studio {
         ))
     }
 
-    /// A web socket on which nothing was said yet.
+    /// Opens a web socket without sending anything.
     pub fn socket(&self) -> WebSocket<TcpStream> {
         let host = self.host();
         let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
@@ -86,8 +86,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// A page that shows a token, and the token that it gets; or the code with which it is turned
-    /// away.
+    /// Opens a page with a token. Returns the page and its session's token, or the code with which
+    /// it is refused.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
@@ -102,11 +102,11 @@ impl Studio {
         Ok((Client::new(Page(socket)), token))
     }
 
-    /// A page with the printed token, to which nothing but the file was told yet.
+    /// Opens a page with the printed token. Returns it with the notification of the file.
     pub fn page(&self) -> (Client<Page>, Value) {
         let (mut page, token) = self.admitted(&self.token).unwrap();
         assert_eq!(token, self.token);
-        let file = page.told("studio/file");
+        let file = page.notification("studio/file");
         (page, file)
     }
 }
@@ -118,10 +118,10 @@ impl Drop for Studio {
     }
 }
 
-/// A page's end of the web socket.
+/// Page's end of the web socket.
 pub struct Page(pub WebSocket<TcpStream>);
 
-impl Carrier for Page {
+impl Transport for Page {
     const URI: &'static str = "studio:///scene.scn";
 
     fn write(&mut self, text: &str) {
@@ -135,10 +135,10 @@ impl Carrier for Page {
 }
 
 impl Client<Page> {
-    /// The code with which the host closes the web socket, whatever it says before that.
+    /// Returns the code with which the host closes the web socket, and skips earlier texts.
     pub fn closed(&mut self) -> CloseCode {
         loop {
-            match self.carrier.0.read().unwrap() {
+            match self.transport.0.read().unwrap() {
                 Message::Close(Some(frame)) => return frame.code,
                 Message::Text(_) => {}
                 other => panic!("{other:?}"),

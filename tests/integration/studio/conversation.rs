@@ -1,4 +1,4 @@
-//! What is said over the web socket.
+//! Messages over the web socket.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ use tungstenite::{Error, Message, protocol::frame::coding::CloseCode};
 use super::client::{Page, studio};
 use crate::{
     interrupt::long_pixel,
-    lsp::client::{Carrier, Client},
+    lsp::client::{Client, Transport},
 };
 
 const SCENE: &str = "\
@@ -19,18 +19,18 @@ sphere Ball { center (0, 1, 0)   radius 1 }
 checkerboard {}
 ";
 
-/// Opens the text; what is wrong with it.
+/// Opens a text and returns its diagnostics.
 fn open(page: &mut Client<Page>, text: &str) -> Value {
     page.open(json!({}), text);
     page.diagnostics()["diagnostics"].take()
 }
 
 #[test]
-fn what_is_no_message_gets_an_answer_and_the_conversation_goes_on() {
+fn invalid_messages_get_errors_and_the_conversation_continues() {
     let (_folder, studio) = studio();
     let (mut page, _) = studio.page();
     for (wrong, code) in [("", -32700), (r#"{"id":1}"#, -32600)] {
-        page.carrier.write(wrong);
+        page.transport.write(wrong);
         assert_eq!(page.read()["error"]["code"], code, "{wrong}");
     }
     for (method, params, code) in [
@@ -43,22 +43,22 @@ fn what_is_no_message_gets_an_answer_and_the_conversation_goes_on() {
         let found = page.respond(method, params);
         assert_eq!(found["error"]["code"], code, "{method}");
     }
-    // Half of a surrogate pair is no text: whoever has asked hears of it.
+    // Half of a surrogate pair is not valid text: the request gets an error.
     let text = r#"{ "id": "page-7", "method": "studio/save", "params": { "text": "\ud800" } }"#;
-    page.carrier.write(text);
+    page.transport.write(text);
     let answer = page.read();
     assert_eq!(
         (&answer["id"], &answer["error"]["code"]),
         (&json!("page-7"), &json!(-32700))
     );
-    let socket = &mut page.carrier.0;
+    let socket = &mut page.transport.0;
     socket.send(Message::Ping("x".into())).unwrap();
     assert_eq!(socket.read().unwrap(), Message::Pong("x".into()));
     open(&mut page, SCENE);
 }
 
 #[test]
-fn a_picture_is_the_one_that_render_writes() {
+fn studio_pictures_equal_those_of_render() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     for sampler in ["", "method exact", "method sobol  per_pixel 3"] {
@@ -83,17 +83,17 @@ fn a_picture_is_the_one_that_render_writes() {
 #[test]
 fn a_message_that_is_too_long_ends_the_conversation() {
     let (_folder, studio) = studio();
-    // The head of a frame of text, with the bit that says masked, a length in 64 bits and a mask.
+    // Head of a text frame: the mask bit, a length of 64 bits, and the mask.
     let head = [
         &[0x81, 0xff],
         &((64_u64 << 20) + 1).to_be_bytes()[..],
         &[0; 4],
     ]
     .concat();
-    // So do bytes, as there is nothing that they could say.
-    let mut bytes = studio.page().0.carrier.0;
+    // Binary messages, which have no meaning, end the conversation, too.
+    let mut bytes = studio.page().0.transport.0;
     bytes.send(Message::binary(vec![1])).unwrap();
-    let mut long = studio.page().0.carrier.0;
+    let mut long = studio.page().0.transport.0;
     long.get_mut().write_all(&head).unwrap();
     for (mut socket, code) in [(long, CloseCode::Size), (bytes, CloseCode::Unsupported)] {
         match socket.read() {
@@ -108,26 +108,26 @@ fn a_message_that_is_too_long_ends_the_conversation() {
 }
 
 #[test]
-fn a_conversation_ends_as_the_protocol_says() {
+fn exit_and_a_close_frame_end_the_conversation() {
     let (_folder, studio) = studio();
     let (mut page, _) = studio.page();
     open(&mut page, SCENE);
     assert_eq!(page.ask("shutdown", Value::Null), Value::Null);
-    page.tell("exit", Value::Null);
+    page.notify("exit", Value::Null);
     let (mut closing, _) = studio.page();
-    closing.carrier.0.close(None).unwrap();
+    closing.transport.0.close(None).unwrap();
     for mut page in [page, closing] {
-        let last = page.carrier.0.read().unwrap();
+        let last = page.transport.0.read().unwrap();
         assert!(matches!(last, Message::Close(_)), "{last}");
     }
 }
 
 #[test]
-fn pages_know_nothing_of_each_other_and_do_not_wait_for_each_other() {
+fn pages_are_independent_and_do_not_block_each_other() {
     let (_folder, studio) = studio();
     let (mut first, _) = studio.page();
     let (mut second, _) = studio.page();
-    // It takes more than a minute.
+    // The picture takes more than a minute.
     let long = first.request("studio/png", json!({ "text": long_pixel() }));
     let refused = first.respond("studio/png", json!({ "text": SCENE }));
     assert_eq!(refused["error"]["message"], "another picture is being made");
@@ -135,22 +135,22 @@ fn pages_know_nothing_of_each_other_and_do_not_wait_for_each_other() {
     assert_ne!(open(&mut first, &wrong), json!([]));
     assert_eq!(open(&mut second, SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    // Nor is a picture waited for that nobody wants any more.
-    first.tell("$/cancelRequest", json!({ "id": long + 100 }));
-    first.tell("$/cancelRequest", json!({ "id": long }));
+    // A cancelled picture is not waited for.
+    first.notify("$/cancelRequest", json!({ "id": long + 100 }));
+    first.notify("$/cancelRequest", json!({ "id": long }));
     assert_eq!(first.response(long)["error"]["code"], -32800);
     first.ask("studio/png", json!({ "text": SCENE }));
 }
 
-/// What is done for a page ends with it, however it ends.
+/// The work for a page ends with the page, however it ends.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_page_that_is_gone_leaves_no_work() {
+fn closing_a_page_cancels_its_work() {
     use std::{fs, thread, time::Duration};
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // Those that render a picture are called as the one that asks them to.
+    // The render threads have the name of the thread that starts them.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

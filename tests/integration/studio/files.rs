@@ -1,4 +1,4 @@
-//! The scene's file: read, saved, changed by others, and no other file.
+//! The scene's file: it is read, saved and changed by other programs, and no other file is touched.
 
 use std::{fs, net::TcpListener};
 
@@ -6,6 +6,8 @@ use pinhole::scene::SMALLEST as SCENE;
 use serde_json::{Value, json};
 
 use super::client::{Page, Studio, studio};
+#[cfg(unix)]
+use crate::interrupt::send_signal;
 use crate::{
     lsp::client::{Client, PATIENCE},
     program::Folder,
@@ -15,9 +17,9 @@ fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
 }
 
-/// What the page is told to be in the file.
+/// Returns the text of the file as the page is notified of it, and the reason if there is none.
 fn told(page: &mut Client<Page>) -> [Value; 2] {
-    let mut file = page.told("studio/file");
+    let mut file = page.notification("studio/file");
     ["text", "reason"].map(|field| file[field].take())
 }
 
@@ -30,7 +32,7 @@ fn file(name: &str, text: &str, is_saved: bool) -> Value {
 }
 
 #[test]
-fn a_text_is_saved_and_other_pages_hear_of_it() {
+fn a_save_writes_the_file_and_notifies_other_pages() {
     let (folder, studio) = studio();
     let (mut first, found) = studio.page();
     assert_eq!(found, file("a.scn", SCENE, true));
@@ -38,36 +40,36 @@ fn a_text_is_saved_and_other_pages_hear_of_it() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // What is there already need not be written, whatever it was made from.
+    // A text that the file has already need not be written, whatever its base.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }
-    // The first page has heard of that alone, and not of what it has saved itself.
+    // The first page is notified of this save only, and not of its own.
     assert_eq!(told(&mut first), [json!("// 2"), Value::Null]);
     assert_eq!(studio.page().1["text"], "// 2");
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
 #[test]
-fn what_somebody_else_has_saved_is_not_overwritten() {
+fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // Whether the page has been told or not.
+    // The change is noticed whether the page has been notified or not.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
-    assert_eq!(page.told("studio/file")["text"], "// theirs");
+    assert_eq!(page.notification("studio/file")["text"], "// theirs");
     let answer = save(&mut page, "// mine", Some("// theirs"));
     assert_eq!(answer["result"], saved());
-    // It is gone.
+    // The file is removed.
     fs::remove_file(folder.path("a.scn")).unwrap();
     assert_eq!(told(&mut page), [Value::Null, Value::Null]);
     let gone = json!({ "ok": false, "text": null });
     assert_eq!(save(&mut page, "// more", Some("// mine"))["result"], gone);
     assert_eq!(save(&mut page, "// mine", None)["result"], saved());
     assert_eq!(folder.text("a.scn"), "// mine");
-    // It is in another encoding, which would be lost.
+    // The file is in another encoding, which a save would lose.
     folder.write("a.scn", b"// \xff");
     let reason = "it is not a text in UTF-8";
     assert_eq!(told(&mut page), [Value::Null, json!(reason)]);
@@ -85,7 +87,7 @@ fn what_somebody_else_has_saved_is_not_overwritten() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // A new scene beside it stays in its folder.
+    // A new scene beside the file stays in its folder.
     for name in ["../b.scn", "sub/b.scn", "b.txt"] {
         let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
         let error = page.respond("studio/save", elsewhere)["error"].take();
@@ -94,7 +96,7 @@ fn a_save_that_fails_changes_nothing() {
     }
     let own = json!({ "text": SCENE, "base": SCENE, "name": "a.scn" });
     assert_eq!(page.ask("studio/save", own), saved());
-    // Where the text was there is a folder now.
+    // A folder replaces the file.
     fs::remove_file(folder.path("a.scn")).unwrap();
     fs::create_dir(folder.path("a.scn")).unwrap();
     let error = save(&mut page, "// mine", None)["error"].take();
@@ -102,11 +104,10 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Each way of protecting a file that this system and user have: whoever is root has the last
-/// alone.
+/// Each way of protecting a file that is possible here: for root, only the last one has an effect.
 #[cfg(unix)]
 #[test]
-fn a_save_that_is_not_allowed_names_the_file_and_a_way_out() {
+fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
     use std::process::Command;
 
     let way_out = "allow it to be changed, or download the scene";
@@ -132,13 +133,13 @@ fn a_save_that_is_not_allowed_names_the_file_and_a_way_out() {
         let message = format!("a.scn is not saved: {why}; {way_out}");
         assert_eq!(answer["error"]["message"].take(), message, "{protect}");
         assert_eq!(folder.text("a.scn"), SCENE);
-        // Once it is allowed, it is saved.
+        // Once it is allowed, the file is saved.
         assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], saved());
     }
 }
 
 #[test]
-fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
+fn a_new_scene_is_saved_only_under_an_unused_name() {
     let outer = Folder::with([("inner/there.scn", "// there")]);
     let inner = outer.path("inner");
     let before = if cfg!(unix) {
@@ -181,14 +182,14 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // From now on it is a file like any other.
+    // From now on the scene is a file like any other.
     for page in [&mut page, &mut other] {
         assert_eq!(
-            page.told("studio/file"),
+            page.notification("studio/file"),
             file("new one.scn", "// new", true)
         );
     }
-    // Another new scene comes beside it, and over none that is there.
+    // Another new scene is saved beside it, and overwrites no file.
     let response = save(&mut other, json!("there.scn"));
     assert_eq!(response["error"]["code"], -32803);
     assert_eq!(outer.text("inner/there.scn"), "// there");
@@ -196,7 +197,7 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
     assert_eq!(outer.text("inner/second.scn"), "// new");
     assert_eq!(outer.text("inner/new one.scn"), "// new");
     outer.write("inner/new one.scn", "// theirs");
-    assert_eq!(page.told("studio/file")["text"], "// theirs");
+    assert_eq!(page.notification("studio/file")["text"], "// theirs");
     let params = json!({ "text": "// mine", "base": "// theirs" });
     assert_eq!(page.ask("studio/save", params), saved());
     assert_eq!(outer.text("inner/new one.scn"), "// mine");
@@ -204,27 +205,22 @@ fn a_new_scene_is_saved_under_a_name_that_no_file_has() {
 
 #[cfg(unix)]
 #[test]
-fn a_scene_that_becomes_a_pipe_is_told_and_holds_nothing_up() {
+fn a_scene_replaced_by_a_pipe_is_reported_and_blocks_nothing() {
     let (folder, mut studio) = studio();
     let (mut page, _) = studio.page();
-    let mut mkfifo = std::process::Command::new("mkfifo");
-    assert!(mkfifo.arg(folder.path("pipe")).status().unwrap().success());
+    folder.make_pipe("pipe");
     fs::rename(folder.path("pipe"), folder.path("a.scn")).unwrap();
     let reason = json!("it is a pipe, not a file");
     assert_eq!(told(&mut page), [Value::Null, reason]);
     let error = save(&mut page, "// mine", Some(SCENE))["error"].take();
     let message = "a.scn is not saved, as it cannot be read: it is a pipe, not a file; save under another name";
     assert_eq!(error["message"], message);
-    let id = studio.child.id().to_string();
-    let ended = std::process::Command::new("kill")
-        .args(["-INT", &id])
-        .status();
-    assert!(ended.unwrap().success());
+    send_signal("INT", &studio.child);
     assert_eq!(studio.child.wait().unwrap().code(), Some(130));
 }
 
 #[test]
-fn what_cannot_be_edited_is_told_at_once() {
+fn files_that_cannot_be_edited_are_refused_at_the_start() {
     let folder = Folder::with([("a.scn", SCENE)]);
     folder.write("bytes.scn", b"\xff");
     let wide = |mark: &str, text: &str| -> Vec<u8> {
@@ -266,7 +262,7 @@ fn what_cannot_be_edited_is_told_at_once() {
 
 #[cfg(unix)]
 #[test]
-fn a_browser_is_started_unless_it_is_not_wanted() {
+fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
     use rustix::net::sockopt::set_socket_recv_buffer_size;
     use std::{
         env,
@@ -289,7 +285,7 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    // More than the system takes for a page that does not read.
+    // The text is larger than the socket buffers of a page that does not read.
     let long = "// a long scene\n".repeat(1 << 19);
     folder.write("a.scn", &long);
     for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
@@ -305,36 +301,36 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
         while !opened.exists() && Instant::now() < end {
             thread::sleep(Duration::from_millis(10));
         }
-        // Others can read it: it has a token of its own, which serves once.
+        // Other users can read the command line, so its token is separate and works only once.
         let address = folder.text("opened");
         let (host, once) = address.trim().split_once("/#token=").unwrap();
         assert_eq!(host, format!("http://{}", studio.host()));
         assert_ne!(once, studio.token);
         let (mut first, session) = studio.admitted(once).unwrap();
         assert!(session != once && session != studio.token);
-        // The page connects again with what it was given.
+        // The page connects again with its session's token.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
-        // What is still on its way would come before the word that the session ends.
-        first.told("studio/file");
-        again.told("studio/file");
+        // Pending messages would arrive before the notice that the session ends.
+        first.notification("studio/file");
+        again.notification("studio/file");
         let (mut other, _) = studio.page();
         let mut silent = studio.socket();
         set_socket_recv_buffer_size(silent.get_ref(), 1 << 16).unwrap();
         silent.send(session.as_str().into()).unwrap();
         silent.read().unwrap();
-        // Whoever opens it a second time ends the session, and has none.
+        // A second use of the address ends the session, and gets none.
         let twice = CloseCode::from(4003);
         for token in [once, &session, once] {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
-        // Nor does one that does not read what it is sent go on with it.
+        // A page that does not read its messages loses its session, too.
         thread::sleep(Duration::from_secs(1));
         let mut rest = Vec::new();
         let _ = silent.get_mut().read_to_end(&mut rest);
         assert!(rest.len() < long.len(), "{} bytes", rest.len());
-        // Pages with the printed address are not concerned.
+        // Pages with the printed token are not affected.
         other.open(json!({}), SCENE);
         other.diagnostics();
         studio.page();
@@ -343,10 +339,9 @@ fn a_browser_is_started_unless_it_is_not_wanted() {
 
 #[cfg(unix)]
 #[test]
-fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
+fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
     use std::{
         io::Write,
-        process::Command,
         thread,
         time::{Duration, Instant},
     };
@@ -360,19 +355,14 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
         let (mut idle, _socket) = (studio.stream(), studio.socket());
         idle.write_all(b"GET / HT").unwrap();
         if is_pipe {
-            // Whoever opens it waits for somebody to write.
+            // Opening a pipe would wait for a writer.
             fs::remove_file(folder.path("a.scn")).unwrap();
-            let made = Command::new("mkfifo").arg(folder.path("a.scn")).status();
-            assert!(made.unwrap().success());
-            // By then it was looked at.
+            folder.make_pipe("a.scn");
+            // By then the host has looked at the file.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();
-        let id = studio.child.id().to_string();
-        let killed = Command::new("kill")
-            .args([&format!("-{signal}"), &id])
-            .status();
-        assert!(killed.unwrap().success());
+        send_signal(signal, &studio.child);
         assert_eq!(studio.child.wait().unwrap().code(), Some(130));
         let time = begun.elapsed();
         assert!(time < Duration::from_secs(1), "{signal} {is_pipe} {time:?}");
@@ -382,10 +372,10 @@ fn an_end_is_there_within_a_second_and_pages_hear_of_it() {
     }
 }
 
-/// What is not saved survives the program, each page's under its key, and is gone when its text is
-/// saved or it is forgotten.
+/// Unsaved drafts, one per page's key, survive the program until their text is saved or they are
+/// discarded.
 #[test]
-fn drafts_outlive_the_program() {
+fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let folder = Folder::with([("a.scn", SCENE)]);
     let start = || {
         let mut command = folder.command("studio --no-open a.scn");
@@ -405,8 +395,8 @@ fn drafts_outlive_the_program() {
     let twelve: Vec<String> = (0..12).map(|key| key.to_string()).collect();
     let twelve: Vec<(&str, Option<&str>)> =
         twelve.iter().map(|key| (&**key, Some(&**key))).collect();
-    // What pages keep under their keys, one after the other, what a later one is offered, and what
-    // is left when that has saved `// b`.
+    // Rows of drafts stored one after the other, the drafts offered to a later page, and those left
+    // when it has saved `// b`.
     let cases = [
         (
             &[("x", Some("// 0")), ("y", Some("// 1"))][..],
@@ -427,7 +417,7 @@ fn drafts_outlive_the_program() {
             "// 0",
             "// 0",
         ),
-        // What the file holds is not offered, and ten are enough.
+        // A draft equal to the file is not offered, and at most ten are.
         (&[("x", Some(SCENE)), ("y", Some("// 1"))], "// 1", "// 1"),
         (&twelve, "11 10 9 8 7 6 5 4 3 2", "11 10 9 8 7 6 5 4 3 2"),
         (&[("x", None)], "", ""),

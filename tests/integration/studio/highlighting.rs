@@ -1,10 +1,10 @@
-//! The words that the page colours while one types are those of the language.
+//! The words that the page highlights are those of the language.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
 use pinhole::schema::{BLOCKS, FUNCTIONS};
 
-/// The words in quotation marks that a constant of a file of the page is made of.
+/// Returns the quoted words in a constant of one of the page's source files.
 fn words(file: &str, constant: &str) -> BTreeSet<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studio/page/src");
     let text = fs::read_to_string(path.join(file)).unwrap();
@@ -20,7 +20,7 @@ fn set<'a>(words: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
 }
 
 #[test]
-fn the_page_knows_the_words_of_the_language() {
+fn the_page_highlights_exactly_the_words_of_the_language() {
     let file = "language.ts";
     let fields = || BLOCKS.iter().flat_map(|block| block.fields);
     assert_eq!(words(file, "KINDS"), set(BLOCKS.iter().map(|it| it.name)));

@@ -1,5 +1,4 @@
-//! `pinhole studio` as a browser meets it: who is let in, what the conversation says, and what
-//! becomes of the file.
+//! `pinhole studio` from a browser's side: access, the conversation, and the scene's file.
 
 mod access;
 pub mod client;

@@ -1,5 +1,5 @@
-//! The tracer against the oracle, above all within the last bits of every boundary: what is beside
-//! the catalogue of hard cases, all of which the tests of `numerics` ask.
+//! The tracer compared with the oracle, above all within the last bits of every boundary. The tests
+//! of `numerics` cover the catalogue of hard cases.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
@@ -9,14 +9,13 @@ use pinhole::{
         oracle::{ALL_SIZES, Oracle},
         scenes,
     },
-    sampling::CounterRng,
     scene::{Camera, Count, Method, Outline, Scene, Shape, Triangle, View},
     tracer::World,
 };
-use rand::{Rng, RngExt, SeedableRng};
 
 use crate::{
     generated::{Numbers, generated},
+    random::Random,
     scenes::{exact, read, resized, sampled, with_samples},
     table::rows,
 };
@@ -25,7 +24,7 @@ pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
 }
 
-/// A triangle by its vertices.
+/// Returns a triangle given by its vertices.
 pub fn by_vertices(vertices: [DVec3; 3]) -> Shape {
     Shape::Triangle(Triangle {
         outline: Outline::Vertices(vertices),
@@ -37,34 +36,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Reproducible numbers.
-pub struct Random(CounterRng);
-
-impl Random {
-    pub fn new(seed: u64) -> Self {
-        Self(CounterRng::seed_from_u64(seed))
-    }
-
-    pub fn bits(&mut self) -> u64 {
-        self.0.next_u64()
-    }
-
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.random::<f64>()
-    }
-
-    pub fn offset(&mut self) -> DVec2 {
-        dvec2(self.within(-0.5, 0.5), self.within(-0.5, 0.5))
-    }
-
-    pub fn vector(&mut self, size: f64) -> DVec3 {
-        let mut one = || self.within(-size, size);
-        dvec3(one(), one(), one())
-    }
-}
-
-/// Whether a camera does not look along its up vector, where a rule decides that knows the world's
-/// axes.
+/// Returns whether a camera does not look along its up vector, in which case a rule about the
+/// world's axes decides.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -74,14 +47,14 @@ pub fn is_upright(scene: &Scene) -> bool {
     direction.cross(up) != DVec3::ZERO
 }
 
-/// The tracer and the oracle, which tell objects and the colours of squares apart.
-struct Both {
+/// Tracer and oracle of one scene, in which each object and square colour is distinct.
+struct TracerAndOracle {
     scene: Scene,
     world: World,
     oracle: Oracle,
 }
 
-impl Both {
+impl TracerAndOracle {
     fn new(original: &Scene) -> Self {
         let shapes: Vec<_> = original.objects.iter().map(|object| object.shape).collect();
         let mut scene = scene(original.camera, &shapes);
@@ -98,7 +71,7 @@ impl Both {
         self.world.palette()[self.world.slot_at(x, y, offset)].srgb
     }
 
-    /// Compares what they see; answers it.
+    /// Asserts that the tracer and the oracle see the same. Returns it.
     #[track_caller]
     fn check(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
         let expected = match self.oracle.seen(&self.oracle.direction(x, y, offset)) {
@@ -112,12 +85,12 @@ impl Both {
     }
 }
 
-/// Compares the tracer with the oracle: at random points, and at the points of `f64` on both sides
-/// of the boundaries that random segments within pixels cross. Returns how many boundaries it
-/// found, so that a test can say that there were some.
+/// Compares the tracer with the oracle at random points, and at neighbouring `f64` points on both
+/// sides of boundaries that random segments within pixels cross. Returns the number of boundaries
+/// found, so that a test can require some.
 #[track_caller]
-fn agrees(scene: &Scene, points: usize) -> usize {
-    let both = Both::new(scene);
+fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
+    let both = TracerAndOracle::new(scene);
     let mut random = Random::new(points as u64);
     let mut boundaries = 0;
     for tries in 0..40 * points + 4000 {
@@ -126,7 +99,7 @@ fn agrees(scene: &Scene, points: usize) -> usize {
         if tries % 16 == 0 {
             both.check(x, y, a);
         }
-        // Along x or y alone, down to neighbouring numbers.
+        // Bisects along x or y alone, down to neighbouring numbers.
         let axis = tries % 2;
         b[1 - axis] = a[1 - axis];
         let color = both.color(x, y, a);
@@ -139,9 +112,10 @@ fn agrees(scene: &Scene, points: usize) -> usize {
             if middle == a || middle == b {
                 break;
             }
-            match both.color(x, y, middle) == color {
-                true => a = middle,
-                false => b = middle,
+            if both.color(x, y, middle) == color {
+                a = middle;
+            } else {
+                b = middle;
             }
         }
         both.check(x, y, a);
@@ -158,17 +132,19 @@ fn agrees(scene: &Scene, points: usize) -> usize {
 fn scenes_of_random_numbers_agree_with_the_oracle() {
     let scenes = generated(Numbers::Wild(0), [64, 64], 7).map(|(_, scene)| scene);
     let scenes = scenes.filter(is_upright).take(48);
-    let found: usize = scenes.map(|scene| agrees(&scene, 16)).sum();
+    let found: usize = scenes
+        .map(|scene| assert_agrees_with_oracle(&scene, 16))
+        .sum();
     assert!(found > 200, "{found}");
 }
 
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // All sample points are multiples of 1/8 pixel.
+    // All sample points are multiples of 1/8 of a pixel.
     let mut random = Random::new(11);
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
     for scene in scenes.filter(is_upright).take(150) {
-        let both = Both::new(&scene);
+        let both = TracerAndOracle::new(&scene);
         for _ in 0..30 {
             let [x, y] = [(); 2].map(|()| random.bits() as u32 % 8);
             let [right, down] = [(); 2].map(|()| (random.bits() % 8) as f64 / 8.0 - 0.5);
@@ -183,20 +159,20 @@ fn fans_of_triangles_agree_with_the_oracle() {
     let mut found = 0;
     for round in 0..24 {
         let camera = camera(random.vector(4.0), random.vector(1.0));
-        // Around one vertex, of all sizes.
+        // A fan of any size around one vertex.
         let size = [1.0, 1e-3, 1e3][round % 3];
         let middle = random.vector(1.0);
         let rim: Vec<DVec3> = (0..5).map(|_| middle + random.vector(2.0) * size).collect();
         let fan = (0..5).map(|at| by_vertices([middle, rim[at], rim[(at + 1) % 5]]));
         let shapes: Vec<Shape> = fan.chain([floor()]).collect();
-        found += agrees(&scene(camera, &shapes), 16);
+        found += assert_agrees_with_oracle(&scene(camera, &shapes), 16);
     }
     assert!(found > 200, "{found}");
 }
 
-/// What is next to nothing, or to everything, that the range of numbers has, and what ties.
+/// Distances close to the least and the greatest number, and ties.
 #[test]
-fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
+fn objects_at_the_limits_of_f64_agree_with_the_oracle() {
     for [scene, values, boundaries] in rows(
         "
         -- A floor as close below the eye, and a box as close before it.
@@ -213,14 +189,14 @@ fn nothing_is_too_near_or_too_far_for_the_range_of_numbers() {
     ) {
         for value in values.split('|') {
             let scene = read(&scene.replace('$', value.trim()));
-            let found = agrees(&resized(scene, 64, 64), 10);
+            let found = assert_agrees_with_oracle(&resized(scene, 64, 64), 10);
             assert!(found >= boundaries.parse().unwrap(), "{value}: {found}");
         }
     }
 }
 
 #[test]
-fn lenses_have_all_ranges_of_numbers() {
+fn lenses_at_the_limits_of_f64_show_the_right_objects() {
     let mut random = Random::new(4);
     for [lens, seen] in rows(
         "
@@ -230,11 +206,11 @@ fn lenses_have_all_ranges_of_numbers() {
         d 1e-300 view_height 1e-300 -> 0 1 2 0
     ",
     ) {
-        let both = Both::new(&read(&format!(
+        let both = TracerAndOracle::new(&read(&format!(
             "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
         )));
-        // The boxes' common face is seen edge-on in the middle of the picture.
+        // The common face of the boxes is seen edge-on in the middle of the picture.
         for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
             let found = both.color(x, 31, random.offset())[0];
             assert_eq!(found.to_string(), seen, "{lens}: {x}");
@@ -242,7 +218,7 @@ fn lenses_have_all_ranges_of_numbers() {
     }
 }
 
-/// The two halves of a square, in front of red, beside the diagonal that crosses the middles of
+/// The two halves of a square in front of red, along the diagonal that crosses the centres of
 /// pixels.
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
@@ -262,7 +238,7 @@ fn two_halves_of_a_square_leave_no_gap() {
             let (sampled, exact) = (sampled(&scene), exact(&scene));
             let mut seen = 0;
             for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
-                // Half of a gap would show; outside of the square both are 0.
+                // Half a gap would show. Outside the square both are 0.
                 assert!(sampled[0] == sampled[1] || *exact < 1.0, "from {eye}");
                 seen += u32::from(sampled[1] == 1.0);
                 if eye == "(0, 0, 2)" {
@@ -278,7 +254,7 @@ fn two_halves_of_a_square_leave_no_gap() {
 }
 
 #[test]
-fn triangles_too_small_or_far_away_to_be_seen_are_not_seen() {
+fn triangles_too_small_or_too_far_away_leave_no_light() {
     for [triangle, direction] in rows(
         "
         centroid (1e10, 1e100, -1e100) sides (1, 1, 1) -> (0.1, 0.7, -1)

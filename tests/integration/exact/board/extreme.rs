@@ -1,9 +1,10 @@
-//! The board in views of nearly 180 degrees, and in those of less than a millionth of a degree: the
-//! bound is honest there, however large it is.
+//! The board in views of nearly 180° and of less than a millionth of a degree: the bound holds
+//! there, however large it is.
 
 use super::*;
 
-/// Pictures, views, squares, what is on the board, and the part whose quarters it is.
+/// Rows of the image, the camera, sizes of squares, an object, and the area whose quarters are
+/// summed.
 const VIEWS: &str = "
     -- Through lenses so long that a pixel next to the horizon begins millions of millions of squares away, where a rounding of a place is as much as the pixel is wide: alone, before a far plane, and next to an outline.
     width 6 height 4 -> eye (-3.8129918102387705, 0.29933186775843634, 5.521568092661159) direction (0.29550764467648694, 2.7116391188331324e-13, -0.9553403749123949) roll -0.6189217287574991deg d 3.227743535403821e12 -> 1 -> -> 1,1,1,3
@@ -32,23 +33,23 @@ const VIEWS: &str = "
     width 6000 height 2000 -> eye (0.3, 0.8, 0.2) direction (0.64, -0.1, -0.8) roll 20.762deg d 9e-14 -> 6.3 0.013 1e-300 -> -> 5628,2,3,3
 ";
 
-sampled_and_exhaustive!(four_quarters_are_the_pixel_of_extreme_views);
+sampled_and_exhaustive!(quarters_add_up_in_extreme_views);
 
-fn four_quarters_are_the_pixel_of_extreme_views(effort: Effort) {
+fn quarters_add_up_in_extreme_views(effort: Effort) {
     for [image, camera, squares, object, area] in effort.first(17, rows(VIEWS)) {
         for square in squares.split(' ') {
             let scene = read(&format!(
                 "image {{ {image} }} camera {{ {camera} }} checkerboard {{ y 0 square {square} }} {object}"
             ));
-            part_adds_up(&scene, area.parse().unwrap());
+            assert_part_adds_up(&scene, area.parse().unwrap());
         }
     }
 }
 
-/// Quarters add up anywhere below the horizon of views narrower than a millionth of a degree.
+/// Views narrower than a millionth of a degree, anywhere below the horizon.
 #[test]
 #[ignore = "exhaustive"]
-fn narrow_views_at_random() {
+fn quarters_add_up_in_random_narrow_views() {
     let mut random = Random::new(29);
     for i in 0..24 {
         let mut number = |low: f64, high: f64| random.within(low, high);
@@ -68,6 +69,6 @@ fn narrow_views_at_random() {
              camera {{ eye (0.3, {height}, 0.2) direction ({cos}, {pitch:e}, {sin}) roll {roll}deg d {d:e} {far} }}
              checkerboard {{ y 0 square {square} }}"
         );
-        part_adds_up(&read(&text), "2,1,1,2".parse().unwrap());
+        assert_part_adds_up(&read(&text), "2,1,1,2".parse().unwrap());
     }
 }

@@ -1,23 +1,22 @@
-//! The board at its horizon, and with squares of any size; in ordinary views, and in views of any
-//! width.
+//! The board at its horizon and with squares of any size, in ordinary views and in extreme ones.
 
 mod extreme;
 mod ordinary;
 
-use super::{difference, exact, is_known, part_adds_up, read};
+use super::{assert_known, assert_part_adds_up, difference, exact, read};
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
+    random::Random,
     table::rows,
-    tracer::Random,
 };
 
-/// Where the horizon passes next to the centres of pixels, level or along their diagonals.
+/// The horizon passes close to the centres of pixels, level or diagonally.
 #[test]
-fn a_horizon_anywhere_in_a_pixel() {
+fn pixels_crossed_by_the_horizon_are_known_within_1e_9() {
     for side in [8, 9, 65] {
         for lift in [0.0, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16] {
             for (lift, roll) in [(lift, 0), (-lift, 0), (lift, 45), (-lift, 45)] {
-                is_known(&format!(
+                assert_known(&format!(
                     "image {{ width {side} height {side} }}
                      camera {{ eye (0.3, 0.3, 8) direction (0.7, {lift}, -8) roll {roll}deg fov 50deg }}
                      checkerboard {{ y 0 square 1 }}"
@@ -28,7 +27,7 @@ fn a_horizon_anywhere_in_a_pixel() {
 }
 
 #[test]
-fn squares_too_small_to_be_seen_and_through_the_longest_lenses() {
+fn boards_of_tiny_squares_and_with_long_lenses_are_known_within_1e_9() {
     for [image, camera, board, lenses] in rows(
         "
         -- Next to nothing is left but their mean.
@@ -39,7 +38,7 @@ fn squares_too_small_to_be_seen_and_through_the_longest_lenses() {
     ",
     ) {
         for lens in lenses.split('|') {
-            is_known(&format!(
+            assert_known(&format!(
                 "image {{ {image} }} camera {{ {camera} {lens} }} checkerboard {{ {board} colors (white, black) }}"
             ));
         }
@@ -47,7 +46,7 @@ fn squares_too_small_to_be_seen_and_through_the_longest_lenses() {
 }
 
 #[test]
-fn boards_that_look_like_others_of_which_a_share_is_seen() {
+fn extreme_boards_equal_the_boards_that_they_look_like() {
     for [eye, one, other, share, most, values] in rows(
         "
         -- An eye so close to the floor that it sees nothing else of it than the square that it is above.

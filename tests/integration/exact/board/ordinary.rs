@@ -1,12 +1,12 @@
-//! Ordinary views: a field of view of 1 to 170 degrees, squares of 1e-4 to 1e6 times the eye's
-//! height. There the bound is at most 1e-9.
+//! Ordinary views: a field of view from 1 to 170 degrees, and squares from 1e-4 to 1e6 times the
+//! eye's height. There the bound is at most 1e-9.
 
 use std::fmt::Write;
 
-use super::{super::agrees_with_samples, *};
+use super::{super::assert_agrees_with_samples, *};
 use crate::scenes::whole;
 
-/// A view of a board, with some objects on it or without.
+/// Returns a random view of a board with up to three objects.
 fn view(random: &mut Random) -> String {
     let which = random.bits() as usize;
     let mut number = |low: f64, high: f64| random.within(low, high);
@@ -49,25 +49,25 @@ fn view(random: &mut Random) -> String {
     text
 }
 
-sampled_and_exhaustive!(every_pixel_is_known_to_a_thousand_millionth);
+sampled_and_exhaustive!(ordinary_views_are_known_within_1e_9);
 
-/// 384 000 pixels, against bounds and against samples, and the first ones against their quarters;
-/// says how many bounds are above 1e-11.
-fn every_pixel_is_known_to_a_thousand_millionth(effort: Effort) {
+/// Compares 384 000 pixels with their bounds and with samples, and the first scenes also with their
+/// quarters. Prints how many bounds are above 1e-11.
+fn ordinary_views_are_known_within_1e_9(effort: Effort) {
     let mut random = Random::new(31);
     let (mut pixels, mut above) = (0, 0);
     for index in effort.first(40, 0..1000) {
         let text = view(&mut random);
         let scene = read(&text);
         let computed = match index {
-            0..30 => part_adds_up(&scene, whole(&scene)),
+            0..30 => assert_part_adds_up(&scene, whole(&scene)),
             _ => exact(&scene),
         };
         let (bound, bounds) = (computed.bound(), computed.bounds.iter());
         assert!(bound <= 1e-9, "{bound:e} of {text}");
         pixels += bounds.len();
         above += bounds.filter(|bound| **bound > 1e-11).count();
-        agrees_with_samples(&scene, &computed, 64);
+        assert_agrees_with_samples(&scene, &computed, 64);
     }
     let share = 100.0 * above as f64 / pixels as f64;
     println!("{above} of {pixels} bounds, {share:.2} %, are above 1e-11");

@@ -1,27 +1,27 @@
-//! The computed picture against itself in pieces, and against samples.
+//! The exact picture compared with itself at twice the resolution, and with samples.
 
 use super::*;
 
 #[test]
-fn four_quarters_are_the_pixel() {
+fn quarters_add_up_to_the_pixel_in_every_example() {
     for name in example_names() {
-        adds_up(&example(&name, 48, 32));
+        assert_adds_up(&example(&name, 48, 32));
     }
 }
 
-/// Their objects pierce each other.
+/// The objects of generated scenes pierce each other.
 #[test]
-fn four_quarters_are_the_pixel_of_generated_scenes_and_samples_agree() {
+fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     for scene in ordinary([24, 18], 7).take(24) {
-        let computed = part_adds_up(&scene, whole(&scene));
-        agrees_with_samples(&scene, &computed, 1024);
+        let computed = assert_part_adds_up(&scene, whole(&scene));
+        assert_agrees_with_samples(&scene, &computed, 1024);
     }
 }
 
-/// Tilted triangles in rows, in one pixel: their planes cross each other all over it, but no two of
-/// them lie above each other.
+/// Tilted triangles in rows, in one pixel: their planes intersect all over the pixel, but no
+/// triangle hides another.
 #[test]
-fn objects_side_by_side_add_up() {
+fn quarters_add_up_for_tilted_triangles_side_by_side() {
     let mut random = Random::new(71);
     for rows in [3, 5, 8] {
         let mut text = String::from(
@@ -36,13 +36,13 @@ fn objects_side_by_side_add_up() {
                 "triangle {{ centroid ({x}, {y}, 0) normal ({tilt}, {turn}, 1) sides 0.6 * {step} * (1, 1, 1) }}"
             );
         }
-        adds_up(&read(&text));
+        assert_adds_up(&read(&text));
     }
 }
 
-/// Planks that pierce each other along lines that end where the one or the other does.
+/// Boxes and triangles pierce each other along lines that end where either of them ends.
 #[test]
-fn objects_that_pierce_each_other_in_part_add_up() {
+fn quarters_add_up_for_partly_piercing_objects() {
     let mut random = Random::new(72);
     for _ in 0..20 {
         let mut text = String::from(
@@ -59,14 +59,14 @@ fn objects_that_pierce_each_other_in_part_add_up() {
                  triangle {{ centroid 0.6 * {centroid} normal {normal} + (0, 0, 2) sides (1.6, 1.5, 0.4) color {color} }}"
             );
         }
-        adds_up(&read(&text));
+        assert_adds_up(&read(&text));
     }
 }
 
-sampled_and_exhaustive!(four_quarters_are_the_pixel_of_extreme_cameras);
+sampled_and_exhaustive!(quarters_add_up_for_extreme_cameras);
 
-/// The figure with other numbers in it.
-fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
+/// The figure with extreme numbers.
+fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     let figure = example_text("figure_9_9").replace("checkerboard ", "checkerboard Floor ");
     let size = ["image.width=24", "image.height=16"];
     for sets in effort.first(
@@ -93,14 +93,14 @@ fn four_quarters_are_the_pixel_of_extreme_cameras(effort: Effort) {
         ",
         ),
     ) {
-        adds_up(&read_with(&figure, size.into_iter().chain(sets)));
+        assert_adds_up(&read_with(&figure, size.into_iter().chain(sets)));
     }
 }
 
-/// A sphere that goes through a face which the eye is hardly above: its circle there is seen as an
-/// ellipse that is hardly more than a line.
+/// A sphere goes through a face that the eye is hardly above: their common circle is seen as an
+/// ellipse that is nearly a line.
 #[test]
-fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
+fn quarters_add_up_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";
     let board = "checkerboard { square 1e-4 colors (white, black) }";
     let view = |eye: &str, size: u32, below: &str| {
@@ -117,11 +117,12 @@ fn four_quarters_are_the_pixel_where_a_circle_is_seen_edge_on() {
         let eye = format!("({}, {height:e}, 3)", random.within(-0.5, 0.5));
         for below in [face, board] {
             let scene = view(&eye, 2, below);
-            let bound = part_adds_up(&scene, whole(&scene)).bound();
+            let bound = assert_part_adds_up(&scene, whole(&scene)).bound();
             assert!(bound <= 1e-9, "{eye}: {bound:e}");
         }
     }
-    // By an integral along x of 50 digits, split where the outline meets the pixel's sides.
+    // The value comes from an integral along x with 50 digits, split where the outline meets the
+    // pixel's sides.
     let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", 1, face);
     let ([red, ..], bound) = pixel(&exact(&scene), 0, 0);
     let off = (red - 0.500_000_064_227_617_3).abs();

@@ -1,4 +1,4 @@
-//! What each word is, for colouring, is what the tree has it for.
+//! Semantic tokens for highlighting agree with the syntax tree.
 
 use std::{collections::BTreeMap, fs};
 
@@ -12,11 +12,12 @@ use pinhole::{
     },
 };
 
-use super::{of_whole, sources};
+use super::{about_text, sources};
 use crate::scenes::scenes;
 
-/// What the tree says of each word of a text without mistakes of syntax.
-fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
+/// Returns the kind of each word according to the tree. Returns `None` if the text has syntax
+/// errors.
+fn tree_kinds(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
     let sources = sources(text);
     let parsed = syntax::parse(&sources.file, SourceId::File);
     if !parsed.problems.is_empty() {
@@ -29,14 +30,14 @@ fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
                 words.insert(definition.keyword, SemanticKind::Keyword);
                 let name = definition.name;
                 words.extend(name.map(|name| (name.span, SemanticKind::Variable)));
-                values(&definition.value, false, &mut words);
+                collect_values(&definition.value, false, &mut words);
             }
             Item::Block(block) => {
                 words.extend(block.kind.map(|kind| (kind.span, SemanticKind::Keyword)));
                 words.extend(block.name.map(|name| (name.span, SemanticKind::Class)));
                 for field in &block.fields {
                     words.insert(field.name.span, SemanticKind::Property);
-                    values(&field.value, field.name.text == "method", &mut words);
+                    collect_values(&field.value, field.name.text == "method", &mut words);
                 }
             }
             Item::Bad(_) => return None,
@@ -45,9 +46,9 @@ fn of_tree(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
     Some(words)
 }
 
-fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
+fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
     match &value.kind {
-        // Two words that are one name, written wrongly.
+        // A name written as two words is a mistake.
         ValueKind::Name(name) if name.contains(['-', ' ']) => {}
         ValueKind::Name(name) => {
             let kind = match schema::predefined(name) {
@@ -67,23 +68,23 @@ fn values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, Semanti
         _ => {}
     }
     for part in value.parts() {
-        values(part, is_method, words);
+        collect_values(part, is_method, words);
     }
 }
 
-/// The words by their places agree with the tree wherever that is certain.
+/// Tokens found by position agree with the tree wherever the tree is certain.
 #[test]
-fn places_and_trees_agree() {
+fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;
     let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
     for path in folders.into_iter().flat_map(scenes) {
-        // Some are no text.
+        // Some fixtures are not UTF-8.
         let text = fs::read_to_string(&path).unwrap_or_default();
-        let Some(words) = of_tree(&text).filter(|words| !words.is_empty()) else {
+        let Some(words) = tree_kinds(&text).filter(|words| !words.is_empty()) else {
             continue;
         };
         files += 1;
-        of_whole(&text, |analysis| {
+        about_text(&text, |analysis| {
             let tokens = semantic_tokens(analysis).into_iter();
             let tokens: BTreeMap<_, _> = tokens.map(|token| (token.span, token.kind)).collect();
             for (span, kind) in words {

@@ -1,4 +1,4 @@
-//! A conversation with a server in this process, so that it is known what it has done by when.
+//! A client of a server in this process, whose steps of work a test can control.
 
 use std::{cell::RefCell, collections::VecDeque};
 
@@ -8,27 +8,27 @@ use pinhole::lsp::{
 };
 use serde_json::{Value, json};
 
-use super::client::{Carrier, Client};
+use super::client::{Client, Transport};
 
-/// A conversation with one text open, of version 1.
-pub type Talk = Client<Inside>;
+/// Client with one open text of version 1.
+pub type LocalClient = Client<InProcess>;
 
 thread_local! {
     static LOG: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
-/// What the servers of this thread have said to their log since this was asked last.
+/// Takes the messages that the servers of this thread have logged since the last call.
 pub fn logged() -> Vec<String> {
     LOG.take()
 }
 
-/// A server, and what it has said and nobody has read.
-pub struct Inside {
+/// Server in this process with its unread messages.
+pub struct InProcess {
     server: Server,
     pub said: VecDeque<String>,
 }
 
-impl Default for Inside {
+impl Default for InProcess {
     fn default() -> Self {
         let log = |message: &str| LOG.with_borrow_mut(|log| log.push(message.to_owned()));
         Self {
@@ -38,8 +38,8 @@ impl Default for Inside {
     }
 }
 
-impl Inside {
-    /// One piece of work. Says whether there was any.
+impl InProcess {
+    /// Advances the server by one step of work. Returns whether there was any.
     pub fn step(&mut self) -> bool {
         let is_busy = self.server.is_busy();
         let said = self.server.advance();
@@ -48,7 +48,7 @@ impl Inside {
     }
 }
 
-impl Carrier for Inside {
+impl Transport for InProcess {
     const URI: &'static str = "file:///a.scn";
 
     fn write(&mut self, text: &str) {
@@ -70,18 +70,18 @@ impl Carrier for Inside {
     }
 }
 
-impl Talk {
+impl LocalClient {
     pub fn with(text: &str) -> Self {
-        let mut talk = Self::new(Inside::default());
-        talk.open(json!({}), text);
-        talk
+        let mut client = Self::new(InProcess::default());
+        client.open(json!({}), text);
+        client
     }
 
-    /// Whether a request was answered already.
+    /// Returns whether a request has been answered.
     pub fn has_answered(&self, id: i32) -> bool {
-        let said = self.carrier.said.iter();
+        let said = self.transport.said.iter();
         let said = said.map(|text| serde_json::from_str::<Value>(text).expect("JSON"));
-        let mut all = said.chain(self.heard.iter().cloned());
+        let mut all = said.chain(self.unread.iter().cloned());
         all.any(|message| message["id"] == id)
     }
 }

@@ -1,5 +1,5 @@
-//! What is advised where people write what other languages and books have: the way out that is
-//! right, not the one that is near.
+//! Help for notations of other languages and of books: it gives the intended solution, not just the
+//! nearest spelling.
 
 use pinhole::scene;
 
@@ -7,7 +7,7 @@ use super::CAMERA;
 use crate::{scenes::sources, table::rows};
 
 #[test]
-fn the_advice_is_the_way_out() {
+fn notations_of_other_languages_get_the_right_help() {
     let table = "
         sphere { center (ball.x, 1, 0) } -> write `dot(ball, (1, 0, 0))`
         sphere { center (0, ball.y, ball.z) } -> write `dot(ball, (0, 1, 0))`
@@ -78,7 +78,7 @@ fn the_advice_is_the_way_out() {
 }
 
 #[test]
-fn a_floor_that_ends_is_made_of_boxes() {
+fn the_suggested_finite_floor_is_a_valid_scene() {
     let text = format!("{CAMERA}checkerboard {{ size 8 }}");
     let found = scene::read(&sources(&text)).diagnostics;
     let help = found[0].help.clone().unwrap();

@@ -1,16 +1,16 @@
-//! Safe fixes keep what the author wrote, whatever the text: slips made by a program in every
-//! example and fixture, and files of other programs and languages.
+//! Safe fixes keep what the author wrote: in every example and fixture with random slips, and in
+//! files of other programs and languages.
 
 use std::{fs, path::Path};
 
-use super::{Trial, kept};
+use super::{Trial, lost_words};
 use crate::{
     diagnostics::fixtures,
     program::names,
     scenes::{examples, sources},
 };
 
-/// Files of other programs and languages.
+/// Returns files of other programs and languages.
 fn foreign() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign");
     let names = names(&folder);
@@ -19,8 +19,8 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Each file, each of its lines, and what is left of it behind each line: a file as a whole may be
-/// known at once.
+/// Returns each line of a file and the rest of the file from each line on, as the language of a
+/// whole file may be recognized at its start.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));
@@ -34,29 +34,29 @@ fn assert_none(complaints: &[String]) {
 }
 
 #[test]
-fn files_of_other_languages_keep_their_numbers_and_names() {
+fn safe_fixes_keep_numbers_and_names_of_foreign_files() {
     let mut complaints = Vec::new();
     for text in foreign().iter().flat_map(|text| pieces(text)) {
-        complaints.extend(kept::fixed(&text).1);
+        complaints.extend(lost_words::fix_safely(&text).1);
     }
     assert_none(&complaints);
 }
 
-/// What a fix shows that another mistake hid may be new, but it never outweighs the fix.
+/// A fix may reveal a hidden mistake, but the number of errors falls nevertheless.
 #[test]
-fn every_fix_of_a_file_of_another_language_leaves_fewer_errors() {
+fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     let mut trial = Trial::default();
     for text in foreign() {
-        trial.type_in(&sources(&text), |_, _| true);
+        trial.apply_fixes(&sources(&text), |_, _| true);
     }
     let is_broken = |complaint: &String| complaint.contains("leaves as many errors");
     trial.complaints.retain(is_broken);
-    trial.ends_with_more_than(30);
+    trial.finish_with_more_than(30);
 }
 
-/// `PINHOLE_SLIPS=100000 cargo test` tries as many.
+/// `PINHOLE_SLIPS=100000 cargo test` tries a hundred thousand texts.
 #[test]
-fn texts_with_slips_keep_their_numbers_and_names() {
+fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
     let asked = std::env::var("PINHOLE_SLIPS").ok();
     let count = asked.map_or(1000, |count| count.parse().unwrap());
     let fixtures = fixtures().map(|(_, sources)| sources.file.text().to_owned());
@@ -64,15 +64,17 @@ fn texts_with_slips_keep_their_numbers_and_names() {
     texts.extend(foreign());
     texts.retain(|text| text.len() <= 3000);
     let mut complaints = Vec::new();
-    kept::slips(&texts, count, |text| complaints.extend(kept::fixed(text).1));
+    lost_words::slips(&texts, count, |text| {
+        complaints.extend(lost_words::fix_safely(text).1)
+    });
     assert_none(&complaints);
 }
 
-/// What a hundred thousand slips once found.
+/// Found with a hundred thousand random slips.
 #[test]
-fn texts_that_once_lost_something_keep_it() {
+fn texts_that_once_lost_content_to_a_fix_keep_it() {
     let texts = [
-        // A comment of another language is no part of the values before it.
+        // A comment of another language is not part of the value before it.
         "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
         "sphere { center 0 1 0 // R\n radius 2 }",
         "sphere { center 0 1 0\n-- R\n radius 2 }",
@@ -80,7 +82,7 @@ fn texts_that_once_lost_something_keep_it() {
         "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
         "sphere { center (a.5, 2) }",
         "let ball = { center1.6, 1, 0 }",
-        // Extents, and their unit apart from them.
+        // Products written with `x`, and units apart from their numbers.
         "let a = 30 0.5x1.5x2 deg",
         "Transform { translation -0.5x.15x21.6 1 0 }",
         "triangle { centroid (0, 1, 0)  spin 30 degrees lookat }",
@@ -88,6 +90,6 @@ fn texts_that_once_lost_something_keep_it() {
         "checkerboard { y -1  square 1e-\u{200b}101 }",
     ];
     for text in texts {
-        assert_none(&kept::fixed(text).1);
+        assert_none(&lost_words::fix_safely(text).1);
     }
 }

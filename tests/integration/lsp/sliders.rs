@@ -1,10 +1,10 @@
-//! Between which numbers a slider turns the numbers of a text.
+//! Ranges of the sliders for the numbers of a text.
 
 use serde_json::{Value, json};
 
-use super::talk::Talk;
+use super::local_client::LocalClient;
 
-/// The least and the greatest number, the step, and the ends of a slider.
+/// Returns the least and the greatest allowed number, the step, and the ends of a slider.
 fn limits(found: &Value) -> Value {
     match found {
         Value::Null => Value::Null,
@@ -12,11 +12,11 @@ fn limits(found: &Value) -> Value {
     }
 }
 
-/// A slider need not offer what the language forbids.
+/// A slider does not offer numbers that the language forbids.
 #[test]
-fn a_number_has_the_limits_of_its_field() {
+fn a_slider_takes_the_limits_of_its_field() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox for i < 3 { center (i, 0, -0.25) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }\nsphere { radius 8 / 2 }";
-    let mut talk = Talk::with(text);
+    let mut client = LocalClient::with(text);
     for (before, expected) in [
         ("radius 1", json!([0.1, null, 0.1, [0.1, 6.0]])),
         ("per_pixel 16", json!([1.0, null, 1.0, [1.0, 32.0]])),
@@ -25,7 +25,7 @@ fn a_number_has_the_limits_of_its_field() {
         ("eye (0", json!([null, null, 0.1, [-5.0, 5.0]])),
         ("(i, 0, -0.25", json!([null, null, 0.01, [-0.75, 0.25]])),
         ("i < 3", json!([0.0, null, 1.0, [0.0, 13.0]])),
-        // Where a formula comes of it, too.
+        // The limits apply through a formula, too.
         ("let a = 3", json!([-0.9, null, 0.1, [-0.9, 8.0]])),
         ("radius a + 1", json!([-2.9, null, 0.1, [-2.9, 6.0]])),
         ("radius 8", json!([0.1, null, 0.1, [0.1, 16.0]])),
@@ -36,14 +36,15 @@ fn a_number_has_the_limits_of_its_field() {
         let lines: Vec<&str> = text[..at].split('\n').collect();
         let character = lines[lines.len() - 1].len();
         let position = json!({ "line": lines.len() - 1, "character": character });
-        let found = talk.ask("pinhole/limits", json!({ "position": position }));
+        let found = client.ask("pinhole/limits", json!({ "position": position }));
         assert_eq!(limits(&found), expected, "{before}");
     }
 }
 
-/// A slider does not lead into errors, and a count has whole steps, wherever the number stands.
+/// A slider leaves out numbers that cause errors, and a count has whole steps, wherever the number
+/// stands.
 #[test]
-fn a_slider_does_not_lead_into_errors() {
+fn a_slider_never_reaches_a_value_that_is_an_error() {
     let many = "sphere { center (1, 2, 3) }\n".repeat(3000);
     for (value, rest, expected) in [
         (
@@ -76,7 +77,7 @@ fn a_slider_does_not_lead_into_errors() {
             "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
             json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
         ),
-        // Both of a direct use and of a formula.
+        // Limits of a direct use and of a formula together.
         (
             "1",
             "sphere { radius a }\nsphere { radius 3 - a }",
@@ -123,13 +124,14 @@ fn a_slider_does_not_lead_into_errors() {
             "sphere for i < a { center (i, 0, 0) }",
             json!([1.0, 8.0, 1.0, [1.0, 8.0]]),
         ),
-        // A number at the end of what is right is none.
+        // A number at the end of the valid range has a range.
         (
             "1",
             "sphere { center (0, asin(a) / 1rad, 0) }",
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
-        // Errors that are there already do not count; where all near is wrong, nothing is known.
+        // Errors that are there already do not count. If all nearby numbers are wrong, there are no
+        // limits.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",
@@ -140,29 +142,31 @@ fn a_slider_does_not_lead_into_errors() {
             "sphere for i < a / 4 { center (i, 0, 0) }",
             json!([null, null, 0.1, [-1.0, 9.0]]),
         ),
-        // A long text is not read again.
+        // A long text is not read again for each number tried.
         (
             "1",
             &format!("{many}sphere {{ radius a / 2 }}"),
             json!([null, null, 0.1, [-4.0, 6.0]]),
         ),
     ] {
-        let camera = match rest.contains("camera") {
-            true => "",
-            false => "camera { eye (0, 0, 9) lookat (0, 0, 0) }\n",
+        let camera = if rest.contains("camera") {
+            ""
+        } else {
+            "camera { eye (0, 0, 9) lookat (0, 0, 0) }\n"
         };
-        let mut talk = Talk::with(&format!("let a = {value}\n{camera}{rest}\n"));
-        let found = &talk.ask("pinhole/sliders", json!({}))[0];
+        let mut client = LocalClient::with(&format!("let a = {value}\n{camera}{rest}\n"));
+        let found = &client.ask("pinhole/sliders", json!({}))[0];
         assert_eq!(limits(&found["limits"]), expected, "{value}: {rest:.100}");
     }
 }
 
-/// Definitions have sliders: by the comment behind them, or by the fields that they stand in.
+/// A definition's slider follows the comment behind it, or the fields that use it.
 #[test]
-fn definitions_have_ranges() {
+fn definitions_take_slider_ranges_from_comments_or_fields() {
     let no_number = |it: &str| format!("`{it}` in the range is no number");
     let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
-    // What is written behind `=`; the least, the greatest number and the step; why there are none.
+    // The value and comment behind `=`; the least and the greatest number and the step; the reason
+    // if a range is refused.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
         ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),
@@ -226,8 +230,8 @@ fn definitions_have_ranges() {
         ),
     ];
     for (written, range, note) in cases {
-        let mut talk = Talk::with(&format!("let a = {written}"));
-        let found = &talk.ask("pinhole/sliders", json!({}))[0];
+        let mut client = LocalClient::with(&format!("let a = {written}"));
+        let found = &client.ask("pinhole/sliders", json!({}))[0];
         let limits = &found["limits"];
         let found = json!([
             [limits["least"], limits["most"], limits["step"]],
@@ -239,8 +243,8 @@ fn definitions_have_ranges() {
     let text = "let c = 3 // [3:3]\nlet n = 4\nlet m = 4 // [1:10]\nlet t = 0.5rad // turn\nlet v = (1, 2, 3) // [1:2]\n\
         let e = c + 1 // [1:2]\ncamera { eye (0, 0, 5) lookat (0, 0, 0) fov t }\n\
         sampler { per_pixel n }\nimage { width m }\nsphere { radius c }\nsphere { radius c + 1 }";
-    let mut talk = Talk::with(text);
-    let found = talk.ask("pinhole/sliders", json!({}));
+    let mut client = LocalClient::with(text);
+    let found = client.ask("pinhole/sliders", json!({}));
     let found = found.as_array().expect("a list").iter().map(|it| {
         let limits = &it["limits"];
         json!([it["name"], limits["least"], limits["most"], limits["step"]])

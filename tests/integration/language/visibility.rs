@@ -1,5 +1,5 @@
-//! The warnings of cameras that see nothing, or squares too small to tell apart: they are never
-//! false, and come often enough.
+//! Warnings about cameras that see nothing and squares too small to tell apart: they are never
+//! false, and most such scenes get them.
 
 use std::collections::BTreeSet;
 
@@ -11,9 +11,9 @@ use crate::{
     scenes::{exact, read, sampled, sources},
 };
 
-/// The first objects of generated scenes, by themselves.
+/// Each scene is the first object of a generated scene alone.
 #[test]
-fn a_warning_is_never_false_and_comes_often_enough() {
+fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
     let (mut warned, mut black) = (0, 0);
     for (text, _) in generated(Numbers::Wild(0), [12, 8], 3).take(500) {
         let (settings, objects) = text.split_once('\n').unwrap();
@@ -33,14 +33,14 @@ fn a_warning_is_never_false_and_comes_often_enough() {
         warned += u32::from(is_warned);
         black += u32::from(is_black);
     }
-    // Bounds are larger than what they bound, and what is left of the window may be below the
-    // pixels' own.
+    // The bounds are larger than their objects, and what remains within the window may be smaller
+    // than the error bound of a pixel.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }
 
-/// Pictures of boards of ever smaller squares, from several places, by some methods.
+/// Boards of ever smaller squares, seen from several points and by several methods.
 #[test]
-fn a_board_of_lost_squares_has_one_colour() {
+fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
     let (mut warned, mut one_colored) = (0, 0);
     for (eye, view, nearness) in [
         ("(0.3, 1, 2)", "lookat (0.1, 0, -3)", 1.0),
@@ -60,8 +60,8 @@ fn a_board_of_lost_squares_has_one_colour() {
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
-                // How much of each pixel shows the board's second colour, of what shows it at all;
-                // green has no part in the background.
+                // Share of the board's second colour in each pixel that shows only the board: green
+                // has no part in the background.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();

@@ -1,4 +1,4 @@
-//! What happens while the program writes: others save the file, the folder lets nobody in, the
+//! Events while the program writes: another program saves the file, the folder is read-only, or the
 //! process is killed.
 
 use std::{
@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::program::{Folder, Said};
+use crate::program::{Folder, Outcome};
 
 fn spawned(folder: &Folder, line: &str) -> Child {
     let mut command = folder.command(line);
@@ -21,12 +21,12 @@ fn spawned(folder: &Folder, line: &str) -> Child {
 }
 
 #[test]
-fn a_save_of_another_program_is_never_lost() {
+fn a_concurrent_save_of_another_program_is_never_overwritten() {
     let long = "sphere  { color oliv }\n".repeat(4000);
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
-        // Somewhere in between, the file has been read and not been written yet.
+        // For some delay, the file has been read and not been written yet.
         for delay in 0..40 {
             let folder = Folder::with([("a.scn", &*long), ("theirs", theirs)]);
             let child = spawned(&folder, command);
@@ -35,7 +35,7 @@ fn a_save_of_another_program_is_never_lost() {
                 0 => fs::write(folder.path("a.scn"), theirs).unwrap(),
                 _ => fs::rename(folder.path("theirs"), folder.path("a.scn")).unwrap(),
             }
-            let said = Said::from(child.wait_with_output().unwrap());
+            let said = Outcome::from(child.wait_with_output().unwrap());
             assert_eq!(folder.text("a.scn"), theirs, "{command}, {delay}");
             if said.errors.contains("another program has changed it") {
                 assert_eq!(said.status, 2, "{}", said.errors);
@@ -56,26 +56,29 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
 }
 
+/// Makes the subfolder `closed` read-only. If root runs the tests, gives its scene and the home to
+/// the user.
+fn give_to_user(folder: &Folder) {
+    for (name, mode) in [
+        ("", 0o755),
+        ("home", 0o755),
+        ("closed/a.scn", 0o644),
+        ("closed", 0o555),
+    ] {
+        let path = folder.path(name);
+        if is_root() {
+            chown(&path, Some(USER), Some(USER)).unwrap();
+        }
+        fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+    }
+}
+
 #[test]
-fn a_file_that_cannot_be_replaced_is_written_in_place() {
+fn a_file_in_a_read_only_folder_is_written_in_place() {
     let is_root = is_root();
     for (home, is_writable) in [("home", true), ("none", false)] {
         let folder = Folder::with([("closed/a.scn", "sphere  {}\n"), ("home/x", "")]);
-        let open = |name: &str, mode| {
-            let path = folder.path(name);
-            if is_root {
-                chown(&path, Some(USER), Some(USER)).unwrap();
-            }
-            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
-        };
-        for (name, mode) in [
-            ("", 0o755),
-            ("home", 0o755),
-            ("closed/a.scn", 0o644),
-            ("closed", 0o555),
-        ] {
-            open(name, mode);
-        }
+        give_to_user(&folder);
         let mut command = folder.command("fmt closed/a.scn");
         command
             .env_remove("XDG_STATE_HOME")
@@ -86,31 +89,29 @@ fn a_file_that_cannot_be_replaced_is_written_in_place() {
         if is_root {
             command.uid(USER).gid(USER);
         }
-        let said = Said::from(command.output().unwrap());
+        let said = Outcome::from(command.output().unwrap());
         let text = folder.text("closed/a.scn");
-        match is_writable {
-            true => {
-                assert_eq!((said.status, &*said.errors), (0, ""));
-                assert_eq!(text, "sphere {}\n");
-                let state = folder.path("home/.local/state/pinhole");
-                assert!(crate::program::names(&state).is_empty());
-                let mode = fs::metadata(&state).unwrap().permissions().mode();
-                assert_eq!(mode & 0o777, 0o700);
-            }
-            // Nowhere is room for the copy.
-            false => {
-                let told = "error: cannot write to closed/a.scn: its permissions, or those of its folder, do not allow that\n";
-                assert_eq!((said.status, &*said.errors), (2, told));
-                assert_eq!(text, "sphere  {}\n");
-            }
+        if is_writable {
+            assert_eq!((said.status, &*said.errors), (0, ""));
+            assert_eq!(text, "sphere {}\n");
+            let state = folder.path("home/.local/state/pinhole");
+            assert!(crate::program::names(&state).is_empty());
+            let mode = fs::metadata(&state).unwrap().permissions().mode();
+            assert_eq!(mode & 0o777, 0o700);
+        } else {
+            // There is no folder for the backup copy.
+            let told = "error: cannot write to closed/a.scn: its permissions, or those of its folder, do not allow that\n";
+            assert_eq!((said.status, &*said.errors), (2, told));
+            assert_eq!(text, "sphere  {}\n");
         }
         assert_eq!(crate::program::names(&folder.path("closed")), ["a.scn"]);
-        open("closed", 0o755);
+        let open = fs::Permissions::from_mode(0o755);
+        fs::set_permissions(folder.path("closed"), open).unwrap();
     }
 }
 
 #[test]
-fn a_new_file_is_never_empty_whenever_the_process_is_killed() {
+fn a_killed_new_command_leaves_a_complete_file_or_none() {
     let whole = {
         let start = Instant::now();
         Folder::with([]).done("new a.scn");
@@ -134,10 +135,10 @@ fn a_new_file_is_never_empty_whenever_the_process_is_killed() {
     assert!(absent > 0 && present > 0, "{absent} {present}");
 }
 
-/// The process is killed at all times from before it writes until it has answered.
+/// The process is killed at various times from before it writes until it has answered.
 #[cfg(feature = "studio")]
 #[test]
-fn the_first_save_of_a_new_scene_is_whole_or_not_there() {
+fn a_killed_first_save_leaves_a_complete_file_or_none() {
     use crate::studio::client::Studio;
     use serde_json::json;
 
@@ -164,7 +165,7 @@ fn the_first_save_of_a_new_scene_is_whole_or_not_there() {
 }
 
 #[test]
-fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_whole() {
+fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     if !is_root() {
         return;
     }
@@ -179,15 +180,7 @@ fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_who
             ("other/a.scn", &*new),
             ("home/x", ""),
         ]);
-        for (name, mode) in [
-            ("", 0o755),
-            ("home", 0o755),
-            ("closed/a.scn", 0o644),
-            ("closed", 0o555),
-        ] {
-            chown(folder.path(name), Some(USER), Some(USER)).unwrap();
-            fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode)).unwrap();
-        }
+        give_to_user(&folder);
         let fmt = |line: &str| {
             let mut command = folder.command(line);
             command.env_remove("XDG_STATE_HOME");
@@ -195,9 +188,12 @@ fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_who
             command
         };
         let state = folder.path("home/.local/state/pinhole");
-        let copies = || match state.exists() {
-            true => crate::program::names(&state),
-            false => Vec::new(),
+        let copies = || {
+            if state.exists() {
+                crate::program::names(&state)
+            } else {
+                Vec::new()
+            }
         };
         let mut child = fmt("fmt closed/a.scn").spawn().unwrap();
         while copies().is_empty() && child.try_wait().unwrap().is_none() {
@@ -212,12 +208,12 @@ fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_who
         let is_whole = text == old || text == new || copies.iter().any(is_copied);
         assert!(is_whole, "{delay}");
         left += copies.len();
-        // The next run names it, but not one for a file of this name elsewhere.
+        // The next run names the copy, except for a file of this name in another folder.
         for (line, is_named) in [
             ("fmt closed/a.scn", true),
             ("fmt --check other/a.scn", false),
         ] {
-            let said = Said::from(fmt(line).output().unwrap());
+            let said = Outcome::from(fmt(line).output().unwrap());
             for copy in &copies {
                 assert_eq!(said.errors.contains(&**copy), is_named, "{}", said.errors);
             }
@@ -226,16 +222,16 @@ fn a_run_that_is_killed_while_it_writes_in_place_leaves_the_file_or_its_copy_who
     assert!(left > 0, "no try was in time");
 }
 
-/// Who may write to a file, and may not give it back to its group, leaves that group's rights to
-/// nobody else.
+/// If a user may write to a file but may not restore its group, that group's rights go to nobody
+/// else.
 #[test]
-fn another_group_gets_no_rights() {
+fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;
 
     if !is_root() {
         return;
     }
-    // The user's supplementary group may be given a file, and one that the user has left may not.
+    // A file may be given to a supplementary group of the user, and not to another group.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

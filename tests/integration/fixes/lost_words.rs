@@ -1,6 +1,6 @@
-//! What safe fixes keep: every number, and every name or the known one that is near it. All that is
-//! new are keywords, units and punctuation. The words of a text are read here by a walk of its own,
-//! comments among them, so that none of them gets lost.
+//! Checks what safe fixes keep: every number, and every name or the known name that is near it.
+//! Only keywords, units and punctuation may be new. The words of a text are read here by a scanner
+//! of its own, including those in comments, so that none of them gets lost.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -10,7 +10,9 @@ use pinhole::{
     suggest,
 };
 
-/// Units of length, and what they are in metres; of angles, and what they are in degrees.
+use crate::random::Random;
+
+/// Spellings of units with their factors: lengths in metres, angles in degrees or radians.
 const UNITS: [(&str, f64); 9] = [
     ("cm", 0.01),
     ("mm", 0.001),
@@ -23,7 +25,7 @@ const UNITS: [(&str, f64); 9] = [
     ("grad grads gon", 0.9),
 ];
 
-/// The numbers and the names of a text, in order. A number's unit is a part of it.
+/// Numbers and names of a text, in order. A number includes its unit.
 #[derive(Debug, Default)]
 struct Words {
     numbers: Vec<f64>,
@@ -31,11 +33,11 @@ struct Words {
 }
 
 impl Words {
-    /// A field's name with its value right behind it, as in `radius2`, or in `centerball` where
-    /// `all` has such a word, is two words or one.
+    /// Reads the words of a text. A field's name joined with its value, as in `radius2`, or in
+    /// `centerball` if `all` has the word `ball`, is read as two words if `is_two` is true.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
-        // What has no width is no part of a number.
+        // Zero-width characters are not part of a number.
         let text = &text.replace('\u{200b}', "");
         let mut rest = text.as_str();
         let mut is_number_before = false;
@@ -63,7 +65,7 @@ impl Words {
                     rest = &rest[1..];
                     continue;
                 }
-                let field = glued(&rest[..length], all).filter(|_| is_two);
+                let field = joined_field(&rest[..length], all).filter(|_| is_two);
                 let length = field.unwrap_or(length);
                 let word = &rest[..length];
                 rest = &rest[length..];
@@ -73,7 +75,7 @@ impl Words {
                 match UNITS.iter().find(is_it).filter(|_| is_number_before) {
                     Some((_, factor)) => {
                         *words.numbers.last_mut().unwrap() *= factor;
-                        // A unit written twice, as in `30deg degrees`, is still one.
+                        // A unit may be written twice, as in `30deg degrees`.
                         continue;
                     }
                     None => words.names.push(word.to_owned()),
@@ -87,9 +89,9 @@ impl Words {
     }
 }
 
-/// How long the field's name is that a word starts with where the field's value follows, as in
-/// `radius2`.
-fn glued(word: &str, all: &str) -> Option<usize> {
+/// Returns the length of the field's name at the start of a word that goes on with a value, as in
+/// `radius2`. Returns `None` if the word is a field's name or does not start with one.
+fn joined_field(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
     }
@@ -115,7 +117,7 @@ fn is_letter(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }
 
-/// How long the number is that a text starts with.
+/// Returns the length of the number at the start of a text.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -138,7 +140,7 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// The words of the language, its units among them.
+/// Returns the words of the language, including units.
 fn keywords() -> impl Iterator<Item = &'static str> {
     let blocks = BLOCKS.iter().map(|block| block.name);
     let fields = BLOCKS.iter().flat_map(|block| block.field_names());
@@ -147,12 +149,12 @@ fn keywords() -> impl Iterator<Item = &'static str> {
         .chain(["let", "for", "rgb", "deg", "rad"])
 }
 
-/// Whether two words are all but the same.
+/// Returns whether two words are spelled nearly the same.
 fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Whether a word is the language's own for another one.
+/// Returns whether a word is the language's equivalent of another one.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::Block| {
         let field = block.field_tried(old);
@@ -166,8 +168,9 @@ fn is_known_for(new: &str, old: &str) -> bool {
         || old.strip_prefix("0x") == Some(new)
 }
 
-/// What safe fixes make of a text, and what they do that they should not.
-pub fn fixed(text: &str) -> (String, Vec<String>) {
+/// Applies the safe fixes to a text. Returns the new text, and complaints about lost or new numbers
+/// and names.
+pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let fixed = scene::fix_all(&sources, Applicability::Safe);
     let words = |of: &str, is_two| Words::of(of, text, is_two);
@@ -195,8 +198,9 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // Whether two words were joined, one was taken apart, or one replaced, may be read in several
-    // ways, and of the last four pairs each may have been joined or not.
+    // Whether a fix joined two words, split one or replaced one is ambiguous, so every reading is
+    // tried: each of the last four pairs may have been joined or not. The reading with the fewest
+    // differences counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -211,7 +215,7 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
         if least.as_ref().is_some_and(|least| size(least) == 0) {
             break;
         }
-        let way = of_names(before, after, !apart);
+        let way = unmatched_names(before, after, !apart);
         if least.as_ref().is_none_or(|least| size(&way) < size(least)) {
             least = Some(way);
         }
@@ -231,11 +235,15 @@ pub fn fixed(text: &str) -> (String, Vec<String>) {
     (fixed.text, complaints)
 }
 
-/// The names that are lost, and those that are new. The bits say which of the pairs that may have
-/// been joined were, the last pair first; the sign is that of all others.
-fn of_names(before: &[String], after: &[String], mut joins: i32) -> (Vec<String>, Vec<String>) {
+/// Returns the lost and the new names. The bits of `joins` say which pairs that may have been
+/// joined were, the last pair first; its sign is that of all further pairs.
+fn unmatched_names(
+    before: &[String],
+    after: &[String],
+    mut joins: i32,
+) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
-    // `look at` is one word.
+    // `look at` stands for the field `lookat`.
     let is_known = |word: &String| {
         BLOCKS.iter().any(|block| block.field(word).is_some())
             || schema::css::color(word).is_some()
@@ -271,10 +279,9 @@ fn of_names(before: &[String], after: &[String], mut joins: i32) -> (Vec<String>
     (names, new)
 }
 
-/// Texts with one to four slips, as many as are asked for, the same ones whenever they are asked
-/// for.
+/// Makes a number of texts with one to four random slips each, which are the same in every run.
 pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for _ in 0..count {
         let mut text = random.one_of(texts).clone();
         for _ in 0..1 + random.below(4) {
@@ -284,8 +291,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// One slip: a piece of the text is taken away, written twice, put elsewhere or replaced, or
-/// something stands behind it.
+/// Makes one slip: a piece of the text is removed, doubled, moved, misspelt or replaced, or
+/// something is inserted next to it.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",
@@ -398,17 +405,18 @@ fn slip(text: &str, random: &mut Random) -> String {
     format!("{before}{changed}{after}")
 }
 
-/// The words, numbers and signs of a text.
+/// Returns the ranges of a text's words, numbers and signs.
 fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
     let mut pieces = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
         let is_word = |c: char| is_letter(c) || c.is_ascii_digit() || c == '.';
-        let end = match is_word(first) {
-            true => text[at..]
+        let end = if is_word(first) {
+            text[at..]
                 .find(|c| !is_word(c))
-                .map_or(text.len(), |to| at + to),
-            false => at + first.len_utf8(),
+                .map_or(text.len(), |to| at + to)
+        } else {
+            at + first.len_utf8()
         };
         if !first.is_whitespace() {
             pieces.push(at..end);
@@ -416,21 +424,4 @@ fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
         at = end;
     }
     pieces
-}
-
-/// A generator by Vigna (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((bits ^ (bits >> 31)) % bound as u64) as usize
-    }
-
-    fn one_of<'t, T>(&mut self, among: &'t [T]) -> &'t T {
-        &among[self.below(among.len())]
-    }
 }
