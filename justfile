@@ -1,26 +1,26 @@
-# What CI checks, and the rest that wants a tool of its own.
+# The checks of CI, and tasks that need further tools.
 
-# Everything that must hold before a change lands.
+# Runs everything that must pass before a change lands.
 check:
     .ci/run
 
-# The tests alone.
+# Runs only the tests.
 test:
     cargo test
 
-# The properties on cases that no run has tried yet; what fails is printed, and kept in a folder proptest-regressions.
+# Tests the properties on new cases; failing ones are kept in a folder proptest-regressions.
 explore times="20":
     for i in $(seq {{times}}); do PROPTEST_RNG_SEED=$(date +%s%N) cargo test --quiet || exit 1; done
 
-# Rays per second of each method, and where the time goes.
+# Measures the rays per second of each method, and where the time goes.
 bench:
     cargo bench
 
-# Licences, sources and duplicates of the dependencies (wants cargo-deny).
+# Checks licences, sources and duplicates of the dependencies (needs cargo-deny).
 deny:
     cargo deny check
 
-# The README's pictures of an editor at work (wants Node.js and Chromium).
+# Makes the README's pictures of an editor at work (needs Node.js and Chromium).
 shots:
     cargo build --release
     npm --prefix grammar/editors/shots ci

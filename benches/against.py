@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Commands of two versions of Pinhole, timed in turns: against.py PROGRAM COMMIT [NAME...]
+"""Times commands of two versions of Pinhole, in turns: against.py PROGRAM COMMIT [NAME...]
 
-PROGRAM is a release build of `pinhole`. COMMIT is built in a folder of its own under `target/against`, unless it is the path of
-a program. Every command of `commands.py`, or those whose names contain a NAME, runs nine times in each program, in turns; the
-least counts, since other work on the machine only makes a time longer. Printed are the CPU seconds (user and system time of all
-threads) and the wall time of COMMIT's program, then PROGRAM's ratios to it, and last the CPU ratio of PROGRAM to a second series of its own:
-how far that is from 1 is the error of the others."""
+PROGRAM is a release build of `pinhole`. COMMIT is built in a folder of its own under
+`target/against`, unless it is the path of a program. Every command of `commands.py`, or those whose
+names contain a NAME, runs nine times in each program, in turns; the least counts, since other work
+on the machine only makes a time longer. Printed are the CPU seconds (user and system time of all
+threads) and the wall time of COMMIT's program, then PROGRAM's ratios to it, and last the CPU ratio
+of PROGRAM to a second series of its own: its distance from 1 is the error of the others."""
 
 import math
 import os
@@ -23,7 +24,7 @@ SPHERES = [10_000, 100_000, 1_000_000]
 
 
 def build(commit):
-    """The release build of a commit, made in a clone of the repository."""
+    """Returns the release build of a commit, made in a clone of the repository."""
     if os.path.isfile(commit):
         return commit
     commit = subprocess.check_output(["git", "-C", commands.ROOT, "rev-parse", "--short", commit], text=True).strip()
@@ -37,7 +38,7 @@ def build(commit):
 
 
 def run(program, command):
-    """CPU and wall seconds; infinite where the program does not know the command."""
+    """Returns CPU and wall seconds; infinite if the program does not know the command."""
     start = time.monotonic()
     with open(command.stdin, "rb") as stdin:
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}

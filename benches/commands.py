@@ -1,4 +1,5 @@
-"""The commands that `work.py` counts and `against.py` times: whole processes, as users start them."""
+"""The commands that `work.py` counts and `against.py` times: whole processes, as users start
+them."""
 
 import json
 import os
@@ -11,16 +12,18 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
 FIGURE = EXAMPLES / "figure_9_9.scn"
 
-# Exact, with the view that figure 9.9 has without a far plane: half of it are squares that become ever smaller.
+# An exact picture, with figure 9.9's view without a far plane: half of it shows squares that become
+# ever smaller.
 TO_THE_HORIZON = ["sampler.method=exact", "camera.fov=40deg"]
 
-# The pictures that are judged.
+# Size of the pictures that are judged.
 SMALL = (96, 54)
 
 
 @dataclass
 class Command:
-    """A command line of `pinhole`: a name, the arguments, the file for standard input, and the expected exit status."""
+    """A command line of `pinhole`: a name, the arguments, the file for standard input, and the
+    expected exit status."""
 
     name: str
     arguments: list
@@ -29,18 +32,20 @@ class Command:
 
 
 def sized(width, height, *sets):
-    """The arguments that set a picture's size, and more."""
+    """Returns the arguments that set a picture's size, and further overrides."""
     values = [f"image.width={width}", f"image.height={height}", *sets]
     return [word for value in values for word in ("--set", value)]
 
 
 def spheres(count):
-    """A text of spheres that together could cover the picture one and a half times, at depths from 5 to 50, in any order."""
+    """Returns a scene of spheres at depths from 5 to 50, in random order, that together could cover
+    the picture one and a half times."""
     chance = random.Random(count)
     colors = ["olive", "teal", "orange", "gray", "#fa0", "#3366cc", "rgb(255, 165, 0)", "steelblue"]
     lines = ["image { width 1280  height 720 }", "camera { eye (0, 0, 0)  direction (0, 0, -1)  d 1 }"]
     lines.append("sampler { method jittered  per_pixel 4  seed 1 }")
-    # The window is 2 high and 16/9 times as wide at distance 1; a sphere of this radius there covers its part of it.
+    # The window is 2 high and 16/9 times as wide at distance 1; a sphere of this radius there
+    # covers its share of it.
     radius = (1.5 * 4 * 16 / 9 / (3.14159 * count)) ** 0.5
     for index in range(count):
         depth = chance.uniform(5, 50)
@@ -51,7 +56,8 @@ def spheres(count):
 
 
 def messages():
-    """What an editor sends in a short session: letters are typed, and after each of them it asks what editors ask."""
+    """Yields the messages of an editor in a short session: letters are typed, each followed by the
+    usual requests."""
     uri = "file:///figure.scn"
     text = FIGURE.read_text()
     line, column = 15, text.splitlines()[15].index("radius")
@@ -76,7 +82,7 @@ def messages():
 
 
 def session():
-    """The bytes of that session, as the language server reads them."""
+    """Returns the messages as bytes, as the language server reads them."""
     out = b""
     for number, (method, content) in enumerate(messages()):
         message = {"jsonrpc": "2.0", "id": number, "method": method, "params": content}
@@ -88,7 +94,7 @@ def session():
 
 
 def broken(text):
-    """The text of spheres with a slip in each tenth line."""
+    """Returns a text with a mistake in every tenth line."""
     slips = [("radius", "radus"), ("color", "colour"), ("sphere", "shpere"), (" }", ""), (", ", " , , ")]
     lines = text.splitlines(keepends=True)
     for index in range(9, len(lines), 10):
@@ -97,7 +103,8 @@ def broken(text):
 
 
 def prepare(folder, program, counts):
-    """Writes the scenes and pictures that the commands read into a folder; `program` renders the pictures."""
+    """Writes the scenes and pictures that the commands read into a folder; `program` renders the
+    pictures."""
     for count in counts:
         (folder / f"{count}.scn").write_text(spheres(count))
     (folder / "broken.scn").write_text(broken(spheres(1000)))
@@ -110,7 +117,8 @@ def prepare(folder, program, counts):
 
 
 def commands(folder, width, height, counts):
-    """All commands, with pictures of this size; `folder` has been prepared and takes what they write."""
+    """Yields all commands, with pictures of this size. `folder` has been prepared, and gets the
+    files that they write."""
     picture, exr = folder / "picture.png", folder / "picture.exr"
     def render(name, scene, *sets, size=(width, height), out=picture, more=()):
         return Command(name, ["render", scene, "-o", out, *sized(*size, *sets), *more])

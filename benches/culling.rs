@@ -1,4 +1,4 @@
-//! What culling gains: `cargo bench --bench culling`. See README.md beside this file.
+//! Measures what culling gains: `cargo bench --bench culling`. See README.md beside this file.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -23,21 +23,22 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
+/// Number of rounds. The best one counts, since other work on the machine only makes a round
+/// slower.
 const ROUNDS: usize = 3;
 
-/// How samples are traced.
+/// Way of tracing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// Each on its own.
+    /// Each sample by itself.
     OneByOne,
-    /// As `render` does it.
+    /// As `render` does, with culling.
     Culled,
 }
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// The scenes that are compared by one method: what culling likes, and what it does not.
+/// Examples that are rendered in both ways: some suit culling, others do not.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",
@@ -108,15 +109,16 @@ fn main() {
     exact();
 }
 
-/// A floor of which a pixel sees many squares nearly everywhere.
+/// A floor of which nearly every pixel sees many squares.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
-/// Where Weyl's sequence of an irrational step is at an index, from −size/2 to size/2.
+/// Returns the element of Weyl's sequence with an irrational step at an index, scaled to −size/2 to
+/// size/2.
 fn place(index: u32, step: f64, size: f64) -> f64 {
     ((f64::from(index) * step).fract() - 0.5) * size
 }
 
-/// Places all over the picture.
+/// Returns a point; the points of all indices are spread over the whole picture.
 fn center(index: u32) -> [f64; 3] {
     [
         place(index, 0.618_033_988_749_895, 12.0),
@@ -125,7 +127,7 @@ fn center(index: u32) -> [f64; 3] {
     ]
 }
 
-/// Spheres of about a pixel in size, all over the picture.
+/// Returns a scene of spheres about a pixel in size, all over the picture.
 fn tiny(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -135,9 +137,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Triangles that are two hundred times as long as they are wide, in all directions over each
-/// other: of each part of the picture very many may be seen, however small it is. Culling may be up
-/// to three times as slow there as tracing one by one.
+/// Returns a scene of triangles that are two hundred times as long as wide, in all directions and
+/// on top of each other: even a small part of the picture has very many candidates. Culling may be
+/// up to three times as slow here as tracing one by one.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -166,7 +168,7 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// A scene as a picture of a width, 16 to 9, with so many samples a pixel.
+/// Returns a scene with a picture of this width, 16 to 9, and this many samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);
@@ -183,7 +185,7 @@ fn control(threads: Option<NonZero<usize>>) -> Control<'static> {
     }
 }
 
-/// Renders a scene in a way, on one thread.
+/// Returns a function that renders a scene in one of the ways, on one thread.
 fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     let [width, height] = [scene.image.width, scene.image.height];
     let (world, sampling) = (
@@ -200,9 +202,9 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// What certain decisions cost: rays a CPU second by the formulas of a textbook, which are right
-/// but for the hard cases, and as the plain way and `render` take them, in turns. Samples are
-/// placed in all of them.
+/// Measures what certain decisions cost: rays per CPU second by the formulas of a textbook, which
+/// are right except in hard cases, by tracing one by one, and by `render`, in turns. All three
+/// place the samples.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -234,7 +236,7 @@ fn price() {
     }
 }
 
-/// Asks a textbook what each sample sees.
+/// Returns a function that traces each sample by the formulas of a textbook.
 fn textbook(scene: &Scene) -> impl Fn() {
     let [width, height] = [scene.image.width, scene.image.height];
     let (textbook, objects) = (Textbook::new(scene), scene.objects.len());
@@ -256,8 +258,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
     }
 }
 
-/// What the exact picture of figure 9.9 costs beside few samples a pixel one by one, in turns, for
-/// each way to end what is seen.
+/// Measures what the exact picture of figure 9.9 costs, compared with few samples per pixel one by
+/// one, in turns, with and without a far plane.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -302,9 +304,9 @@ fn exact() {
     }
 }
 
-/// Renders figure 9.9 on one thread and ends, for those who measure processes: a way, a method, the
-/// picture's width, samples per pixel, and how many times. The way `None` prepares everything and
-/// renders nothing. What it prints is the CPU time of the pictures alone.
+/// Renders figure 9.9 on one thread and ends, for measurements of whole processes. Arguments: a
+/// way, a method, the picture's width, samples per pixel, and the number of pictures. The way
+/// `None` prepares everything and renders nothing. Prints the CPU time of the pictures alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");
@@ -334,7 +336,7 @@ fn once(arguments: &[String]) {
     );
 }
 
-/// Both ways compared in turns, so that a busy moment meets both of them.
+/// Compares both ways in turns, so that other work on the machine slows down both.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
     let mut best = [f64::MAX; WAYS.len()];

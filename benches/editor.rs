@@ -1,7 +1,7 @@
-//! How long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
+//! Measures how long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
 //!
-//! The server runs as it does for an editor, and time is taken from before a message is written
-//! until its answer is read.
+//! The server runs as for an editor. Time is taken from before a message is written until its
+//! answer is read.
 
 use std::{
     env,
@@ -19,10 +19,10 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// How often each thing is asked.
+/// Number of times that each request is made.
 const ROUNDS: u32 = 200;
 
-/// How often where each time is long.
+/// Number of times that a slow request is made.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";
@@ -99,9 +99,9 @@ fn main() {
     tokens_in_one_line();
 }
 
-/// Formatting a text of a block a line, and what is said of the text when the editor has done it:
-/// its edits are sent back as the changes that they are, against the order of the text, so that
-/// none moves the place of another.
+/// Measures formatting a text with a block per line, and the diagnostics after the editor has
+/// applied the edits. The edits are sent back as changes from the last to the first, so that none
+/// moves the position of another.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);
@@ -136,17 +136,17 @@ fn formatted() {
     print("its edits, and their diagnostics", times.collect());
 }
 
-/// The same objects in one line.
+/// Measures a text with all objects in one line.
 fn objects_in_one_line() {
     let text = spheres(OBJECTS, Layout::Lines);
-    // Comments that end with their line would take all the rest.
+    // Line comments would comment out the rest of the text.
     let lines = text.lines().filter(|line| !line.contains("//"));
     let line = lines.collect::<Vec<_>>().join(" ");
     println!("all of it in one line of {} bytes", line.len());
     in_one_line(&line, ROUNDS);
 }
 
-/// A sum that is one line of a million tokens.
+/// Measures a text with a sum of a million tokens in one line.
 fn tokens_in_one_line() {
     const TOKENS: usize = 1_000_000;
     let line = format!("let a = 1{}", " + 1".repeat((TOKENS - 4) / 2));
@@ -157,7 +157,7 @@ fn tokens_in_one_line() {
     in_one_line(&line, FEW);
 }
 
-/// What there is to wait for in a text that is one line.
+/// Measures what an editor waits for in a text of one line.
 fn in_one_line(line: &str, rounds: u32) {
     let mut server = Server::start(line);
     let mut letters = Letters::at(0, 0);
@@ -183,7 +183,7 @@ fn in_one_line(line: &str, rounds: u32) {
     }
 }
 
-/// A letter more, a letter less, at one place of the text.
+/// Alternately types and deletes a letter at one position of the text.
 struct Letters {
     line: u32,
     column: u32,
@@ -200,7 +200,7 @@ impl Letters {
         }
     }
 
-    /// Types the next one, and reads what is said of that.
+    /// Sends the next change, and reads the diagnostics.
     fn next(&mut self, server: &mut Server) {
         self.version += 1;
         let place = json!({ "line": self.line, "character": self.column });
@@ -216,7 +216,7 @@ impl Letters {
     }
 }
 
-/// The time of a thing, done over and over.
+/// Measures an action, repeated many times.
 fn show(name: &str, rounds: u32, mut done: impl FnMut()) {
     let times = (0..rounds).map(|_| {
         let start = Instant::now();
@@ -242,7 +242,7 @@ struct Server {
 }
 
 impl Server {
-    /// The server with a text open.
+    /// Starts the server and opens a text.
     fn start(text: &str) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
             .arg("lsp")
@@ -274,7 +274,8 @@ impl Server {
         message.write(&mut self.input).expect("the server reads");
     }
 
-    /// The bytes of the next message: what a client makes of them takes its own time.
+    /// Reads the bytes of the next message. They are not parsed, as the client's own time does not
+    /// count.
     fn read(&mut self) -> Vec<u8> {
         let mut header = String::new();
         while !header.ends_with("\r\n\r\n") {
@@ -288,7 +289,7 @@ impl Server {
         message
     }
 
-    /// Asks about the document, for the bytes of the answer.
+    /// Sends a request about the document. Returns the bytes of the answer.
     fn ask(&mut self, method: &str, mut params: Value) -> Vec<u8> {
         params["textDocument"] = json!({ "uri": URI });
         self.request(&format!("textDocument/{method}"), params)
@@ -309,7 +310,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // It has nothing to lose.
+        // The server has nothing to save.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

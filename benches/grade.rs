@@ -1,5 +1,5 @@
-//! How well `diff` names mistakes: the corpus of `tests/integration/grade`, by the program that is
-//! built.
+//! Measures how well `diff` names mistakes: runs the built program on the corpus of
+//! `tests/integration/grade`.
 //!
 //! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` those of every size
 //! and way of sampling. `-- --write FOLDER` writes the pictures, their scenes and `truth.json` in
@@ -28,7 +28,7 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// The sizes of pictures.
+/// Sizes of pictures.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {
@@ -44,13 +44,12 @@ fn main() {
         (Sampling::Regular, 16),
         (Sampling::Regular, 256),
     ];
-    let (sizes, samplings) = match is_all {
-        true => {
-            let all = [1, 4, 16].into_iter();
-            let all = all.flat_map(|samples| SAMPLINGS.map(|sampling| (sampling, samples)));
-            (SIZES.to_vec(), all.chain([few[3]]).collect())
-        }
-        false => (vec![SIZES[1]], few.to_vec()),
+    let (sizes, samplings) = if is_all {
+        let all = [1, 4, 16].into_iter();
+        let all = all.flat_map(|samples| SAMPLINGS.map(|sampling| (sampling, samples)));
+        (SIZES.to_vec(), all.chain([few[3]]).collect())
+    } else {
+        (vec![SIZES[1]], few.to_vec())
     };
     let program = after("--program").unwrap_or(env!("CARGO_BIN_EXE_pinhole").to_owned());
     let mut truth = Vec::new();
@@ -81,7 +80,7 @@ fn main() {
     }
 }
 
-/// Sets of mistakes: none, each, and pairs and triples of different groups.
+/// Returns sets of `count` mistakes: none, single ones, and pairs and triples of different groups.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -101,17 +100,18 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// The pictures with so many mistakes, of a size and a way of sampling, in which each mistake is
-/// seen: the picture without it differs by more than the step that rounding may cost.
+/// Returns the pictures with `count` mistakes, of one size and sampling, in which each mistake is
+/// visible: the picture without the mistake differs by more than the step that rounding may cost.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
     (sampling, samples): (Sampling, u32),
 ) -> Vec<Case> {
     let case = |scene: &str, names: &[&str]| {
-        let names = match names.is_empty() {
-            true => "right".to_owned(),
-            false => names.join(" + "),
+        let names = if names.is_empty() {
+            "right".to_owned()
+        } else {
+            names.join(" + ")
         };
         Case::of(&format!(
             "{scene} {width}x{height} {samples} {sampling:?}: {names}"
@@ -121,7 +121,7 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // Bytes that are cut off differ by one step.
+        // Truncated bytes differ by one step.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();
@@ -130,7 +130,7 @@ fn cases(
             let mut bytes = picture.as_raw().iter().zip(other.as_raw());
             bytes.any(|(a, b)| a.abs_diff(*b) > least)
         };
-        // A transposed picture may be none of the scene.
+        // A transposed picture may not have the scene's size.
         let is_whole = picture.dimensions() == (width, height);
         (is_whole && (0..names.len()).all(is_seen)).then_some(whole)
     };
@@ -139,23 +139,24 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// A row of the table: how many cases are judged right.
+/// Prints a row of the table: how many cases are judged correctly.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);
     for case in cases {
         let (answer, taken) = ask(program, case, folder.path());
         time += taken;
-        match case.is_told(&answer) {
-            true => right += 1,
-            false => eprintln!("{}: {}", case.title, told(&answer)),
+        if case.is_told(&answer) {
+            right += 1;
+        } else {
+            eprintln!("{}: {}", case.title, named_mistakes(&answer));
         }
     }
     let (count, seconds) = (cases.len(), time.as_secs_f64());
     println!("| {of} | {right} of {count} | {seconds:.2} |");
 }
 
-/// What the program says of a picture, and how long it takes.
+/// Returns the program's answer about a picture, and the time that it takes.
 fn ask(program: &str, case: &Case, folder: &Path) -> (Value, Duration) {
     let (picture, scene) = (folder.join("a.png"), folder.join("a.scn"));
     case.picture().save(&picture).expect("a picture");
@@ -174,16 +175,16 @@ fn ask(program: &str, case: &Case, folder: &Path) -> (Value, Duration) {
     (answer, taken)
 }
 
-fn told(answer: &Value) -> String {
+fn named_mistakes(answer: &Value) -> String {
     let mistakes = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
-    let told: Vec<String> = mistakes
+    let named: Vec<String> = mistakes
         .iter()
         .map(|m| format!("{} {}", m["id"], m["set"]))
         .collect();
-    format!("{} {}", answer["verdict"], told.join("; "))
+    format!("{} {}", answer["verdict"], named.join("; "))
 }
 
-/// Writes a picture and its scene; answers what is wrong with it.
+/// Writes a picture and its scene. Returns the mistakes in it.
 fn write(case: &Case, folder: &Path) -> Value {
     let name: String = case
         .title

@@ -1,9 +1,9 @@
-//! Many objects: how preparing and rendering them grows with their number: `cargo bench --bench
-//! many`. See README.md beside this file.
+//! Measures how the time for preparing and rendering grows with the number of objects: `cargo bench
+//! --bench many`. See README.md beside this file.
 //!
-//! `-- --write COUNT` writes a scene of so many small spheres to standard output instead, and `--
-//! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes;
-//! with `--cube` the spheres are in a cube, not all over the picture.
+//! `-- --write COUNT` writes a scene of this many small spheres to standard output instead, and `--
+//! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes.
+//! With `--cube` the spheres are in a cube instead of all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -39,9 +39,10 @@ fn main() {
         let rest = arguments[at + 1..].iter();
         Some(rest.map_while(|count| count.parse().ok()).collect())
     };
-    let text = match arguments.iter().any(|argument| argument == "--cube") {
-        true => cube,
-        false => crowd,
+    let text = if arguments.iter().any(|argument| argument == "--cube") {
+        cube
+    } else {
+        crowd
     };
     if let Some(counts) = numbers("--write") {
         counts
@@ -77,7 +78,7 @@ fn picture(world: &World, scene: &Scene) {
     black_box(film).expect("there is memory for it");
 }
 
-/// The CPU seconds of each phase, and the bytes of the world by object.
+/// Prints the CPU seconds of each phase, and the bytes of the world per object.
 fn phases(scene: &Scene) {
     const RENDERS: u32 = 4;
     let count = scene.objects.len();
@@ -87,7 +88,7 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Each sample by the quadtree on its own.
+    // Each sample is traced by itself through the quadtree.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));
@@ -95,12 +96,11 @@ fn phases(scene: &Scene) {
     let bytes = (after.1 - before.1) / count as f64;
     let start = cpu_seconds();
     let control = Control::default();
-    let exact = match env::args().any(|argument| argument == "--exact") {
-        true => {
-            black_box(render_exact(&world, whole, &control)).expect("there is memory for it");
-            format!(", exact {:.2}", cpu_seconds() - start)
-        }
-        false => String::new(),
+    let exact = if env::args().any(|argument| argument == "--exact") {
+        black_box(render_exact(&world, whole, &control)).expect("there is memory for it");
+        format!(", exact {:.2}", cpu_seconds() - start)
+    } else {
+        String::new()
     };
     let prepared = after.0 - before.0;
     println!(
@@ -108,7 +108,7 @@ fn phases(scene: &Scene) {
     );
 }
 
-/// The memory that the process holds; 0 where there is no /proc.
+/// Returns the resident memory of the process, in bytes; 0 on systems without /proc.
 fn resident_bytes() -> f64 {
     let statm = fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages = statm.split_whitespace().nth(1);

@@ -1,5 +1,5 @@
-//! What placing points, threads and files take of what the plain path takes, method by method:
-//! `cargo bench --bench render`. See README.md beside this file.
+//! Measures, for each method, what placing points, threads and files take in proportion to the
+//! plain path: `cargo bench --bench render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 
@@ -23,7 +23,8 @@ const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
-/// Each time is the least of so many: whatever else the machine does only makes them longer.
+/// Number of runs. The shortest time counts, since other work on the machine only makes a time
+/// longer.
 const RUNS: usize = 5;
 
 fn main() {
@@ -89,7 +90,7 @@ fn main() {
     );
 }
 
-/// The least seconds that each of these took, in turns.
+/// Returns the shortest time of each function in seconds, measured in turns.
 fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut least = [f64::INFINITY; N];
     for _ in 0..RUNS {
@@ -102,7 +103,8 @@ fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
     least
 }
 
-/// Places all points, and does no more with them than must be.
+/// Places all sample points, and does only as much with them as keeps the compiler from dropping
+/// them.
 fn points(scene: &Scene) -> f64 {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let mut sum = DVec2::ZERO;
@@ -116,7 +118,7 @@ fn points(scene: &Scene) -> f64 {
     sum.element_sum()
 }
 
-/// Each sample on its own.
+/// Traces each sample by itself.
 fn plain(scene: &Scene) -> Film {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     one_by_one(&World::new(scene), &sampling, Area::whole(WIDTH, HEIGHT))

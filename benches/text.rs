@@ -1,5 +1,5 @@
-//! From a text to what the tracer starts with, stage by stage: `cargo bench --bench text`. See
-//! README.md beside this file.
+//! Measures the stages from a text to the tracer's input: `cargo bench --bench text`. See README.md
+//! beside this file.
 //!
 //! `cargo bench --bench text -- --write COUNT blocks|lines` writes a scene of many spheres to
 //! standard output instead.
@@ -25,7 +25,7 @@ use self::{
 
 mod spheres;
 
-/// pest's parser of the same grammar: what everything else is measured by.
+/// pest's parser of the same grammar, the unit of all other times.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]
@@ -34,7 +34,8 @@ mod grammar {
 
 const OBJECTS: usize = 10_000;
 
-/// Ratios are of the best of so many rounds: whatever else the machine does only makes them slower.
+/// Number of rounds. The best one counts, since other work on the machine only makes a round
+/// slower.
 const ROUNDS: usize = 20;
 
 fn main() {
@@ -78,7 +79,7 @@ fn main() {
     }
 }
 
-/// Parses a few kilobytes at a time, as the parser does, and looks at nothing.
+/// Parses a few kilobytes at a time, as the parser does, and drops the result.
 fn chunks(text: &str) -> usize {
     const CHUNK: usize = 4096;
     let (mut at, mut items) = (0, 0);
@@ -92,8 +93,8 @@ fn chunks(text: &str) -> usize {
     items
 }
 
-/// How long each stage takes as a multiple of the first, in turns, so that a busy moment meets all
-/// of them.
+/// Prints how long each stage takes as a multiple of the first, measured in turns, so that other
+/// work on the machine slows down all of them.
 fn ratios(layout: Layout, stages: &[(&str, &dyn Fn())]) {
     let mut best = vec![Duration::MAX; stages.len()];
     for _ in 0..ROUNDS {

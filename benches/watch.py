@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""From saving a scene to its finished picture: watch.py ROUNDS SCENE PROGRAM [ARGUMENT...]
+"""Times `watch` from a save to the picture: watch.py ROUNDS SCENE PROGRAM [ARGUMENT...]
 
-Starts `PROGRAM watch` on a copy of the scene and saves it again and again with another roll of the camera, in turns in place and by
-renaming. Prints in milliseconds, least, median and most: from before the save until the new file is there, and what the program itself
-says; then the processor time of a picture; and for comparison, `PROGRAM render` of the same scenes from start to exit, and of one pixel of
-them."""
+Starts `PROGRAM watch` on a copy of the scene and saves it again and again with another roll of the
+camera, in turns in place and by renaming. Prints, as minimum, median and maximum in milliseconds,
+the time from before the save until the new file is there, and the time that the program itself
+prints; then the processor time of a picture; and for comparison, `PROGRAM render` of the same
+scenes from start to exit, and of one pixel of them."""
 
 import os
 import pathlib
@@ -56,7 +57,7 @@ def main():
         wait(lambda: len(said) >= 2)
         seen = {}
         for number, text in enumerate(texts):
-            # As a person's hand would: not the moment the last picture is there.
+            # A person, too, does not save at the moment the last picture appears.
             time.sleep(0.2)
             by_renaming = number % 2 == 1
             before, start = picture.stat().st_ino, time.monotonic()

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""What commands cost, counted so that it can be compared from day to day: work.py PROGRAM [--write]
+"""Counts what commands cost, comparably from day to day: work.py PROGRAM [--write]
 
-PROGRAM is a release build of `pinhole`. Every command of `commands.py` runs under valgrind, which counts its instructions
-whatever else the machine does, and without it for its peak memory. Both are compared with `work.csv`: the exit status
-is 1 if a command takes 3 % more instructions or 10 % more memory than its row there, or has no row; a command that takes 3 %
-less is named. A row counts for the versions of rustc and valgrind in it; under others it is printed and not enforced. `--write`
+PROGRAM is a release build of `pinhole`. Every command of `commands.py` runs under valgrind, which
+counts its instructions whatever else the machine does, and without it for its peak memory. Both are
+compared with `work.csv`: the exit status is 1 if a command takes 3 % more instructions or 10 % more
+memory than its row there, or has no row; a command that takes 3 % less is marked. A row counts for
+the versions of rustc and valgrind in it; under others it is printed and not enforced. `--write`
 writes `work.csv` anew."""
 
 import csv
@@ -23,11 +24,13 @@ TABLE = pathlib.Path(__file__).with_suffix(".csv")
 COLUMNS = ["command", "instructions", "memory_kb", "rustc", "valgrind"]
 SIZE = (160, 90)
 SPHERES = [1000, 10_000]
-# By how much a command may exceed its row. Counts repeat within 0.2 %; peak memory, within 5 %, so the least of some runs counts.
+# Factors by which a command may exceed its row. Instruction counts repeat within 0.2 %, peak memory
+# within 5 %, so the least memory of several runs counts.
 MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
 MEMORY_RUNS = 5
 ENVIRONMENT = {**os.environ, "NO_COLOR": "1"}
-# The processors that no command runs on. A command has one to itself, so that it starts as many threads on every machine.
+# Free processors. Each command has one processor for itself, so that it starts the same number of
+# threads on every machine.
 PROCESSORS = queue.SimpleQueue()
 for processor in os.sched_getaffinity(0):
     PROCESSORS.put(processor)
@@ -49,7 +52,7 @@ def run(command, line):
 
 
 def measure(program, command):
-    """The instructions of a command and the peak of its resident memory in kilobytes."""
+    """Returns the instructions of a command and its peak resident memory in kilobytes."""
     line = [program, *command.arguments]
     said = run(command, ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *line])
     instructions = int(re.search(r"Collected : (\d+)", said)[1])
@@ -57,8 +60,9 @@ def measure(program, command):
 
 
 def peak(command, line):
-    """The peak of a command's resident memory in kilobytes."""
-    # GNU time starts the command from a small process: from here, Python's own memory would count as the command's.
+    """Returns the peak resident memory of a command in kilobytes."""
+    # GNU time starts the command from a small process: started from here, the command's peak would
+    # include Python's own memory.
     with tempfile.NamedTemporaryFile("r") as report:
         run(command, ["/usr/bin/time", "--quiet", "-f", "%M", "-o", report.name, *line])
         return int(report.read())
@@ -69,7 +73,7 @@ def version(program):
 
 
 def measure_all(program):
-    """A row for each command, in their order; as many are measured at once as there are processors."""
+    """Returns a row for each command, in order; measures one command per processor at a time."""
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(PROCESSORS.qsize()) as pool:
         folder = pathlib.Path(folder)
         commands.prepare(folder, program, SPHERES)
@@ -82,7 +86,8 @@ def measure_all(program):
 
 
 def compare(rows):
-    """Prints each row beside the committed one; returns the names of the commands that take too much."""
+    """Prints each row beside the committed one; returns the names of the commands that take too
+    much."""
     with open(TABLE, newline="") as file:
         known = {row["command"]: row for row in csv.DictReader(file)}
     failed = [f"{name} (is no command any more)" for name in known.keys() - {row[0] for row in rows}]

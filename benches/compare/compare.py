@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""Whole processes of Pinhole, POV-Ray and Mitsuba 3 on the same scene, in turns: compare.py figure|many SCENE... [options]
+"""Compares Pinhole, POV-Ray and Mitsuba 3 on the same scenes: compare.py figure|many SCENE...
+[options]
 
-From the start of a process to the picture on disk, as PNG of 8 bits, on two threads: CPU seconds (user and system time of all threads), wall
-time and peak memory. `figure` also measures each picture's error, against Pinhole's exact one and in linear light, from another run that
-writes OpenEXR. Nothing but Python and the three programs is needed; see README.md in the folder above."""
+Times whole processes in turns, from the start to the picture on disk, as PNG of 8 bits, on two
+threads: CPU seconds (user and system time of all threads), wall time and peak memory. `figure` also
+measures each picture's error, against Pinhole's exact one and in linear light, from another run
+that writes OpenEXR. Nothing but Python and the three programs is needed; see README.md in the
+folder above."""
 
 import argparse
 import json
@@ -36,7 +39,7 @@ def main():
         found = shutil.which(getattr(options, program))
         if found is None:
             sys.exit(f"{getattr(options, program)} is not there")
-        # The processes run in a folder of their own.
+        # The processes run in another folder, so paths must be absolute.
         setattr(options, program, os.path.abspath(found))
     for scene in options.scenes:
         with tempfile.TemporaryDirectory() as folder:
@@ -48,7 +51,8 @@ def compare(options, scene, folder):
     inspected = os.path.join(folder, "inspected.json")
     with open(inspected, "w") as file:
         subprocess.run([options.pinhole, "inspect", scene, "--format", "json", *sets], stdout=file, check=True)
-    # In a process of its own: a child's peak memory counts that of this process, too, which must therefore stay small.
+    # In a separate process: a child's peak memory includes that of this process, which must
+    # therefore stay small.
     subprocess.run([sys.executable, os.path.join(HERE, "scenes.py"), inspected, folder], check=True)
     with open(inspected) as file:
         size = json.loads(re.match(r'\{"image":(\{.*?\})', file.read(200))[1])
@@ -59,7 +63,8 @@ def compare(options, scene, folder):
     measured = {name: [] for name, *_ in ways}
     phases = {name: [] for name, *_ in ways}
     others, loads = [], []
-    # Caches, Mitsuba's compiled kernels among them, are filled by the pictures that errors are measured by, or else by a round that does not count.
+    # Caches, among them Mitsuba's compiled kernels, are filled by the pictures from which errors
+    # are measured, or else by a round that does not count.
     for number in range(1 if errors else 0, options.rounds + 1):
         for name, command, fresh in ways:
             before = busy_seconds(), time.monotonic()
@@ -87,7 +92,8 @@ def compare(options, scene, folder):
 
 
 def figure(options, scene, sets, size):
-    """Each way has a name, the command for a picture, and whether it starts without anything that an earlier run has compiled."""
+    """Each way has a name, the command for a picture, and whether it starts without anything that
+    an earlier run has compiled."""
     counts = {"hammersley": [16, 46, 64], "multi_jittered": [16, 48, 64], "sobol": [16, 48, 64]}
     for method, samples in [(method, samples) for method in counts for samples in counts[method]]:
         chosen = [f"sampler.method={method}", f"sampler.per_pixel={samples}"]
@@ -105,7 +111,8 @@ def figure(options, scene, sets, size):
 
 
 def many(options, scene, sets, size):
-    """With so many objects, POV-Ray is faster with its second kind of bounding, a tree."""
+    """Yields the ways for many objects, with which POV-Ray is faster with its second kind of
+    bounding, a tree."""
     chosen = ["sampler.method=jittered", "sampler.per_pixel=4"]
     yield "Pinhole, jittered, 4", pinhole(options, scene, sets, chosen), False
     yield "POV-Ray, every pixel, 2 x 2", povray(options, size, 0, 2, ["+BM2"]), False
@@ -121,7 +128,8 @@ def pinhole(options, scene, sets, chosen):
 
 
 def povray(options, size, threshold, side, more=()):
-    """Its first kind of antialiasing: a grid in each pixel that differs from one beside it by the threshold or more, fully jittered."""
+    """POV-Ray with its first kind of antialiasing: a fully jittered grid in each pixel that differs
+    from a neighbour by the threshold or more."""
     arguments = [options.povray, "+Iscene.pov", f"+W{size['width']}", f"+H{size['height']}", f"+WT{THREADS}", "-D", "-V"]
     arguments += ["+AM1", f"+A{threshold:.3f}", f"+R{side}", "+J1", *more]
     return lambda picture: [*arguments, f"+O{picture}", "+FE" if picture.endswith("exr") else "+FN8"]
@@ -133,7 +141,7 @@ def mitsuba(options, variant, sampler, samples):
 
 
 def run(arguments, folder, fresh):
-    """CPU seconds, wall time and peak memory in MB; and what the process said."""
+    """Returns CPU seconds, wall time and peak memory in MB, and the output of the process."""
     home = os.path.join(folder, "home")
     if fresh:
         home = tempfile.mkdtemp(dir=folder)
@@ -154,14 +162,15 @@ def run(arguments, folder, fresh):
 
 
 def busy_seconds():
-    """The seconds that all processors together were not idle since the machine started."""
+    """Returns the seconds that all processors together were busy since the machine started."""
     with open("/proc/stat") as file:
         user, nice, system, _, _, *interrupts = map(int, file.readline().split()[1:9])
     return (user + nice + system + sum(interrupts)) / os.sysconf("SC_CLK_TCK")
 
 
 def told(text):
-    """The seconds of its phases, as far as a program tells them: of POV-Ray those of its processors, of Mitsuba those of the wall's clock."""
+    """Returns the seconds of a program's phases, if it prints them: CPU seconds for POV-Ray, wall
+    seconds for Mitsuba."""
     seconds = {}
     for phase, spent in re.findall(r"(Parse|Bounding|Trace) Time:.*\n\s+using.* with ([\d.]+) CPU-seconds", text):
         seconds[phase.lower()] = float(spent)

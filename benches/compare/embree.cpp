@@ -1,10 +1,12 @@
-// The spheres of `cargo bench --bench many -- --write COUNT` by Embree, as they are seen from the origin along −z: 1280 × 720 pixels, four jittered
-// samples in each, two threads. Prints CPU seconds of all threads, of building the hierarchy and of rendering.
+// Renders the spheres of `cargo bench --bench many -- --write COUNT` by Embree, as seen from the
+// origin along −z: 1280 × 720 pixels, four jittered samples in each, two threads. Prints the CPU
+// seconds of all threads, for building the hierarchy and for rendering.
 //
 //     g++ -O3 -march=native -o embree benches/compare/embree.cpp -lembree3 -lpthread
 //     ./embree spheres.scn
 //
-// It does as much as such a picture takes: four rays of a pixel are traced together, and their colours' mean is kept.
+// It does only what such a picture takes: the four rays of a pixel are traced together, and the
+// mean of their colours is kept.
 
 #include <embree3/rtcore.h>
 

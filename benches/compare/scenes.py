@@ -1,7 +1,7 @@
-"""Writes what `pinhole inspect` says of a scene as scenes of POV-Ray and of Mitsuba: scenes.py INSPECTED FOLDER
+"""Converts the output of `pinhole inspect` to POV-Ray and Mitsuba: scenes.py INSPECTED FOLDER
 
-The same camera, shapes and flat colours. Both get the camera's axes as they are, so that nothing is left to their own rules for them, and
-colours in linear light."""
+The same camera, shapes and flat colours. Both get the camera's axes as they are, so that nothing is
+left to their own rules for them, and colours in linear light."""
 
 import json
 import os
@@ -9,18 +9,20 @@ import sys
 from math import log
 from struct import pack
 
-# Mitsuba computes with 32-bit floats and has no endless plane: a checkerboard is a square of so many squares on each side of the origin, with
-# rings around it, each this many times as wide as what is within, so that places are as exact as their distance asks for. From 3.5 above it, what
-# is missing at the horizon of figure 9.9 is a fortieth of a pixel's height.
+# Mitsuba computes with 32-bit floats and has no infinite plane. A checkerboard becomes a large
+# square, INNERMOST squares to each side of the origin, and RINGS rings around it, each RING times
+# as wide as everything inside, so that the precision of positions suits their distance. Seen from
+# 3.5 above, the part that is missing at the horizon of figure 9.9 is a fortieth of a pixel high.
 INNERMOST = 32.0
 RING = 8.0
 RINGS = 4
 
-# From so many spheres of one colour on, Mitsuba gets them as one shape of many: its JIT compiler looks at every shape by itself.
+# Number of spheres of one colour from which on Mitsuba gets them as a single shape: its JIT
+# compiler takes time for every shape.
 CLOUD = 100
 
-# The smallest radius among them. Mitsuba's ellipsoids are hit wherever their bounds are when they are much smaller than 1, so the whole
-# scene is enlarged, camera and all, which changes no picture.
+# Minimum radius of the spheres in such a shape. Mitsuba hits the bounds of ellipsoids that are much
+# smaller than 1, so the whole scene is enlarged with the camera, which does not change the picture.
 SMALLEST = 4.0
 
 
@@ -38,18 +40,19 @@ def write(folder, name, content):
 
 
 def linear(color):
-    """The linear light of `#rrggbb`."""
+    """Returns the linear light of `#rrggbb`."""
     encoded = [int(color[at : at + 2], 16) / 255 for at in (1, 3, 5)]
     return [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in encoded]
 
 
 def colors(scene):
-    """The colours of all objects but checkerboards, each once: objects of one colour share a texture, or a material."""
+    """Returns the colours of all objects except checkerboards, each once: objects of one colour
+    share a texture or a material."""
     return sorted({thing["color"] for thing in scene["objects"] if "color" in thing})
 
 
 def povray(scene):
-    """The text of a scene of POV-Ray 3.7."""
+    """Returns a scene for POV-Ray 3.7."""
     image, camera = scene["image"], scene["camera"]
 
     def vector(values):
@@ -58,8 +61,9 @@ def povray(scene):
     def scaled(axis, by):
         return vector([by * value for value in camera[axis]])
 
-    # POV-Ray's picture is as wide as `right` and as tall as `up`, `direction` away. It is left-handed by default, but only in
-    # how it makes a camera from `look_at`, which is not used.
+    # POV-Ray's picture is as wide as `right` and as tall as `up`, at the distance of `direction`.
+    # POV-Ray is left-handed by default, but only in how it makes a camera from `look_at`, which is
+    # not used.
     height = camera["view_height"]
     lines = [
         "#version 3.7;",
@@ -79,7 +83,8 @@ def povray(scene):
             case "box":
                 shape = f"box {{ {vector(thing['min'])}, {vector(thing['max'])}"
             case "checkerboard":
-                # The pattern is one of cubes: a shift by half a cube puts the plane in the middle of those that count as even.
+                # The pattern consists of cubes: a shift by half a cube puts the plane into the
+                # middle of a layer of cubes that counts as even.
                 first, second = (f"rgb {vector(linear(color))}" for color in thing["colors"])
                 square, y = thing["square"], thing["y"]
                 lines.append(
@@ -92,7 +97,8 @@ def povray(scene):
 
 
 def mitsuba(scene):
-    """The files of a scene of Mitsuba 3, by their names. Its integrator of arbitrary output variables gives the albedo, as it is."""
+    """Returns the files of a scene for Mitsuba 3, by name. Its integrator of arbitrary output
+    variables gives the albedo as it is."""
     alike = {}
     for thing in scene["objects"]:
         if thing["kind"] == "sphere":
@@ -110,7 +116,7 @@ def mitsuba(scene):
         return f'<rgb name="{name}" value="{point(linear(value))}"/>'
 
     def put(scale, to):
-        """A unit shape's own transformation."""
+        """Returns the transformation of a unit shape."""
         return f'<transform name="to_world">{scale}<translate value="{point(to)}"/></transform>'
 
     target = [e - w for e, w in zip(camera["eye"], camera["w"])]
@@ -165,7 +171,7 @@ def mitsuba(scene):
 
 
 def enlarge(scene, by):
-    """Multiplies all places and lengths, but those of the camera's window."""
+    """Multiplies all positions and lengths, except those of the camera's window."""
     for thing in [scene["camera"], *scene["objects"]]:
         for key in ["eye", "center", "min", "max"]:
             if key in thing:
@@ -178,7 +184,8 @@ def enlarge(scene, by):
 
 
 def cloud(spheres):
-    """Many spheres as a file of Mitsuba's ellipsoids: center, a normal that is not used, logarithms of the radii, a rotation by nothing."""
+    """Returns spheres as a file of Mitsuba's ellipsoids: center, an unused normal, logarithms of
+    the radii, the identity rotation."""
     fields = "x y z nx ny nz scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()
     header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(spheres)}"]
     header += [f"property float {field}" for field in fields] + ["end_header", ""]
@@ -189,7 +196,7 @@ def cloud(spheres):
 
 
 def floor(thing, color, put):
-    """A square about the origin and rings of four rectangles each around it."""
+    """Yields a square about the origin, and rings of four rectangles each around it."""
     square = thing["square"]
     first, second = thing["colors"]
     inner = INNERMOST * square
@@ -204,8 +211,9 @@ def floor(thing, color, put):
         ]
         inner = outer
     for x0, z0, x1, z1 in parts:
-        # The pattern repeats each time that a coordinate of the rectangle passes a whole number; `color0` is where both are in the first half
-        # or both in the second. Turned to look up, the rectangle has its second coordinate against z, so that it begins with an odd square.
+        # The pattern repeats whenever a coordinate of the rectangle passes a whole number; `color0`
+        # is where both are in the first half or both in the second. Turned to face up, the
+        # rectangle's second coordinate is opposite to z, so that it begins with an odd square.
         half = [(x1 - x0) / 2, (z1 - z0) / 2]
         repeat = [side / square for side in half]
         yield (

@@ -5,7 +5,7 @@ use pinhole::{
     source::{Source, Sources},
 };
 
-/// Figure 9.9 at another size and with other samples.
+/// Returns figure 9.9 in this size and with these samples.
 pub fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     let text = include_str!("../../examples/figure_9_9.scn");
     let sources = Sources::new(Source::from_text("figure_9_9.scn", text));

@@ -1,5 +1,5 @@
-//! A picture sample by sample, as plainly as it can be: what culling is compared with, by tests and
-//! by benchmarks.
+//! Renders a picture sample by sample, as plainly as possible. Tests and benchmarks compare culling
+//! with it.
 
 use pinhole::{
     area::Area,
@@ -9,9 +9,9 @@ use pinhole::{
     tracer::World,
 };
 
-/// The light of a part of the picture.
+/// Renders a part of the picture.
 pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
-    /// So many points are placed at a time.
+    /// Number of points that are placed at a time.
     const CHUNK: u64 = 1 << 12;
     let palette = world.palette().iter();
     let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();

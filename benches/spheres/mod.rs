@@ -1,11 +1,11 @@
-//! The texts of many small spheres.
+//! Texts of scenes of many small spheres.
 
 use std::fmt::Write;
 
 use pinhole::sampling::CounterRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-/// How a block is laid out.
+/// Layout of a block.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
@@ -26,8 +26,8 @@ const COLORS: [&str; 8] = [
     "steelblue",
 ];
 
-/// A scene of so many spheres as somebody might write it, with names, comments, `let`s and
-/// expressions here and there: 80 bytes each.
+/// Returns a scene of `count` spheres as a person might write it, with some names, comments, `let`s
+/// and expressions: 80 bytes per sphere.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn spheres(count: usize, layout: Layout) -> String {
     let (open, between, close) = match layout {
@@ -80,9 +80,9 @@ pub fn spheres(count: usize, layout: Layout) -> String {
     text
 }
 
-/// A scene of so many spheres that together would cover the picture one and a half times, at
-/// distances from 5 to 50: of whatever number they are, some are seen, some are hidden, and a good
-/// fifth of the picture stays empty.
+/// Returns a scene of `count` spheres at distances from 5 to 50 that together would cover the
+/// picture one and a half times: for any count, some are visible, some are hidden, and over a fifth
+/// of the picture stays empty.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -109,8 +109,8 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
-/// A scene of so many spheres in a cube that stands upright in the picture: together they would
-/// cover it one and a half times.
+/// Returns a scene of `count` spheres in an upright cube in the picture: together they would cover
+/// it one and a half times.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -134,7 +134,7 @@ pub fn cube(count: usize) -> String {
     text
 }
 
-/// Numbers that are the same everywhere.
+/// Random numbers that are equal on all systems.
 pub struct Random(CounterRng);
 
 impl Random {

@@ -1,15 +1,15 @@
-//! `check`: the problems of scenes, and with `--fix` the way out of those that have one.
+//! `check`: reports the problems of scenes and, with `--fix`, applies their fixes.
 
 use std::path::Path;
 
 use super::{
     Status, Trouble,
-    args::{CheckArgs, Format},
+    args::{AnswerFormat, CheckArgs},
     each,
-    input::{Input, change, check_standard, is_standard},
+    input::{SceneInput, change, check_standard, is_standard},
     interrupt::Interrupt,
     output,
-    unified::unified_diff,
+    unified_diff::unified_diff,
 };
 use crate::{
     diagnostic::{self, Applicability, visible_line},
@@ -17,10 +17,10 @@ use crate::{
     source::Source,
 };
 
-/// Reports the problems of each scene in turn. The status is the gravest one.
+/// Reports the problems of each scene in turn. Returns the worst status.
 pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
-    let is_json = args.format.format == Format::Json;
+    let is_json = args.format.format == AnswerFormat::Json;
     if args.fix && is_json && args.scenes.iter().any(|path| is_standard(path)) {
         let hint = "the text of `-` goes to standard output itself";
         return Err(Trouble(format!(
@@ -39,19 +39,21 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 }
 
 fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
-    let input = match args.fix {
-        true => fixed(path, args, interrupt)?,
-        false => Input::read(path, &args.overrides)?,
+    let input = if args.fix {
+        fixed(path, args, interrupt)?
+    } else {
+        SceneInput::read(path, &args.overrides)?
     };
     report(&input, args.format.format)
 }
 
-/// Fixes the errors of a file, and says what was done.
-fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, Trouble> {
-    let (mut input, original) = Input::to_change(path, &args.overrides, "--fix")?;
-    let most = match args.unsafe_fixes {
-        true => Applicability::Unsafe,
-        false => Applicability::Safe,
+/// Applies the fixes of a file's errors, and reports which were applied.
+fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, Trouble> {
+    let (mut input, original) = SceneInput::to_change(path, &args.overrides, "--fix")?;
+    let most = if args.unsafe_fixes {
+        Applicability::Unsafe
+    } else {
+        Applicability::Safe
     };
     let fixed = scene::fix_all(&input.sources, most);
     match &original {
@@ -81,7 +83,7 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Input, 
     Ok(input)
 }
 
-/// What was not applied, and how it is had.
+/// Returns which fixes were not applied, and how to apply them.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {
@@ -114,17 +116,17 @@ fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     text
 }
 
-fn report(input: &Input, format: Format) -> Result<Status, Trouble> {
+fn report(input: &SceneInput, format: AnswerFormat) -> Result<Status, Trouble> {
     let reading = scene::read(&input.sources);
     match format {
-        Format::Human => {
+        AnswerFormat::Human => {
             output::to_people(&input.report(&reading));
             if reading.diagnostics.is_empty() && output::is_watched() {
                 let name = visible_line(input.sources.file.name());
                 output::to_people(&format!("{name}: ok\n"));
             }
         }
-        Format::Json => {
+        AnswerFormat::Json => {
             let lines = diagnostic::json_lines(&reading.diagnostics, &input.sources);
             output::to_programs(lines.as_bytes())?;
         }

@@ -1,18 +1,17 @@
-//! `diff`: two pictures, a picture and a scene's exact one, or the exact ones of two scenes.
+//! `diff`: compares two pictures, a picture with a scene's exact one, or the exact ones of two
+//! scenes.
 
-use std::{
-    fmt::Write,
-    path::Path,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::{fmt::Write, path::Path, sync::atomic::AtomicBool};
 
 use serde_json::{Map, Value, json};
 
 use super::{
     Status, Trouble,
-    args::{DiffArgs, Format, LargeArgs},
+    args::{AnswerFormat, DiffArgs, LargeArgs},
     exact_pictures::{self, EXACT_STEPS, is_scene},
-    input::{self, Compared, Input, Most, is_standard, shown, unreadable, unwritable},
+    input::{
+        self, FileBytes, IfNotPicture, SceneInput, is_standard, shown, unreadable, unwritable,
+    },
     interrupt::Interrupt,
     judge::{self, quoted},
     output, progress,
@@ -23,10 +22,10 @@ use crate::{
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
     grading::{Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
-    render::{Control, RenderError},
+    render::RenderError,
 };
 
-/// Compares.
+/// Compares the two arguments.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -35,9 +34,9 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if let Some(path) = &args.output {
         check_heat_map(path, args)?;
     }
-    let a = input::compared(&args.a, &args.large, Most::Start);
+    let a = input::read_picture_or(&args.a, &args.large, IfNotPicture::ReadStart);
     let a = match a.map_err(|error| unreadable(&args.a, &error))? {
-        Compared::Other(_) if is_scene(&args.a) && is_scene(&args.b) => {
+        FileBytes::Other(_) if is_scene(&args.a) && is_scene(&args.b) => {
             let cancel = interrupt.watch();
             return match exact_pictures::of_scenes(args, cancel)? {
                 None => Ok(Status::SceneErrors),
@@ -45,26 +44,27 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 Some(Ok([a, b])) => compare(args, [&a, &b], EXACT_STEPS, cancel),
             };
         }
-        Compared::Other(_) if is_scene(&args.a) => {
+        FileBytes::Other(_) if is_scene(&args.a) => {
             return Err(Trouble(format!(
                 "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
                 shown(&args.a)
             )));
         }
-        Compared::Picture(bytes) | Compared::Other(bytes) => bytes,
+        FileBytes::Picture(bytes) | FileBytes::Other(bytes) => bytes,
     };
     let jpeg = Jpeg::of(&a);
     let a = read(&args.a, &a, &args.large)?;
-    // A file that is named as a picture is one, however broken.
-    let most = match judge::is_named_as_picture(&args.b) {
-        true => Most::Start,
-        false => Most::Scene,
+    // A file with a picture's ending is read as a picture, even if it is damaged.
+    let is_named = judge::is_named_as_picture(&args.b);
+    let most = if is_named {
+        IfNotPicture::ReadStart
+    } else {
+        IfNotPicture::ReadScene
     };
-    let is_named = matches!(most, Most::Start);
-    let b = input::compared(&args.b, &args.large, most);
+    let b = input::read_picture_or(&args.b, &args.large, most);
     let (b, is_picture) = match b.map_err(|error| unreadable(&args.b, &error))? {
-        Compared::Picture(bytes) => (bytes, true),
-        Compared::Other(bytes) => (bytes, is_named),
+        FileBytes::Picture(bytes) => (bytes, true),
+        FileBytes::Other(bytes) => (bytes, is_named),
     };
     let cancel = interrupt.watch();
     let is_strict = args.strict || args.tolerance.is_some();
@@ -81,21 +81,14 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         return compare(args, [&a.film, &b.film], steps, cancel);
     }
 
-    let input = Input::of(&args.b, b, &args.overrides);
+    let input = SceneInput::of(&args.b, b, &args.overrides);
     let Some(scene) = input.scene().scene else {
         return Ok(Status::SceneErrors);
     };
     let part = judge::part(&a, &scene, args.crop)
         .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
-    let reference = progress::watched(part.pixels(), |done| {
-        let control = Control {
-            threads: None,
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
-        let reference = Reference::new(&scene, part, a.rounding, &control);
+    let reference = progress::rendering(part.pixels(), None, cancel, |control| {
+        let reference = Reference::new(&scene, part, a.rounding, control);
         reference.map(|reference| reference.with_effort(args.effort.effort))
     });
     let reference = match reference {
@@ -112,7 +105,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let is_equal = comparison.is_equal();
     let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
-    let report = Report {
+    let report = DiffReport {
         names: [&args.a, &args.b].map(|path| path.display().to_string()),
         sizes: [[part.width, part.height]; 2],
         comparison: Ok(comparison),
@@ -126,7 +119,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
-/// Compares two pictures that are given, or are of scenes.
+/// Compares two pictures, read or rendered, without a verdict.
 fn compare(
     args: &DiffArgs,
     films: [&Film; 2],
@@ -138,7 +131,7 @@ fn compare(
     let tolerance = Tolerance { steps, bounds };
     let comparison = film::compare(films[0], films[1], tolerance);
     let is_equal = comparison.as_ref().is_ok_and(Comparison::is_equal);
-    let report = Report {
+    let report = DiffReport {
         names: [&args.a, &args.b].map(|path| path.display().to_string()),
         sizes: films.map(|film| [film.width(), film.height()]),
         comparison,
@@ -152,13 +145,14 @@ fn compare(
 }
 
 fn status(is_accepted: bool) -> Status {
-    match is_accepted {
-        true => Status::Done,
-        false => Status::SceneErrors,
+    if is_accepted {
+        Status::Done
+    } else {
+        Status::SceneErrors
     }
 }
 
-/// Reads a picture, and warns of what its format does to colours.
+/// Reads a picture, and warns if its format changes colours.
 fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble> {
     let picture = judge::picture(bytes, large).map_err(|error| unreadable(path, &error))?;
     if let Some(warning) = picture.coding.warning() {
@@ -174,7 +168,7 @@ fn ended(error: RenderError) -> Result<Status, Trouble> {
     }
 }
 
-/// Whether the heat map may be written there, before the work and not after it.
+/// Checks before the work, and not after it, that the heat map can be written.
 fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     if !path
         .to_string_lossy()
@@ -190,7 +184,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
 }
 
-/// Refuses to write a heat map over what it compares.
+/// Rejects a heat map that would overwrite a file that is compared.
 fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
@@ -203,11 +197,12 @@ fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// What the colours of a heat map mean.
+/// Returns what the colours of a heat map mean.
 fn legend(is_equal: bool) -> &'static str {
-    match is_equal {
-        true => "black all over: nothing differs by more than the tolerance",
-        false => HEAT_LEGEND,
+    if is_equal {
+        "black all over: nothing differs by more than the tolerance"
+    } else {
+        HEAT_LEGEND
     }
 }
 
@@ -226,7 +221,7 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
-    // A link may lead to one of them by now.
+    // The path may have become a link to one of the two files.
     check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
@@ -237,22 +232,22 @@ fn write_heat_map(
     Ok(())
 }
 
-/// What is printed.
-struct Report {
+/// The result of a comparison, to be printed.
+struct DiffReport {
     names: [String; 2],
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// Where B is a scene.
+    /// `Some` if B is a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }
 
-impl Report {
-    fn print(&self, format: Format) -> Result<(), Trouble> {
+impl DiffReport {
+    fn print(&self, format: AnswerFormat) -> Result<(), Trouble> {
         match format {
-            Format::Human => output::answer(&self.human())?,
-            Format::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,
+            AnswerFormat::Human => output::answer(&self.human())?,
+            AnswerFormat::Json => output::to_programs(format!("{}\n", self.json()).as_bytes())?,
         }
         Ok(())
     }
@@ -359,7 +354,7 @@ impl Report {
     }
 }
 
-/// What programs read of a comparison, field by field.
+/// Returns the JSON fields of a comparison.
 pub fn json(
     [a, b]: [String; 2],
     sizes: [[u32; 2]; 2],
@@ -399,7 +394,7 @@ pub fn json(
         .collect()
 }
 
-/// What is wrong, mistake by mistake and object by object.
+/// Writes the mistakes, then which objects are right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -436,10 +431,10 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// What is right and what is not: all objects, or, where they are many, some of those that are not
-/// right.
+/// Returns which objects are right and which are not. If there are many, lists only some that are
+/// not right.
 fn objects(verdict: &Verdict) -> String {
-    /// More are not listed.
+    /// Maximum number of objects that are listed.
     const MOST: usize = 12;
     let all = &verdict.objects;
     let is_all = all.len() <= MOST;
@@ -454,9 +449,10 @@ fn objects(verdict: &Verdict) -> String {
     if !is_all {
         parts.push(format!("{} right", grouped(right as u64)));
     }
-    parts.push(match verdict.is_background_right {
-        true => "background right".to_owned(),
-        false => "background wrong".to_owned(),
+    parts.push(if verdict.is_background_right {
+        "background right".to_owned()
+    } else {
+        "background wrong".to_owned()
     });
     parts.join(", ")
 }
@@ -472,7 +468,7 @@ fn state(object: &ObjectVerdict) -> String {
     }
 }
 
-/// A share in per cent: few digits, but neither 0 nor 100 unless it is that.
+/// Formats a share in per cent with few digits, and as 0 or 100 only if it is exactly that.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded = (10.0 * percent).round() / 10.0;
@@ -486,14 +482,15 @@ fn percent(share: f64) -> String {
 }
 
 fn round(steps: f64) -> String {
-    match steps < 0.1 {
-        true => short(significant(steps, 3)),
-        false => short((100.0 * steps).round() / 100.0),
+    if steps < 0.1 {
+        short(significant(steps, 3))
+    } else {
+        short((100.0 * steps).round() / 100.0)
     }
 }
 
-/// Steps without what decoding and encoding a byte leave at its end: some roundings of numbers up
-/// to 255.
+/// Rounds steps to 1e−9, which removes the rounding errors of decoding and encoding a byte (numbers
+/// up to 255).
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

@@ -1,35 +1,32 @@
-//! The exact pictures of two scenes that `diff` compares.
+//! Renders the exact pictures of two scenes, which `diff` compares.
 
-use std::{
-    path::Path,
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::{path::Path, sync::atomic::AtomicBool};
 
 use super::{
     Trouble,
     args::DiffArgs,
-    input::{Input, shown},
+    input::{SceneInput, shown},
     progress,
 };
 use crate::{
     area::Area,
     film::Film,
-    render::{Control, RenderError, render_exact},
+    render::{RenderError, render_exact},
     scene::Scene,
     tracer::World,
 };
 
-/// Steps of 8-bit sRGB that two exact pictures of one thing may differ by. A bound of 10^−9 of the
-/// light is at most 3.3·10^−6 steps for each of them.
+/// Tolerance between two exact pictures of equal scenes, in steps of 8-bit sRGB. Each picture's
+/// bound of 10^−9 in linear light is at most 3.3·10^−6 steps.
 pub const EXACT_STEPS: f64 = 1e-4;
 
-/// Whether a file is named as a scene.
+/// Whether a path has the ending of scenes.
 pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
 }
 
-/// The pictures, or why there are none: what is wrong with the arguments, or with the work; `None`
-/// if a scene has errors, which are reported.
+/// Renders both pictures. The outer error is about the arguments, the inner one about rendering;
+/// `None` if a scene has errors, which are reported.
 pub fn of_scenes(
     args: &DiffArgs,
     cancel: &AtomicBool,
@@ -38,9 +35,9 @@ pub fn of_scenes(
         let message = "`--crop` says which part of a scene a picture shows, and these are scenes";
         return Err(Trouble(message.to_owned()));
     }
-    let a = Input::read(&args.a, &args.overrides)?;
-    let b = Input::read(&args.b, &args.overrides)?;
-    // Both report their mistakes.
+    let a = SceneInput::read(&args.a, &args.overrides)?;
+    let b = SceneInput::read(&args.b, &args.overrides)?;
+    // Both scenes are read before returning, so that the errors of both are reported.
     let (Some(a), Some(b)) = (a.scene().scene, b.scene().scene) else {
         return Ok(None);
     };
@@ -53,17 +50,11 @@ pub fn of_scenes(
         )));
     }
     let whole = Area::whole(sizes[0][0], sizes[0][1]);
-    Ok(Some(progress::watched(2 * whole.pixels(), |done| {
-        let control = Control {
-            threads: None,
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
+    let total = 2 * whole.pixels();
+    Ok(Some(progress::rendering(total, None, cancel, |control| {
         let film = |scene: &Scene| -> Result<Film, RenderError> {
             let world = World::new_unless(scene, cancel)?;
-            Ok(render_exact(&world, whole, &control)?.film)
+            Ok(render_exact(&world, whole, control)?.film)
         };
         Ok([film(&a)?, film(&b)?])
     })))

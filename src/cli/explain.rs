@@ -1,8 +1,8 @@
-//! `explain`: the page of a diagnostic code or of a word of the language, the reference, or the
-//! list of all codes.
+//! `explain`: prints the page of a diagnostic code or of a word of the language, the reference, or
+//! the list of all codes.
 //!
-//! The answer is what was asked for, and is to be piped into a pager: so it goes to standard
-//! output, as the manual does, as Markdown unless a terminal shows it.
+//! The page goes to standard output, as the manual does, since it may be piped into a pager: as
+//! Markdown, unless standard output is a terminal.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -14,7 +14,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Longer lines are hard to read, however wide the terminal is.
+/// Maximum width of a line, in columns: longer lines are hard to read, however wide the terminal
+/// is.
 const WIDEST: usize = 90;
 
 /// Prints the page, or the list.
@@ -38,7 +39,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     Ok(Status::Done)
 }
 
-/// How headings stand out.
+/// Style of headings.
 #[derive(Clone, Copy)]
 enum Headings {
     Plain,
@@ -46,12 +47,9 @@ enum Headings {
 }
 
 impl Headings {
-    /// Bold is a colour, as far as a terminal is concerned.
+    /// Returns bold headings if the terminal has colours: the two come together.
     fn of(style: Style) -> Self {
-        match style.color {
-            true => Self::Bold,
-            false => Self::Plain,
-        }
+        if style.color { Self::Bold } else { Self::Plain }
     }
 
     fn heading(self, words: &str) -> String {
@@ -62,7 +60,7 @@ impl Headings {
     }
 }
 
-/// The page of a code or a word.
+/// Returns the page of a code or a word.
 fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let trimmed = word.trim();
     if trimmed.is_empty() {
@@ -129,7 +127,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
-/// All codes with their titles, by subject.
+/// Returns all codes with their titles, by subject.
 fn list(headings: Headings) -> String {
     let width = explain::pages().map(|page| page.code.len()).max();
     let width = width.unwrap_or_default();
@@ -147,12 +145,12 @@ fn list(headings: Headings) -> String {
     text
 }
 
-/// A page for a terminal: scenes indented, and lines that fit.
+/// Lays out a page for a terminal: scenes are indented, and lines wrapped.
 fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
-    // The empty line after the last one ends its paragraph.
+    // The empty line that is added at the end closes the last paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
     let lines = page.lines().map(without_targets).collect::<Vec<_>>();
     for line in lines.iter().map(String::as_str).chain([""]) {
@@ -187,7 +185,7 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     text
 }
 
-/// A line without the targets of its links: a terminal cannot follow them.
+/// Removes the targets of a line's links, as a terminal cannot follow them.
 fn without_targets(line: &str) -> String {
     let link = |rest: &'_ str| {
         let at = rest.find("](")?;
@@ -204,7 +202,7 @@ fn without_targets(line: &str) -> String {
     text + rest
 }
 
-/// The cells of a row of a table in Markdown; a sign `\\|` in a cell is no border.
+/// Splits a row of a Markdown table into cells; an escaped `\\|` separates none.
 fn cells(line: &str) -> Vec<&str> {
     let inner = line.trim().trim_start_matches('|');
     let inner = inner.strip_suffix('|').unwrap_or(inner);
@@ -221,7 +219,7 @@ fn cells(line: &str) -> Vec<&str> {
     cells
 }
 
-/// A table: in columns where they fit, otherwise each row a paragraph.
+/// Appends a table: in columns if they fit, otherwise with each row as a paragraph.
 fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     let is_rule = |row: &&Vec<&str>| {
         row.iter()
@@ -245,13 +243,13 @@ fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
                 .collect();
             let _ = writeln!(text, "{}", padded.join("  ").trim_end());
         } else {
-            let told = row.iter().filter(|cell| !cell.is_empty());
-            push_wrapped(text, &Vec::from_iter(told.copied()).join(" · "), width);
+            let texts = row.iter().filter(|cell| !cell.is_empty());
+            push_wrapped(text, &Vec::from_iter(texts.copied()).join(" · "), width);
         }
     }
 }
 
-/// A paragraph in lines that fit. An item of a list goes on below its first word.
+/// Appends a wrapped paragraph. Further lines of a list's item start below its first word.
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
     let indent = if paragraph.starts_with("- ") {
         "  "
@@ -337,11 +335,11 @@ mod tests {
             let found = page(heading).unwrap();
             assert!(found.starts_with(&format!("## {heading}\n")), "{heading}");
         }
-        // A word of the language means itself, and not what others call so.
+        // A word of the language explains itself, even if other programs use it for something else.
         for (name, meant) in explain::OTHER_NAMES {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
-                // The lines that answer, and no others.
+                // Only the lines that answer are shown.
                 Some((_, words)) => {
                     let page = page(name).unwrap();
                     let lines: Vec<&str> = page.lines().collect();

@@ -1,46 +1,44 @@
-//! `fmt`: the canonical layout of scenes.
+//! `fmt`: lays scenes out canonically.
 
 use std::path::Path;
 
 use super::{
     Status, Trouble,
     args::{FmtArgs, Overrides},
-    difference::difference,
     each,
-    input::{Input, change, check_standard},
+    input::{SceneInput, change, check_standard},
     interrupt::Interrupt,
+    layout_diff::layout_diff,
     output,
 };
-use crate::{
-    diagnostic::Report,
-    files::Original,
-    format::format,
-    source::{Source, Sources},
-};
+use crate::{diagnostic::Report, format::format, source::Sources};
 
-/// Lays out each scene in turn, or says what would change. The status is the gravest one.
+/// Lays out each scene in turn, or prints what would change. Returns the worst status.
 pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
-    let act = if args.check { compare } else { write };
     Ok(each(&args.scenes, interrupt, |path| {
-        one(path, act, interrupt)
+        one(path, args, interrupt)
     }))
 }
 
-/// Where a text comes from, unless it is standard input, and what was there.
-type Origin<'a> = Option<(&'a Path, &'a Original)>;
-
-/// What is done with a text and its layout; a long write ends when it is interrupted.
-type Act = fn(Origin, &Source, &str, &Interrupt) -> Result<Status, Trouble>;
-
-fn one(path: &Path, act: Act, interrupt: &Interrupt) -> Result<Status, Trouble> {
+fn one(path: &Path, args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let no_overrides = Overrides { sets: Vec::new() };
-    let (input, original) = Input::to_change(path, &no_overrides, "fmt")?;
+    let (input, original) = SceneInput::to_change(path, &no_overrides, "fmt")?;
     let source = &input.sources.file;
     match format(source) {
+        Ok(formatted) if formatted == source.text() && (args.check || original.is_some()) => {
+            Ok(Status::Done)
+        }
+        Ok(formatted) if args.check => {
+            output::to_people(&layout_diff(source, &formatted));
+            Ok(Status::SceneErrors)
+        }
         Ok(formatted) => {
-            let origin = original.as_ref().map(|original| (path, original));
-            act(origin, source, &formatted, interrupt)
+            match &original {
+                Some(original) => change(path, original, &formatted, interrupt)?,
+                None => output::to_programs(formatted.as_bytes())?,
+            }
+            Ok(Status::Done)
         }
         Err(mistakes) => {
             let sources = Sources::new(source.clone());
@@ -48,30 +46,4 @@ fn one(path: &Path, act: Act, interrupt: &Interrupt) -> Result<Status, Trouble> 
             Ok(Status::SceneErrors)
         }
     }
-}
-
-/// Says what would change.
-fn compare(_: Origin, source: &Source, formatted: &str, _: &Interrupt) -> Result<Status, Trouble> {
-    if formatted == source.text() {
-        return Ok(Status::Done);
-    }
-    output::to_people(&difference(source, formatted));
-    Ok(Status::SceneErrors)
-}
-
-/// Writes the layout to where the text came from.
-fn write(
-    origin: Origin,
-    source: &Source,
-    formatted: &str,
-    interrupt: &Interrupt,
-) -> Result<Status, Trouble> {
-    match origin {
-        None => output::to_programs(formatted.as_bytes())?,
-        Some((path, original)) if formatted != source.text() => {
-            change(path, original, formatted, interrupt)?;
-        }
-        Some(_) => {}
-    }
-    Ok(Status::Done)
 }

@@ -1,5 +1,4 @@
-//! What `--help` says of each command after its options: examples, the JSON that it prints, its
-//! exit status.
+//! The end of each command's `--help`, after the options: examples, JSON output, exit status.
 
 pub const EXAMPLES: &str = "\
 Examples:

@@ -1,4 +1,4 @@
-//! Scenes from files, from standard input and from pictures.
+//! Reads scenes from files, from standard input and from pictures.
 
 use std::{
     fs,
@@ -21,32 +21,34 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// A scene file with more bytes than this is not read: it is not one.
+/// Maximum length of a scene's file, in bytes. A longer file is not a scene.
 const SCENE_LIMIT: u64 = 256 << 20;
 
-/// So much of a picture is read: more than enough for what may stand before its pixels.
+/// Number of bytes of a picture that are read for the scene in it: more than enough for what may
+/// precede its pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// So many bytes of a file say whether it is a picture, also after a program's other words.
+/// Number of bytes at the start of a file that tell whether it is a picture, even if lines that a
+/// program printed precede it.
 const START: u64 = 1 << 16;
 
-/// What a scene is read from.
-pub struct Input {
-    /// The scene's text and the overrides, those that a picture carries before those of the
+/// A scene that was read.
+pub struct SceneInput {
+    /// The scene's text and its overrides: first those that a picture carries, then those of the
     /// command line.
     pub sources: Sources,
-    /// Whether it is a picture that carries the scene.
+    /// Whether the scene was read from a picture that carries it.
     pub is_picture: bool,
-    /// The crop that the picture carries.
+    /// The crop that the picture carries, if any.
     pub crop: Option<Area>,
 }
 
-/// Whether SCENE or FILE is `-`.
+/// Whether the argument is `-`, which stands for standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses to read standard input twice.
+/// Rejects arguments that would read standard input twice.
 pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
     match paths.iter().filter(|path| is_standard(path)).count() {
         0 | 1 => Ok(()),
@@ -56,16 +58,16 @@ pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
     }
 }
 
-impl Input {
-    /// Reads what SCENE names.
+impl SceneInput {
+    /// Reads the scene that the argument SCENE names.
     pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
         let bytes = argument(path).and_then(limited);
         let bytes = bytes.map_err(|error| unreadable(path, &error))?;
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a text that is to be written back, and what it was; `command` says what is done with
-    /// it. Of standard input there is nothing to write back to.
+    /// Reads a text that is to be written back, and the original of its file; `None` for standard
+    /// input. `command` names the command in messages.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -74,7 +76,7 @@ impl Input {
         let (input, original) = if is_standard(path) {
             (Self::read(path, overrides)?, None)
         } else {
-            // What is written into a pipe comes back to nobody.
+            // Pipes are rejected: what is written into one does not change what was read.
             let original = Original::read(path, bytes).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidInput => {
                     let hint = format!("{command} takes files, or standard input as `-`");
@@ -86,13 +88,13 @@ impl Input {
             let bytes = original.bytes().unwrap_or_default().to_owned();
             (Self::of_bytes(path, bytes, overrides)?, Some(original))
         };
-        match input.is_picture {
-            true => Err(Trouble(format!(
+        if input.is_picture {
+            return Err(Trouble(format!(
                 "{} is a picture; {command} takes the scene's text",
                 shown(path)
-            ))),
-            false => Ok((input, original)),
+            )));
         }
+        Ok((input, original))
     }
 
     fn of_bytes(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Result<Self, Trouble> {
@@ -107,7 +109,7 @@ impl Input {
         Ok(input)
     }
 
-    /// What the bytes of a scene's file say.
+    /// Makes the input of the bytes of a scene's file.
     pub fn of(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Self {
         let mut input = Self::from_text(path.display().to_string(), bytes);
         input.add(overrides);
@@ -123,7 +125,8 @@ impl Input {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // Numbered as on the command line, whatever a picture carries.
+        // The numbers count the arguments of the command line, without the overrides that a picture
+        // carries.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);
@@ -142,8 +145,9 @@ impl Input {
         }
     }
 
-    /// Reads the scene, and reports its problems to people. That objects lie outside of the picture
-    /// is said by commands for the text: for others, such as each frame of a ride, it may be meant.
+    /// Reads the scene, and reports its problems to people. The warning about objects outside of
+    /// the picture is left to the commands about the text: in others, such as one frame of a ride,
+    /// it may be intended.
     pub fn scene(&self) -> Reading {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -152,12 +156,12 @@ impl Input {
         reading
     }
 
-    /// The problems of the scene, for people.
+    /// Returns the report on the scene's problems, for people.
     pub fn report(&self, reading: &Reading) -> String {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// The scene's text with the overrides, for a picture to carry.
+    /// Returns the scene's text with the overrides, for a picture to carry.
     pub fn recipe(&self, crop: Option<Area>) -> Recipe {
         let sets = self.sources.sets.iter();
         Recipe {
@@ -168,12 +172,12 @@ impl Input {
     }
 }
 
-/// What SCENE or FILE is called in a message: on one line, whatever its name holds.
+/// Returns the name of a path in messages: on one line, with control characters made visible.
 pub fn shown(path: &Path) -> String {
     visible_line(&path.display().to_string()).into_owned()
 }
 
-/// Names the copies of a file that were left by processes that were killed while they wrote it.
+/// Warns of copies of a file that were left by processes that were killed while they wrote it.
 pub fn name_copies(path: &Path) {
     for copy in files::copies_left(path) {
         let (copy, path) = (shown(&copy), shown(path));
@@ -183,22 +187,22 @@ pub fn name_copies(path: &Path) {
     }
 }
 
-/// Says that a path cannot be read.
+/// Returns the error that a path cannot be read.
 pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
-/// Says that a path cannot be written to.
+/// Returns the error that a path cannot be written to.
 pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// Says why a folder does not get what was made for it.
+/// Returns the error that files cannot be written into an output folder.
 pub fn not_written(why: NotWritten) -> Trouble {
     unwritable(&why.path, &why.error)
 }
 
-/// Changes the text of a file, if it still is what was read.
+/// Replaces the text of a file, if it is still what was read.
 pub fn change(
     path: &Path,
     original: &Original,
@@ -212,7 +216,7 @@ pub fn change(
     .map_err(|error| unwritable(path, &error))
 }
 
-/// Whether two paths lead to one file.
+/// Whether two paths lead to the same existing file.
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     match (fs::canonicalize(a), fs::canonicalize(b)) {
         (Ok(a), Ok(b)) => a == b,
@@ -220,25 +224,30 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// What a file of a comparison is.
-pub enum Compared {
-    /// A picture: the whole of it.
+/// The bytes of a file in a comparison.
+pub enum FileBytes {
+    /// All bytes of a picture.
     Picture(Vec<u8>),
-    /// Something else: as much as a scene may have.
+    /// Bytes of another file, as many as were asked for.
     Other(Vec<u8>),
 }
 
-/// Reads a picture, or as much of another file as `most`. Its first bytes say which it is, before
-/// the others are read.
-pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compared> {
+/// Reads a picture, or as much of another file as `most` says. The first bytes decide which it is,
+/// before the rest is read.
+pub fn read_picture_or(
+    path: &Path,
+    large: &LargeArgs,
+    if_not_picture: IfNotPicture,
+) -> io::Result<FileBytes> {
     let (mut from, length) = opened(path)?;
     let start = files::read_from(from.by_ref().take(START), START)?;
     let is_picture = film::is_picture(&start)
-        || matches!(most, Most::Start) && film::is_picture_behind_lines(&start);
-    let limit = match (is_picture, most) {
+        || matches!(if_not_picture, IfNotPicture::ReadStart)
+            && film::is_picture_behind_lines(&start);
+    let limit = match (is_picture, if_not_picture) {
         (true, _) => large.file_limit(),
-        (false, Most::Scene) => SCENE_LIMIT,
-        (false, Most::Start) => return Ok(Compared::Other(start)),
+        (false, IfNotPicture::ReadScene) => SCENE_LIMIT,
+        (false, IfNotPicture::ReadStart) => return Ok(FileBytes::Other(start)),
     };
     let too_large = |error: io::Error| match (error.kind(), is_picture) {
         (io::ErrorKind::FileTooLarge, true) => io::Error::other(large.hint("bytes", limit)),
@@ -250,32 +259,33 @@ pub fn compared(path: &Path, large: &LargeArgs, most: Most) -> io::Result<Compar
     }
     let whole = io::Cursor::new(start).chain(from);
     let bytes = files::read_from(whole, limit).map_err(too_large)?;
-    Ok(match is_picture {
-        true => Compared::Picture(bytes),
-        false => Compared::Other(bytes),
+    Ok(if is_picture {
+        FileBytes::Picture(bytes)
+    } else {
+        FileBytes::Other(bytes)
     })
 }
 
-/// What is read of a file that is no picture.
-pub enum Most {
-    /// What a scene may have.
-    Scene,
-    /// What says that it is none.
-    Start,
+/// How much is read of a file that is not a picture.
+pub enum IfNotPicture {
+    /// All of it, up to the maximum length of a scene.
+    ReadScene,
+    /// The first bytes only, which show that it is not a picture.
+    ReadStart,
 }
 
-/// The bytes of a scene's file, or as much of a picture as can matter. Whatever is no file is
-/// refused.
+/// Reads the bytes of a scene's file, or the start of a picture, which carries the scene. Rejects
+/// anything that is not a regular file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }
 
-/// What SCENE or PICTURE names, to be read.
+/// Opens the argument SCENE or PICTURE for reading.
 fn argument(path: &Path) -> io::Result<Box<dyn Read>> {
     opened(path).map(|(from, _)| from)
 }
 
-/// The same, with its length if it is a file.
+/// Opens an argument for reading, with its length if it is a regular file.
 fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     if is_standard(path) {
         return Ok((Box::new(io::stdin().lock()), None));
@@ -285,18 +295,18 @@ fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     Ok((Box::new(file), length.map(|found| found.len())))
 }
 
-/// Reads a scene, or as much of a picture as can matter.
+/// Reads a scene, or the start of a picture, which carries the scene.
 fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
     let start = files::read_from(from.by_ref().take(START), START)?;
     let is_picture = start.starts_with(&SIGNATURE);
     let whole = io::Cursor::new(start).chain(from);
-    match is_picture {
-        true => files::read_from(whole.take(PICTURE_LIMIT), PICTURE_LIMIT),
-        false => files::read_from(whole, SCENE_LIMIT).map_err(|error| match error.kind() {
-            io::ErrorKind::FileTooLarge => no_scene(),
-            _ => error,
-        }),
+    if is_picture {
+        return files::read_from(whole.take(PICTURE_LIMIT), PICTURE_LIMIT);
     }
+    files::read_from(whole, SCENE_LIMIT).map_err(|error| match error.kind() {
+        io::ErrorKind::FileTooLarge => no_scene(),
+        _ => error,
+    })
 }
 
 fn no_scene() -> io::Error {
@@ -307,7 +317,7 @@ fn no_scene() -> io::Error {
 mod tests {
     use super::*;
 
-    /// Fails as a disk does.
+    /// A reader that fails as a disk does.
     struct Broken;
 
     impl Read for Broken {

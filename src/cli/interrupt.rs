@@ -1,4 +1,4 @@
-//! Ctrl-C.
+//! Handling of Ctrl-C.
 
 use std::{
     process,
@@ -11,27 +11,28 @@ use std::{
 
 use super::{Status, Trouble};
 
-/// Whether the user has pressed Ctrl-C (or the system wants the process to end).
+/// Whether the user has pressed Ctrl-C, or the system has asked the process to end.
 ///
-/// Ends the process at once unless something has to be put away first; then it says so to whoever
-/// does. Pressed again after that has had its time, it ends the process in any case.
+/// Ctrl-C ends the process at once, unless a command watches the flag because it has to clean up
+/// first. Pressed again after the grace period, it ends the process in any case.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 
 #[derive(Default)]
 struct Flags {
-    /// Somebody looks at `pressed`.
+    /// Whether a command watches `pressed`.
     watched: AtomicBool,
     pressed: AtomicBool,
     first: OnceLock<Instant>,
     then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
-/// What has to be put away (a temporary file, threads) takes a small part of this.
+/// Grace period after the first Ctrl-C. Cleaning up (a temporary file, threads) takes a small part
+/// of it.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Starts to listen.
+    /// Installs the handler.
     pub fn listen() -> Result<Self, Trouble> {
         let flags = Arc::new(Flags::default());
         let interrupt = Self(Arc::clone(&flags));
@@ -49,17 +50,18 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// The flag that Ctrl-C sets; from now on somebody looks at it.
+    /// Returns the flag that Ctrl-C sets. From now on, Ctrl-C relies on the caller to end the
+    /// command.
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
     }
 
-    /// Has this done when Ctrl-C is pressed, whereupon somebody ends the process.
+    /// Calls `what` when Ctrl-C is pressed; it must make the command end.
     #[cfg(feature = "preview")]
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
-        // Pressed before, and nobody was told.
+        // Ctrl-C may have been pressed before the call was registered.
         if self.watch().load(Ordering::SeqCst)
             && let Some(then) = self.0.then.get()
         {

@@ -1,4 +1,4 @@
-//! Pictures that are judged by a scene: what `diff` and `grade` have in common.
+//! Pictures that are compared with a scene: the common part of `diff` and `grade`.
 
 use std::path::Path;
 
@@ -9,11 +9,11 @@ use crate::{
     scene::Scene,
 };
 
-/// Reads a picture, unless it is larger than is wanted.
+/// Decodes a picture, unless it is larger than the arguments allow.
 ///
 /// # Errors
 ///
-/// Why it cannot be read.
+/// The picture cannot be decoded; the message says why.
 pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     film::read_picture_up_to(bytes, large.decoded_limit()).map_err(|error| match error {
         Unreadable::Large { .. } if !large.large => format!("{error}: `--large` reads it"),
@@ -21,26 +21,24 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// The part of a scene that a picture shows: the crop that it carries, the one that is named and
-/// has its size, or all of the scene.
+/// Returns the part of a scene that a picture shows: the crop that it carries, the crop on the
+/// command line if the sizes agree, or the whole scene.
 ///
 /// # Errors
 ///
-/// Their sizes differ, in words that follow the picture's name.
+/// The sizes differ. The message continues a sentence that begins with the picture's name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let has_size = |crop: &Area| [crop.width, crop.height] == [width, height];
-    match picture.crop.or(named.filter(has_size)) {
-        Some(crop) if [crop.width, crop.height] == [width, height] => match crop.lies_in(whole) {
-            true => Ok(crop),
-            false => Err(format!(
-                "is the part {crop} of a picture, which does not lie within the scene's {} × {} pixels",
-                whole.width, whole.height
-            )),
-        },
-        _ if [whole.width, whole.height] == [width, height] => Ok(whole),
-        _ => Err(format!(
+    let has_size = |area: &Area| [area.width, area.height] == [width, height];
+    match picture.crop.or(named.filter(has_size)).filter(has_size) {
+        Some(crop) if crop.lies_in(whole) => Ok(crop),
+        Some(crop) => Err(format!(
+            "is the part {crop} of a picture, which does not lie within the scene's {} × {} pixels",
+            whole.width, whole.height
+        )),
+        None if has_size(&whole) => Ok(whole),
+        None => Err(format!(
             "has {width} × {height} pixels, and the scene's picture {} × {}{}",
             whole.width,
             whole.height,
@@ -49,7 +47,7 @@ pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Are
     }
 }
 
-/// What makes a picture of another size comparable.
+/// Returns advice on how to compare a picture of another size.
 fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     let [w, h] = [whole.width, whole.height];
     let is_scaled = u64::from(width) * u64::from(h) == u64::from(height) * u64::from(w);
@@ -68,7 +66,7 @@ fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     }
 }
 
-/// Whether a file's ending is that of a picture.
+/// Whether a path has an ending of pictures.
 pub fn is_named_as_picture(path: &Path) -> bool {
     const ENDINGS: [&str; 14] = [
         "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp",
@@ -78,7 +76,7 @@ pub fn is_named_as_picture(path: &Path) -> bool {
         .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }
 
-/// A `--set` argument as a shell takes it.
+/// Quotes a `--set` argument for a shell, if necessary.
 pub fn quoted(argument: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-+".contains(c);
     match argument.split_once('=') {

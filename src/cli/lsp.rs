@@ -1,4 +1,4 @@
-//! `lsp`: the language server, on standard input and output.
+//! `lsp`: runs the language server on standard input and output.
 
 use std::io;
 
@@ -8,7 +8,7 @@ use crate::{
     lsp::{Server, stdio},
 };
 
-/// Talks to an editor until it ends.
+/// Serves an editor until the conversation ends.
 pub fn run() -> Result<Status, Trouble> {
     let log = |message: &str| output::to_people(&format!("{}\n", visible_line(message)));
     let server = Server::new(log);

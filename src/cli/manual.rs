@@ -1,4 +1,4 @@
-//! `completions` and `man`: what the definitions of the arguments say, in other forms.
+//! `completions` and `man`: print the definitions of the arguments in other forms.
 
 use std::io::{self, Write};
 
@@ -16,7 +16,7 @@ pub fn completions(shell: Shell) -> Result<Status, Trouble> {
     Ok(Status::Done)
 }
 
-/// Prints the manual page: that of `pinhole`, with a section for each command.
+/// Prints the manual page of `pinhole`, with a section for each command.
 pub fn man() -> Result<Status, Trouble> {
     let mut page = Vec::new();
     write(&mut page).map_err(|error| Trouble(format!("cannot write the manual: {error}")))?;
@@ -41,7 +41,7 @@ fn write(page: &mut Vec<u8>) -> io::Result<()> {
     whole.render_version_section(page)
 }
 
-/// A section for one command; what are sections of its own page are parts of it here.
+/// Writes the section of one command. The sections of its own page become subsections.
 fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     let own = Man::new(command.clone());
     let mut parts = Vec::new();
@@ -60,7 +60,7 @@ fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     write!(page, ".SH \"PINHOLE {name}\"\n{parts}")
 }
 
-/// The text after the options, line by line as it stands there.
+/// Returns the text after the options, with its line breaks kept.
 fn examples(man: &Man) -> io::Result<String> {
     let mut extra = Vec::new();
     man.render_extra_section(&mut extra)?;

@@ -1,4 +1,4 @@
-//! The command line: reads, calls, prints. A command is a file.
+//! The command line: reads input, calls the library, prints. Each command has a file.
 //!
 //! Pictures and JSON go to standard output, everything for people to standard error. The exit
 //! status is 0 when it is done, warnings or not, 1 when the scene has errors, pictures differ or
@@ -7,7 +7,6 @@
 mod args;
 mod check;
 mod diff;
-mod difference;
 mod exact_pictures;
 mod explain;
 mod fmt;
@@ -17,6 +16,7 @@ mod input;
 mod inspect;
 mod interrupt;
 mod judge;
+mod layout_diff;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod manual;
@@ -35,7 +35,7 @@ mod speed;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
-mod unified;
+mod unified_diff;
 #[cfg(feature = "preview")]
 mod watch;
 
@@ -60,7 +60,7 @@ use crate::{diagnostic::visible_line, threads};
 pub fn run() -> ExitCode {
     let args = match Args::try_parse() {
         Ok(args) => args,
-        Err(answer) => return tell(&visible_answer().unwrap_or(answer)),
+        Err(answer) => return print_answer(&visible_answer().unwrap_or(answer)),
     };
     if let Some(wanted) = args.command.threads() {
         threads::limit(wanted);
@@ -95,18 +95,19 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// The answer to the arguments as they may be shown, if that is another one: it repeats some of
-/// them.
+/// Returns clap's answer to the arguments with control characters made visible, as the answer
+/// repeats some arguments; `None` if these parse.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()
 }
 
-/// Tells help or the version, or what is wrong with the arguments.
-fn tell(answer: &clap::Error) -> ExitCode {
-    let status = match answer.use_stderr() {
-        true => Status::Trouble,
-        false => Status::Done,
+/// Prints help, the version, or what is wrong with the arguments.
+fn print_answer(answer: &clap::Error) -> ExitCode {
+    let status = if answer.use_stderr() {
+        Status::Trouble
+    } else {
+        Status::Done
     };
     match answer.print() {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
@@ -117,7 +118,7 @@ fn tell(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Does the same with each scene in turn. The status is the gravest one.
+/// Runs `one` on each scene in turn. Returns the worst status.
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,
@@ -137,17 +138,17 @@ fn each(
     status
 }
 
-/// How a command ends.
+/// Exit status of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Status {
     /// Done, warnings or not.
     Done = 0,
-    /// The scene has errors, the pictures differ, the layout would change, an editor left without a
-    /// word: it ran, and the answer is no.
+    /// The command ran, and the answer is no: the scene has errors, the pictures differ, the layout
+    /// would change, or an editor disconnected without `exit`.
     SceneErrors = 1,
-    /// Usage, files, memory.
+    /// Wrong usage, a file that cannot be read or written, or too little memory.
     Trouble = 2,
-    /// Ctrl-C.
+    /// Ended by Ctrl-C.
     Interrupted = 130,
 }
 
@@ -157,7 +158,7 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// What kept a command from its work, in words for people.
+/// Error that ended a command, in words for people.
 #[derive(Debug)]
 struct Trouble(String);
 

@@ -1,4 +1,4 @@
-//! `new`: the smallest scene that shows something, in a file of its own.
+//! `new`: writes the smallest scene that shows something to a new file.
 
 use super::{
     Status, Trouble,
@@ -12,7 +12,7 @@ use crate::{
     scene,
 };
 
-/// Writes the scene, unless the file is there already.
+/// Writes the scene, unless the file exists already.
 pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.file) {
         output::to_programs(scene::SMALLEST.as_bytes())?;

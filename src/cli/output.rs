@@ -1,4 +1,4 @@
-//! Standard output for programs, standard error for people.
+//! Writes to standard output for programs, and to standard error for people.
 
 use std::{
     borrow::Cow,
@@ -11,58 +11,59 @@ use terminal_size::{Width, terminal_size_of};
 use super::Trouble;
 use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
-/// Writes a text to standard output: to programs as it is, and to a terminal so that nothing of it,
-/// such as what a scene holds, can act there.
+/// Writes a text to standard output. For a terminal, control characters are made visible, so that
+/// nothing in a scene can act there.
 pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
-    match io::stdout().is_terminal() {
-        true => page(&visible(&String::from_utf8_lossy(text))),
-        false => write(text),
+    if io::stdout().is_terminal() {
+        page(&visible(&String::from_utf8_lossy(text)))
+    } else {
+        write(text)
     }
 }
 
-/// Writes what may be long as it is made, in the manner of [`to_programs`].
+/// Writes a text that may be long while it is produced; otherwise as [`to_programs`].
 pub fn stream_to_programs(
     write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Trouble> {
     if io::stdout().is_terminal() {
         let mut text = Vec::new();
         return write_to(&mut text)
-            .map_err(unwritten)
+            .map_err(stdout_error)
             .and_then(|()| to_programs(&text));
     }
-    let mut out = BufWriter::with_capacity(1 << 16, Programs::new());
+    let mut out = BufWriter::with_capacity(1 << 16, StandardOutput::new());
     write_to(&mut out)
         .and_then(|()| out.flush())
-        .map_err(unwritten)
+        .map_err(stdout_error)
 }
 
-/// Writes a page of our own, drawn in the style of the terminal, to standard output.
+/// Writes a page that is laid out for the terminal to standard output.
 pub fn page(text: &str) -> Result<(), Trouble> {
     write(text.as_bytes())
 }
 
 fn write(bytes: &[u8]) -> Result<(), Trouble> {
-    let mut out = Programs::new();
+    let mut out = StandardOutput::new();
     let written = out.write_all(bytes).and_then(|()| out.flush());
-    written.map_err(unwritten)
+    written.map_err(stdout_error)
 }
 
-fn unwritten(error: io::Error) -> Trouble {
+fn stdout_error(error: io::Error) -> Trouble {
     Trouble(format!("cannot write to standard output: {error}"))
 }
 
-/// Standard output. A reader that has gone away, as `head` does, has had enough: that is no
-/// trouble, and what is left goes nowhere.
-pub struct Programs(StdoutLock<'static>);
+/// Standard output. If the reader has closed the pipe, as `head` does, the rest is dropped without
+/// an error.
+pub struct StandardOutput(StdoutLock<'static>);
 
-impl Programs {
-    /// Nobody else writes to it meanwhile.
+impl StandardOutput {
+    /// Locks standard output.
     pub fn new() -> Self {
         Self(io::stdout().lock())
     }
 }
 
-impl Write for Programs {
+impl Write for StandardOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.0.write(bytes) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
@@ -78,13 +79,13 @@ impl Write for Programs {
     }
 }
 
-/// Writes to standard error; if nobody reads it, there is nobody to tell.
+/// Writes to standard error. Errors are ignored, as there is nowhere to report them.
 pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes what a command was called for to standard error. A reader that has gone away has had
-/// enough, as one of standard output.
+/// Writes a command's answer to standard error, wrapped for a terminal. A closed pipe is not an
+/// error, as for [`StandardOutput`].
 pub fn answer(text: &str) -> Result<(), Trouble> {
     let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
     let text = match columns {
@@ -99,8 +100,8 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     }
 }
 
-/// Breaks lines at words where they are longer than `width`, which terminals do within words. A
-/// line goes on below its last column, in the left half of the terminal.
+/// Wraps lines longer than `width` at words, while terminals would break within words. Further
+/// lines are indented to the last column of the table that starts in the left half of the terminal.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -108,15 +109,17 @@ pub fn wrapped(text: &str, width: usize) -> String {
         let indent = " ".repeat(last_column(line, width / 2));
         let options = textwrap::Options::new(width).break_words(false);
         let options = options.initial_indent(start).subsequent_indent(&indent);
-        match line.chars().count() > width {
-            true => textwrap::fill(words, options).into(),
-            false => Cow::Borrowed(line),
+        if line.chars().count() > width {
+            textwrap::fill(words, options).into()
+        } else {
+            Cow::Borrowed(line)
         }
     });
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Where the last column starts that does so no farther right than `most`: behind two spaces.
+/// Returns the start of the last column of a table, at most `most`: a column starts after two
+/// spaces.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();
@@ -124,22 +127,22 @@ fn last_column(line: &str, most: usize) -> usize {
     starts.next_back().map_or(most.min(2), |(at, _)| at + 2)
 }
 
-/// Says what kept a command from its work.
+/// Prints an error that ended a command.
 pub fn error(message: &dyn fmt::Display) {
     to_people(&worded_error(message));
 }
 
-/// What says why the command was not carried out.
+/// Formats an error that ended a command.
 pub fn worded_error(message: &dyn fmt::Display) -> String {
     worded("error", "1;31", message)
 }
 
-/// Says what the user might not expect.
+/// Prints a warning.
 pub fn warning(message: &dyn fmt::Display) {
     to_people(&worded_warning(message));
 }
 
-/// What says something that the user might not expect.
+/// Formats a warning.
 pub fn worded_warning(message: &dyn fmt::Display) -> String {
     worded("warning", "1;33", message)
 }
@@ -147,20 +150,21 @@ pub fn worded_warning(message: &dyn fmt::Display) -> String {
 fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {
     let message = message.to_string();
     let message = visible_line(&message);
-    match style().color {
-        true => format!("\x1b[{color}m{word}:\x1b[0m {message}\n"),
-        false => format!("{word}: {message}\n"),
+    if style().color {
+        format!("\x1b[{color}m{word}:\x1b[0m {message}\n")
+    } else {
+        format!("{word}: {message}\n")
     }
 }
 
-/// Whether somebody watches.
+/// Whether standard error is a terminal.
 pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// How reports are drawn on standard error: in colour on a terminal that has it, unless `NO_COLOR`
-/// is set; in ASCII where the locale is not one of UTF-8; in sentences if `NO_GRAPHICS` is set, for
-/// screen readers.
+/// Returns the style of reports on standard error: in colour on a terminal that has colours, unless
+/// `NO_COLOR` is set; in ASCII if the locale is not UTF-8; in sentences, for screen readers, if
+/// `NO_GRAPHICS` is set.
 pub fn style() -> Style {
     let plain = Style::default();
     let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));
@@ -178,10 +182,10 @@ pub fn style() -> Style {
     }
 }
 
-/// Columns to the left of an excerpt: the number of the line, and the frame.
+/// Number of columns to the left of an excerpt, for the line number and the frame.
 const FRAME: usize = 8;
 
-/// How a page is drawn on standard output, if that is a terminal.
+/// Returns the style of pages on standard output; `None` if it is not a terminal.
 pub fn page_style() -> Option<Style> {
     let out = io::stdout();
     out.is_terminal().then(|| {
@@ -194,8 +198,8 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Whether a terminal may be written to in colour: <https://no-color.org> and
-/// <https://bixense.com/clicolors>. The terminals of DEC, such as the VT100, have none.
+/// Whether a terminal may be written to in colour, by <https://no-color.org> and
+/// <https://bixense.com/clicolors>. The terminals of DEC, such as the VT100, have no colours.
 pub fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
     let is_of_dec = |name: &str| match name.strip_prefix("vt") {
@@ -207,13 +211,13 @@ pub fn has_color() -> bool {
     !is_plain && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
 }
 
-/// As no-color.org says: present and not empty.
+/// Whether a variable is present and not empty, as no-color.org defines it.
 fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| !value.is_empty())
 }
 
-/// Of the variables for the locale the first that says something counts; where none does, terminals
-/// of today know Unicode.
+/// Whether the locale is UTF-8. The first locale variable that is not empty counts; if all are
+/// empty, the terminal is assumed to know Unicode.
 fn is_unicode() -> bool {
     ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()

@@ -1,9 +1,9 @@
-//! Pictures: made of a scene, and written where they go.
+//! Renders pictures of scenes and writes them.
 
 use std::{
     io::{self, IsTerminal},
     path::{Path, PathBuf},
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::AtomicBool,
 };
 
 use super::{
@@ -16,15 +16,15 @@ use crate::{
     files::{self, Purpose},
     film::{self, Linear, Recipe},
     numbers,
-    render::{self, Control, Exact, RenderError, Rendered},
+    render::{Exact, RenderError, Rendered, render_as_asked},
     sampling::Sampling,
     scene::Scene,
     tracer::World,
 };
 
-/// A picture, as what is kept of it.
-pub enum Picture {
-    /// Its means.
+/// A rendered picture, with pixels in the precision that is needed.
+pub enum RenderedPicture {
+    /// The means in 64 bits.
     Light(Rendered),
     /// Means rounded to 32 bits.
     Floats(Rendered<[f32; 3]>),
@@ -32,8 +32,8 @@ pub enum Picture {
     Bytes(Rendered<[u8; 3]>),
 }
 
-impl Picture {
-    /// How many columns and rows it has.
+impl RenderedPicture {
+    /// Returns the numbers of columns and rows.
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Light(light) => (light.film().width(), light.film().height()),
@@ -42,7 +42,7 @@ impl Picture {
         }
     }
 
-    /// Its means alone, if they were kept.
+    /// Returns the film of 64-bit means; `None` if the means were rounded.
     #[cfg(feature = "preview")]
     pub fn into_film(self) -> Option<film::Film> {
         match self {
@@ -51,14 +51,17 @@ impl Picture {
         }
     }
 
-    /// What is to be said of it, which is a part of the whole picture: how exact a computed one is.
-    pub fn notes(&self, part: Area, output: &Output) -> String {
+    /// Returns how exact a computed picture is, for people; an empty text for a sampled one. `part`
+    /// is the part of the whole picture that it shows.
+    pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
             Self::Light(Rendered::Sampled(_))
             | Self::Floats(Rendered::Sampled(_))
             | Self::Bytes(Rendered::Sampled(_)) => String::new(),
             Self::Light(Rendered::Exact(exact)) => match output {
-                Output::File(_, Format::Exr, _) => certificate(exact, part, exact.certain, FLOATS),
+                PictureOutput::File(_, FileFormat::Exr, _) => {
+                    certificate(exact, part, exact.certain, FLOATS)
+                }
                 _ => certificate(
                     exact,
                     part,
@@ -72,10 +75,11 @@ impl Picture {
     }
 }
 
-/// What is kept of a picture's pixels; all of the means where something else asks for them, too.
+/// Precision in which pixels are kept: as little as the file needs, unless something else needs the
+/// means.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Keep {
-    /// Their means.
+pub enum KeptPixels {
+    /// The means in 64 bits.
     Light,
     /// Means rounded to 32 bits.
     Floats,
@@ -83,58 +87,50 @@ pub enum Keep {
     Bytes,
 }
 
-/// Renders a part of the scene's picture, and shows on a terminal how far it is.
+/// Renders a part of the scene's picture, with a progress bar on a terminal.
 pub fn picture(
     scene: &Scene,
     world: &World,
     part: Area,
-    keep: Keep,
+    keep: KeptPixels,
     cancel: &AtomicBool,
-) -> Result<Picture, RenderError> {
+) -> Result<RenderedPicture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
-    let expected = match sampling.is_exact() {
-        true => part.pixels(),
-        // The samples of the part, but for how the extra ones of a total fall: near enough for a
-        // bar.
-        false => {
-            let share = part.pixels() as f64 / whole.pixels() as f64;
-            (sampling.total() as f64 * share) as u64
-        }
+    let expected = if sampling.is_exact() {
+        part.pixels()
+    } else {
+        // The number of samples in the part, except that the remainder of a total may be spread
+        // unevenly: near enough for a progress bar.
+        let share = part.pixels() as f64 / whole.pixels() as f64;
+        (sampling.total() as f64 * share) as u64
     };
-    progress::watched(expected, |done| {
-        let control = Control {
-            threads: None,
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
+    progress::rendering(expected, None, cancel, |control| {
         Ok(match keep {
-            Keep::Light => {
-                Picture::Light(render::render_as_asked(world, &sampling, part, &control)?)
+            KeptPixels::Light => {
+                RenderedPicture::Light(render_as_asked(world, &sampling, part, control)?)
             }
-            Keep::Floats => {
-                Picture::Floats(render::render_as_asked(world, &sampling, part, &control)?)
+            KeptPixels::Floats => {
+                RenderedPicture::Floats(render_as_asked(world, &sampling, part, control)?)
             }
-            Keep::Bytes => {
-                Picture::Bytes(render::render_as_asked(world, &sampling, part, &control)?)
+            KeptPixels::Bytes => {
+                RenderedPicture::Bytes(render_as_asked(world, &sampling, part, control)?)
             }
         })
     })
 }
 
-/// A pixel with a greater bound on its error is worth a word.
+/// Bound on a pixel's error, in linear light, above which a note is printed.
 const VAGUE: f32 = 1e-6;
 
-/// What is certain of the pixels of a PNG.
+/// Name of the rounding that an exact PNG's certificate is about.
 const BYTES: &str = "the 8-bit rounding";
 
-/// What is certain of those of an EXR.
+/// Name of the rounding that an exact EXR's certificate is about.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// What is certain of a computed part of the picture, and of the numbers in its file: of so many
-/// pixels what is done to them.
+/// Returns the certificate of a computed part of the picture: the bound of its means, and for how
+/// many pixels, `certain`, the rounding `what` in the file is proven.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -146,8 +142,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // No mean of several colours, and so without an error beyond that of the colour's own
-        // numbers.
+        // The pixel has a single colour and needs no averaging, so there is no error except that of
+        // the colour's own numbers.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -159,7 +155,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         && count > 0
     {
         let width = exact.film.width() as usize;
-        // Places count in pixels of the whole picture.
+        // Columns and rows are counted in the whole picture.
         let (x, y) = (
             part.x as usize + least % width,
             part.y as usize + least / width,
@@ -176,43 +172,43 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
     text
 }
 
-/// Where a picture goes, and as what.
-pub enum Output {
+/// Destination and format of a picture.
+pub enum PictureOutput {
     /// A file.
-    File(PathBuf, Format, Origin),
+    File(PathBuf, FileFormat, PathChoice),
     /// Standard output, as PNG.
     Standard,
 }
 
-/// Where a file's name comes from.
+/// How the path of a file was chosen.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Origin {
-    /// The command line.
-    Given,
-    /// The scene's name: only a file in its folder is replaced.
-    Scene,
+pub enum PathChoice {
+    /// By the command line.
+    Explicit,
+    /// From the scene's name: only a file in the scene's folder is replaced.
+    BesideScene,
 }
 
-/// What a picture's file holds.
+/// Format of a picture's file.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum FileFormat {
     /// Bytes of sRGB, and the scene.
     Png,
     /// Linear light.
     Exr,
 }
 
-impl Origin {
+impl PathChoice {
     fn purpose(self, path: &Path) -> Purpose<'_> {
         match self {
-            Self::Given => Purpose::Named,
-            Self::Scene => Purpose::Within(files::folder(path)),
+            Self::Explicit => Purpose::Named,
+            Self::BesideScene => Purpose::Within(files::folder(path)),
         }
     }
 }
 
-impl Output {
-    /// What is asked for, or else the PNG file beside the scene.
+impl PictureOutput {
+    /// Returns the output that the command line names, or else the PNG file beside the scene.
     pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
         let path = match output {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
@@ -225,15 +221,15 @@ impl Output {
             }
             None => {
                 let path = scene.with_extension("png");
-                return Ok(Self::File(path, Format::Png, Origin::Scene));
+                return Ok(Self::File(path, FileFormat::Png, PathChoice::BesideScene));
             }
         };
         let format = format(path)?;
-        Ok(Self::File(path.to_owned(), format, Origin::Given))
+        Ok(Self::File(path.to_owned(), format, PathChoice::Explicit))
     }
 
-    /// Whether the picture can be written there, as far as that can be known before; not in the
-    /// place of what it is made of.
+    /// Checks that the picture can be written, as far as that can be known before rendering, and
+    /// that it would not replace its scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(Trouble(
@@ -241,43 +237,43 @@ impl Output {
                     .to_owned(),
             )),
             Self::Standard => Ok(()),
-            Self::File(path, _, origin) => {
+            Self::File(path, _, path_choice) => {
                 check_is_not(path, scene)?;
-                files::check_writable(path, origin.purpose(path))
+                files::check_writable(path, path_choice.purpose(path))
                     .map_err(|error| input::unwritable(path, &error))
             }
         }
     }
 
-    /// What it takes of the pixels.
-    pub fn keep(&self) -> Keep {
+    /// Returns the precision of pixels that the file needs.
+    pub fn keep(&self) -> KeptPixels {
         match self {
-            Self::File(_, Format::Exr, _) => Keep::Floats,
-            _ => Keep::Bytes,
+            Self::File(_, FileFormat::Exr, _) => KeptPixels::Floats,
+            _ => KeptPixels::Bytes,
         }
     }
 
-    /// Writes the picture of a scene, of which as much was kept as it takes, unless `cancel` is
-    /// set.
+    /// Writes the picture of a scene, whose pixels were kept in the precision that [`Self::keep`]
+    /// says, unless `cancel` is set.
     pub fn write(
         &self,
         scene: &Path,
-        picture: &Picture,
+        picture: &RenderedPicture,
         recipe: &Recipe,
         whole: Area,
         cancel: &AtomicBool,
     ) -> Result<(), Trouble> {
         let written = match self {
-            Self::Standard => files::write_stream(output::Programs::new(), cancel, |out| {
+            Self::Standard => files::write_stream(output::StandardOutput::new(), cancel, |out| {
                 write_png(picture, recipe, out)
             }),
-            Self::File(path, format, origin) => {
-                // A link may lead to the scene by now.
+            Self::File(path, format, path_choice) => {
+                // The path may have become a link to the scene.
                 check_is_not(path, scene)?;
-                files::write(path, origin.purpose(path), cancel, |out| {
+                files::write(path, path_choice.purpose(path), cancel, |out| {
                     let linear: Linear = match (format, picture) {
-                        (Format::Exr, Picture::Light(light)) => light.film().into(),
-                        (Format::Exr, Picture::Floats(floats)) => floats.film().into(),
+                        (FileFormat::Exr, RenderedPicture::Light(light)) => light.film().into(),
+                        (FileFormat::Exr, RenderedPicture::Floats(floats)) => floats.film().into(),
                         _ => return write_png(picture, recipe, out),
                     };
                     film::write_exr(linear, recipe.crop.unwrap_or(whole), whole, out)
@@ -287,39 +283,43 @@ impl Output {
         written.map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
     }
 
-    /// What is to be said where the picture should carry its scene and cannot.
+    /// Returns a warning if the picture should carry its scene, and this is too long.
     pub fn note_of_length(&self, recipe: &Recipe) -> String {
-        let carries = !matches!(self, Self::File(_, Format::Exr, _));
-        match carries && !recipe.fits() {
-            true => output::worded_warning(&format!(
-                "the scene and its overrides have more than 1 MiB of text or 1000 overrides, so {self} does not carry them"
-            )),
-            false => String::new(),
+        let carries = !matches!(self, Self::File(_, FileFormat::Exr, _));
+        if !carries || recipe.fits() {
+            return String::new();
         }
+        output::worded_warning(&format!(
+            "the scene and its overrides have more than 1 MiB of text or 1000 overrides, so {self} does not carry them"
+        ))
     }
 }
 
-/// Refuses to write a picture over its scene.
+/// Rejects a picture that would overwrite its scene.
 fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
-    match input::is_same_file(path, scene) {
-        false => Ok(()),
-        true => Err(Trouble(format!(
+    if input::is_same_file(path, scene) {
+        return Err(Trouble(format!(
             "{} is the scene itself: say with `-o FILE` where the picture goes",
             shown(path)
-        ))),
+        )));
     }
+    Ok(())
 }
 
-fn write_png(picture: &Picture, recipe: &Recipe, out: &mut dyn io::Write) -> io::Result<()> {
+fn write_png(
+    picture: &RenderedPicture,
+    recipe: &Recipe,
+    out: &mut dyn io::Write,
+) -> io::Result<()> {
     match picture {
-        Picture::Light(light) => film::write_png(light.film(), Some(recipe), out),
-        // `keep` asks for them where they go into an EXR.
-        Picture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
-        Picture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
+        RenderedPicture::Light(light) => film::write_png(light.film(), Some(recipe), out),
+        // Cannot occur: `keep` asks for 32-bit means only for an EXR.
+        RenderedPicture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
+        RenderedPicture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
     }
 }
 
-impl std::fmt::Display for Output {
+impl std::fmt::Display for PictureOutput {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::File(path, ..) => f.write_str(&shown(path)),
@@ -328,13 +328,13 @@ impl std::fmt::Display for Output {
     }
 }
 
-/// The format that a file's ending stands for.
-fn format(path: &Path) -> Result<Format, Trouble> {
+/// Returns the format that a file's ending stands for.
+fn format(path: &Path) -> Result<FileFormat, Trouble> {
     let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {
-        Ok(Format::Png)
+        Ok(FileFormat::Png)
     } else if name.ends_with(".exr") {
-        Ok(Format::Exr)
+        Ok(FileFormat::Exr)
     } else {
         Err(Trouble(format!(
             "the ending of {} stands for no format: a picture's file ends in .png or .exr",

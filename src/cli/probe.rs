@@ -1,25 +1,25 @@
-//! `probe`: one ray, surface by surface.
+//! `probe`: follows one ray, surface by surface.
 
 use glam::DVec2;
 
 use super::{
     Status, Trouble,
-    args::{Format, ProbeArgs},
-    input::Input,
+    args::{AnswerFormat, ProbeArgs},
+    input::SceneInput,
     output,
 };
 use crate::probe;
 
-/// Prints what the ray through a point of the picture meets.
+/// Prints the surfaces that the ray through a point of the picture meets.
 pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {
-    let input = Input::read(&args.scene, &args.overrides)?;
+    let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {
         return Ok(Status::SceneErrors);
     };
     let probe = probe::probe(&scene, DVec2::new(args.x, args.y));
     match args.format.format {
-        Format::Human => output::answer(&probe.to_string())?,
-        Format::Json => output::to_programs(format!("{}\n", probe.to_json()).as_bytes())?,
+        AnswerFormat::Human => output::answer(&probe.to_string())?,
+        AnswerFormat::Json => output::to_programs(format!("{}\n", probe.to_json()).as_bytes())?,
     }
     Ok(Status::Done)
 }

@@ -1,8 +1,9 @@
-//! The progress bar.
+//! The progress bar on standard error.
 
 use std::{
+    num::NonZero,
     sync::{
-        atomic::{AtomicU64, Ordering},
+        atomic::{AtomicBool, AtomicU64, Ordering},
         mpsc,
     },
     thread,
@@ -12,15 +13,16 @@ use std::{
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::output;
+use crate::render::Control;
 
-/// Renders that take less show no bar.
+/// Time before the bar appears: shorter renders show none.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How often the bar moves.
+/// Interval between updates of the bar.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Does `work`, which counts up what is done to `total`, and shows on a terminal how far it is and
-/// how long it will take.
+/// Runs `work`, which counts up to `total`. Meanwhile shows progress and the remaining time on a
+/// terminal.
 pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     let done = AtomicU64::new(0);
     if !output::is_watched() {
@@ -38,7 +40,26 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Shows a bar until the other end of the channel is gone.
+/// Runs a render of `total` samples or exact pixels, with progress on a terminal, until `cancel` is
+/// set.
+pub fn rendering<T>(
+    total: u64,
+    threads: Option<NonZero<usize>>,
+    cancel: &AtomicBool,
+    work: impl FnOnce(&Control) -> T,
+) -> T {
+    watched(total, |done| {
+        work(&Control {
+            threads,
+            progress: &|more| {
+                done.fetch_add(more, Ordering::Relaxed);
+            },
+            cancel,
+        })
+    })
+}
+
+/// Shows a bar until the sender of the channel is dropped.
 fn show(total: u64, done: &AtomicU64, wait: &mpsc::Receiver<()>) {
     let goes_on = |time| wait.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
     if !goes_on(PATIENCE) {

@@ -1,30 +1,30 @@
-//! `render`: a scene becomes a picture file.
+//! `render`: renders a scene to a picture file.
 
 use std::time::Instant;
 
 use super::{
     Status, Trouble,
     args::RenderArgs,
-    input::{Input, shown},
+    input::{SceneInput, shown},
     interrupt::Interrupt,
     output,
-    picture::{Output, picture},
+    picture::{PictureOutput, picture},
 };
 use crate::{area::Area, render::RenderError, tracer::World};
 
 /// Renders a scene.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
-    let output = Output::of(&args.scene, args.output.as_deref())?;
-    let input = Input::read(&args.scene, &args.overrides)?;
+    let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
+    let input = SceneInput::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
-    // Before the hours of a render, not after them; and a file that cannot be written outweighs
-    // errors of the scene.
+    // Checked before hours of rendering, not after them. A file that cannot be written is reported
+    // even if the scene has errors: its status is the worse one.
     output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };
-    // A crop on the command line takes the place of the one that a picture carries; both count in
-    // pixels of the whole picture.
+    // A crop on the command line replaces the one that a picture carries; both are in pixels of the
+    // whole picture.
     let crop = args.crop.or(input.crop);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = crop.unwrap_or(whole);

@@ -1,22 +1,17 @@
-//! `report`: how right Pinhole is, and how fast.
-
-use std::sync::atomic::Ordering;
+//! `report`: reports how accurate and how fast Pinhole is.
 
 use super::{
     Status, Trouble,
-    args::{Format, ReportArgs},
+    args::{AnswerFormat, ReportArgs},
     interrupt::Interrupt,
     output, progress,
 };
-use crate::{
-    render::{Control, RenderError},
-    report::numerics,
-};
+use crate::{render::RenderError, report::numerics};
 
-/// How many inputs each hard case gets unless it is said.
+/// Default number of inputs of each hard case.
 const INPUTS: u64 = 10_000;
 
-/// Makes the report that is asked for.
+/// Prints or writes the report that the arguments ask for.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if args.numerics {
         return numerics(args, interrupt);
@@ -30,28 +25,22 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     ))
 }
 
-/// Asks the hard cases. After Ctrl-C, the table is of those inputs that were asked.
+/// Tests the hard cases. After Ctrl-C, the table covers the inputs that were tested until then.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);
     let total = inputs.saturating_mul(numerics::cases().count() as u64);
-    let table = progress::watched(total, |done| {
-        let control = Control {
-            threads: None,
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
-        numerics::run(inputs, &control)
+    let table = progress::rendering(total, None, cancel, |control| {
+        numerics::run(inputs, control)
     });
     let table = table.map_err(|error| Trouble(RenderError::from(error).to_string()))?;
     match args.format.format {
-        Format::Human => output::answer(&table.to_string())?,
-        Format::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,
+        AnswerFormat::Human => output::answer(&table.to_string())?,
+        AnswerFormat::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,
     }
-    Ok(match table.is_complete() {
-        true => Status::Done,
-        false => Status::Interrupted,
+    Ok(if table.is_complete() {
+        Status::Done
+    } else {
+        Status::Interrupted
     })
 }

@@ -1,4 +1,4 @@
-//! `sheet`: the pictures of scenes side by side, each with its name.
+//! `sheet`: writes a contact sheet of scenes, each picture with its name.
 
 use std::{
     path::{Path, PathBuf},
@@ -10,10 +10,10 @@ use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_wid
 use super::{
     Status, Trouble,
     args::SheetArgs,
-    input::{Input, check_standard, is_standard, shown, unwritable},
+    input::{SceneInput, check_standard, is_standard, shown, unwritable},
     interrupt::Interrupt,
     output,
-    picture::{Keep, Output, Picture, picture},
+    picture::{KeptPixels, PictureOutput, RenderedPicture, picture},
 };
 use crate::{
     area::Area,
@@ -26,15 +26,16 @@ use crate::{
     tracer::World,
 };
 
-/// What stands on a sheet: a scene of the size of its picture there, and its name.
-type Entry = (Scene, String);
+/// A cell of the sheet: a scene, in the size of its picture there, and its caption.
+type SheetCell = (Scene, String);
 
-/// Pixels between two cells, and around all of them.
+/// Gap between two cells, and around all cells, in pixels.
 const GAP: u32 = 12;
-/// The colour of the line around a picture.
+/// Colour of the line around a picture.
 const FRAME: [u8; 3] = [192; 3];
-/// The height of the letters, and that of their line.
+/// Height of the letters of captions.
 const LETTERS: RasterHeight = RasterHeight::Size16;
+/// Height of a caption's line, in pixels.
 const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
@@ -54,22 +55,23 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         return Ok(status);
     }
     let cancel = interrupt.watch();
-    let entries = scenes
+    let cells = scenes
         .into_iter()
         .map(|(scene, name)| (reduced(scene, args.width), name));
-    let entries: Vec<Entry> = entries.collect();
-    let sheet = match sheet(&entries, args.columns, cancel) {
+    let cells: Vec<SheetCell> = cells.collect();
+    let sheet = match sheet(&cells, args.columns, cancel) {
         Ok(sheet) => sheet,
         Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
         Err(error) => return Err(Trouble(error.to_string())),
     };
-    let written = match is_standard(&args.output) {
-        true => files::write_stream(output::Programs::new(), cancel, |out| {
+    let written = if is_standard(&args.output) {
+        files::write_stream(output::StandardOutput::new(), cancel, |out| {
             film::write_png(&sheet, None, out)
-        }),
-        false => files::write(&args.output, Purpose::Named, cancel, |out| {
+        })
+    } else {
+        files::write(&args.output, Purpose::Named, cancel, |out| {
             film::write_png(&sheet, None, out)
-        }),
+        })
     };
     match written {
         Err(_) if interrupt.pressed() => Ok(Status::Interrupted),
@@ -78,7 +80,7 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
 }
 
-/// Refuses an output that is no PNG, or one of the scenes, or cannot be written.
+/// Rejects an output that is not a PNG, is one of the scenes, or cannot be written.
 fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
     let path = &args.output;
     let is_png = path
@@ -90,13 +92,13 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
             "a sheet is a PNG: {path} should end in .png"
         )));
     }
-    let output = |scene: &PathBuf| Output::of(scene, Some(path))?.check(scene);
+    let output = |scene: &PathBuf| PictureOutput::of(scene, Some(path))?.check(scene);
     args.scenes.iter().try_for_each(output)
 }
 
-/// The scene of a file with its name, or those of a sweep; nothing if it has errors.
+/// Returns the scene of a file with its caption, or those of a sweep; `None` if a scene has errors.
 fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)>>, Trouble> {
-    let input = Input::read(path, &args.overrides)?;
+    let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
         return Ok(input
             .scene()
@@ -107,9 +109,10 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
         let mut sources = input.sources.clone();
         let name = format!("{}, --sweep", sources.file.name());
         sources.sets.push(Source::from_text(name, set));
-        Input { sources, ..input }
+        SceneInput { sources, ..input }
     };
-    // What is to be said of the scene is said once, and of an end what is wrong with it.
+    // The problems of the scene are reported once, and those of the sweep's end only if it has
+    // errors.
     let [first, last] = sweep.ends().map(with);
     if first.scene().scene.is_none() {
         return Ok(None);
@@ -136,7 +139,7 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
     Ok(Some(scenes))
 }
 
-/// What a file is called: without folders, if no other file has the same name.
+/// Returns the caption of a file: its name without folders, if no other file has that name.
 fn name(path: &Path, args: &SheetArgs) -> String {
     if is_standard(path) {
         return "standard input".to_owned();
@@ -154,8 +157,8 @@ fn name(path: &Path, args: &SheetArgs) -> String {
     visible_line(&name).into_owned()
 }
 
-/// A scene whose picture is no wider and no higher than `side`, so that no picture leaves a hole
-/// beside it, with as many samples in a pixel as before.
+/// Scales a scene's picture down to at most `side` pixels in width and height, with as many samples
+/// per pixel as before.
 fn reduced(mut scene: Scene, side: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
@@ -176,28 +179,31 @@ fn reduced(mut scene: Scene, side: u32) -> Scene {
 fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let world = World::new_unless(scene, cancel).map_err(|_| RenderError::Cancelled)?;
-    match picture(scene, &world, whole, Keep::Bytes, cancel)? {
-        Picture::Bytes(bytes) => Ok(bytes.into_film()),
-        Picture::Light(_) | Picture::Floats(_) => unreachable!("bytes were asked for"),
+    match picture(scene, &world, whole, KeptPixels::Bytes, cancel)? {
+        RenderedPicture::Bytes(bytes) => Ok(bytes.into_film()),
+        RenderedPicture::Light(_) | RenderedPicture::Floats(_) => {
+            unreachable!("bytes were asked for")
+        }
     }
 }
 
-/// All pictures on white, row by row, in so many columns; else in about as many as there are rows.
+/// Lays out all pictures on white, row by row, in `columns` columns; by default in about as many
+/// columns as rows.
 fn sheet(
-    entries: &[Entry],
+    cells: &[SheetCell],
     columns: Option<u32>,
     cancel: &AtomicBool,
 ) -> Result<Film<[u8; 3]>, RenderError> {
-    let count = entries.len() as u32;
+    let count = cells.len() as u32;
     let square = || (1..=count).find(|side| side * side >= count).unwrap_or(1);
     let columns = columns.unwrap_or_else(square).min(count).max(1);
-    let width = entries
+    let width = cells
         .iter()
         .map(|(scene, _)| scene.image.width)
         .max()
         .unwrap_or(0);
-    let rows = entries.chunks(columns as usize);
-    let height = |row: &[Entry]| {
+    let rows = cells.chunks(columns as usize);
+    let height = |row: &[SheetCell]| {
         row.iter()
             .map(|(scene, _)| scene.image.height)
             .max()
@@ -208,7 +214,7 @@ fn sheet(
         columns * (width + GAP) + GAP,
         heights.clone().fold(GAP, u32::saturating_add),
     ];
-    // Whether there is memory for it shows before anything is rendered.
+    // The memory is allocated before rendering, so that a lack of it shows early.
     let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
     let mut y = GAP;
     for (row, height) in rows.zip(heights) {
@@ -218,7 +224,7 @@ fn sheet(
                 y,
                 ..Area::whole(scene.image.width, scene.image.height)
             };
-            // A white picture would have no edge.
+            // The frame gives a white picture an edge.
             let frame = Area {
                 x: place.x - 1,
                 y: place.y - 1,
@@ -237,8 +243,8 @@ fn sheet(
     Ok(sheet)
 }
 
-/// As much of a name as there is room for. Of a step of a sweep the target goes first, which is
-/// the same for all, and then the beginning, as the end is what changes.
+/// Shortens a caption to the width. In a step of a sweep the target is dropped first, as it is the
+/// same in all steps, and then the start of the value, as the end is what changes.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {

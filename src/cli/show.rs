@@ -1,4 +1,4 @@
-//! A picture in the terminal, above what was said of it.
+//! Draws a picture in the terminal, above the messages about it.
 //!
 //! Each cell shows two pixels, one above the other: a half block in the colour of the upper one on
 //! the colour of the lower one. That is coarse, but every terminal with colours can do it.
@@ -14,33 +14,35 @@ use terminal_size::{Height, Width, terminal_size_of};
 use super::{Trouble, output};
 use crate::{area::Area, color::linear_to_srgb, film::Film};
 
-/// What people see on standard error.
+/// The screen that `watch` writes to, on standard error.
 pub struct Screen {
-    /// The picture above what is said, if there is to be one.
-    shown: Option<Shown>,
-    /// What was said since the last change.
-    said: String,
+    /// The picture above the messages; `None` if no pictures are shown.
+    shown: Option<ShownPicture>,
+    /// Messages since the last change.
+    messages: String,
 }
 
-/// The last picture.
+/// The picture that is on the screen.
 #[derive(Default)]
-struct Shown {
+struct ShownPicture {
     film: Option<Film>,
-    /// It as it is drawn, and the cells that it was drawn for.
+    /// The characters that draw the picture.
     drawn: String,
+    /// The columns and rows of cells that it was drawn for.
     size: (usize, usize),
 }
 
 impl Screen {
-    /// One of words alone.
+    /// Makes a screen of messages only.
     pub fn of_words() -> Self {
         Self {
             shown: None,
-            said: String::new(),
+            messages: String::new(),
         }
     }
 
-    /// One of pictures and words, for which it takes a terminal.
+    /// Makes a screen of pictures and messages. Fails unless standard error is a terminal with
+    /// colours.
     pub fn of_pictures() -> Result<Self, Trouble> {
         if !io::stderr().is_terminal() {
             return Err(Trouble(
@@ -52,29 +54,29 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`".to_owned(),
             ));
         }
-        // What stands on the screen is scrolled up, where people find it again: what follows is
+        // The previous content is scrolled up, where people can find it again, as the picture is
         // drawn from the top.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
-            shown: Some(Shown::default()),
-            said: String::new(),
+            shown: Some(ShownPicture::default()),
+            messages: String::new(),
         })
     }
 
-    /// Leaves the last picture alone on the screen.
+    /// Clears the messages, and keeps the last picture.
     pub fn begin(&mut self) {
-        self.said.clear();
+        self.messages.clear();
         self.refresh();
     }
 
-    /// Says something.
-    pub fn say(&mut self, text: &str) {
-        self.said.push_str(text);
+    /// Prints a message.
+    pub fn print(&mut self, text: &str) {
+        self.messages.push_str(text);
         output::to_people(text);
     }
 
-    /// The side in pixels of blocks about as coarse as the screen is for a picture of this size;
-    /// `None` if pictures are not shown.
+    /// Returns the side in pixels of blocks that are about as coarse as the screen for a picture of
+    /// this size; `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -82,7 +84,7 @@ impl Screen {
         Some((scale as u32).max(1))
     }
 
-    /// Shows a picture, and below it what was said.
+    /// Shows a picture, with the messages below it.
     pub fn draw(&mut self, film: Film) {
         if let Some(shown) = &mut self.shown {
             shown.film = Some(film);
@@ -91,28 +93,28 @@ impl Screen {
         }
     }
 
-    /// Shows the last picture anew if the terminal has another size than it was drawn for.
+    /// Redraws the last picture if the terminal's size has changed.
     pub fn fit(&mut self) {
         if let Some(shown) = &mut self.shown
             && shown.film.is_some()
             && shown.size != size()
         {
             shown.redraw();
-            // What the lines of another width left behind is no part of it.
+            // Lines of the old width may have left characters behind.
             output::to_people("\x1b[2J");
             self.refresh();
         }
     }
 
     fn refresh(&self) {
-        if let Some(Shown { drawn, .. }) = &self.shown {
-            // The screen is not cleared first: what is drawn over does not flicker.
-            output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.said));
+        if let Some(ShownPicture { drawn, .. }) = &self.shown {
+            // The screen is not cleared first, as drawing over it does not flicker.
+            output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.messages));
         }
     }
 }
 
-impl Shown {
+impl ShownPicture {
     fn redraw(&mut self) {
         self.size = size();
         if let Some(film) = &self.film {
@@ -121,25 +123,26 @@ impl Shown {
     }
 }
 
-/// The colours that a terminal shows.
+/// Colours that a terminal can show.
 #[derive(Clone, Copy)]
 enum Palette {
-    /// All.
+    /// All 24-bit colours.
     Full,
-    /// 256, of which the nearest ones are taken.
+    /// 256 colours, of which the nearest one is taken.
     Of256,
 }
 
 impl Palette {
     fn of_terminal() -> Self {
         let is_full = |value: String| value == "truecolor" || value == "24bit";
-        match env::var("COLORTERM").is_ok_and(is_full) {
-            true => Self::Full,
-            false => Self::Of256,
+        if env::var("COLORTERM").is_ok_and(is_full) {
+            Self::Full
+        } else {
+            Self::Of256
         }
     }
 
-    /// Sets the colour of what is written (38) or of what is behind it (48).
+    /// Appends the escape sequence that sets the foreground (38) or background (48) colour.
     fn push(self, text: &mut String, which: u8, [r, g, b]: [u8; 3]) {
         // Writing to a string does not fail.
         let _ = match self {
@@ -149,7 +152,8 @@ impl Palette {
     }
 }
 
-/// How many columns and rows of cells a picture may take: what is said needs some too.
+/// Returns the number of columns and rows of cells that a picture may take. The messages need some
+/// rows, too.
 fn size() -> (usize, usize) {
     let (columns, rows) = terminal_size_of(io::stderr())
         .map_or((80, 24), |(Width(columns), Height(rows))| {
@@ -158,14 +162,15 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// A report of one mistake takes eleven rows or so, and is to be read beside the last picture.
+/// Returns the rows for the picture. A report on one mistake takes about eleven rows, and must be
+/// readable below the picture.
 fn rows_of_picture(rows: usize) -> usize {
-    const SAID: usize = 12;
-    let rest = rows.saturating_sub(SAID);
+    const MESSAGES: usize = 12;
+    let rest = rows.saturating_sub(MESSAGES);
     rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
-/// A picture in so many cells at most, each line with its end.
+/// Draws a picture in at most this many cells.
 fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
     let scale = scale(width, height, columns, rows);
@@ -190,19 +195,19 @@ fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> Stri
     text
 }
 
-/// Pixels per dot: a cell has two dots, which are about square.
+/// Returns the number of pixels per dot. A cell has two dots, which are about square.
 fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
-/// The pixels of one of `parts` parts: at least one.
+/// Returns the range of pixels of one of `parts` equal parts; at least one pixel.
 fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
     let start = (index * pixels / parts).min(pixels - 1);
     let end = ((index + 1) * pixels / parts).max(start + 1);
     start..end.min(pixels)
 }
 
-/// The mean of some pixels, as bytes of sRGB.
+/// Returns the mean of some pixels in linear light, as bytes of sRGB.
 fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> [u8; 3] {
     let count = (columns.len() * rows.len()) as f64;
     let mut sum = [0.0; 3];
@@ -216,7 +221,7 @@ fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usiz
     sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
 }
 
-/// The nearest of the colours 16 to 255 of a terminal: a cube of six levels a channel, and 24
+/// Returns the nearest of a terminal's colours 16 to 255: a cube of six levels per channel, and 24
 /// greys.
 fn nearest_of_256(color: [u8; 3]) -> u8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];

@@ -1,4 +1,4 @@
-//! `report SCENE…`: speed against error, for a terminal, for programs, and as files.
+//! `report SCENE…`: reports speed against error, to a terminal, to programs, and as files.
 
 use std::{
     io,
@@ -12,8 +12,8 @@ use serde_json::json;
 
 use super::{
     Status, Trouble,
-    args::{Format, ReportArgs, methods},
-    input::{Input, check_standard, is_standard, not_written},
+    args::{AnswerFormat, ReportArgs, methods},
+    input::{SceneInput, check_standard, is_standard, not_written},
     interrupt::Interrupt,
     output, progress,
 };
@@ -26,13 +26,13 @@ use crate::{
     scene::{Method, Scene},
 };
 
-/// The progress bar has so many steps.
+/// Number of steps of the progress bar.
 const STEPS: u64 = 1000;
 
-/// The page on everything.
+/// File name of the page.
 const INDEX: &str = "index.html";
 
-/// What a folder holds, the page at the end.
+/// Files of a report, the page last.
 const FILES: [&str; 5] = [
     "report.csv",
     "report.json",
@@ -41,7 +41,7 @@ const FILES: [&str; 5] = [
     INDEX,
 ];
 
-/// Reports on each scene in turn. After Ctrl-C, what was measured is reported all the same.
+/// Reports on each scene in turn. After Ctrl-C, the measurements until then are reported.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let request = request(args);
@@ -57,7 +57,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let mut subjects = Vec::new();
     let mut status = Status::Done;
     for path in &args.scenes {
-        let input = Input::read(path, &args.overrides)?;
+        let input = SceneInput::read(path, &args.overrides)?;
         match input.scene().scene {
             Some(scene) => {
                 check_samples(&scene, &request)?;
@@ -78,7 +78,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         let Some(found) = measure(subject, scene, &request, interrupt)? else {
             break;
         };
-        if args.format.format == Format::Human {
+        if args.format.format == AnswerFormat::Human {
             let gap = if measured.is_empty() { "" } else { "\n" };
             output::answer(&format!("{gap}{}", speed::text(&found)))?;
         }
@@ -87,18 +87,18 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             break;
         }
     }
-    // What was measured is kept, so Ctrl-C does not end the writing of it.
+    // Measurements are kept: Ctrl-C does not interrupt writing them.
     if let (Some(mut output), false) = (output, measured.is_empty()) {
-        let mut made = Vec::new();
+        let mut contents = Vec::new();
         for (folder, measured) in folders.iter().zip(&measured) {
-            made.extend(files(folder).into_iter().zip(texts(measured)?));
+            contents.extend(files(folder).into_iter().zip(texts(measured)?));
         }
         if args.scenes.len() > 1 {
-            made.push((INDEX.to_owned(), page(&measured)?));
+            contents.push((INDEX.to_owned(), page(&measured)?));
         }
-        output.write(&made).map_err(not_written)?;
+        output.write(&contents).map_err(not_written)?;
     }
-    if args.format.format == Format::Json && !measured.is_empty() {
+    if args.format.format == AnswerFormat::Json && !measured.is_empty() {
         let all = measured.iter().all(|measured| !measured.interrupted);
         let is_complete = all && measured.len() == subjects.len();
         let reports: Vec<_> = measured.iter().map(to_json).collect();
@@ -120,9 +120,10 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 
 fn request(args: &ReportArgs) -> Request {
     Request {
-        methods: match args.methods.is_empty() {
-            true => methods().collect(),
-            false => args.methods.clone(),
+        methods: if args.methods.is_empty() {
+            methods().collect()
+        } else {
+            args.methods.clone()
         },
         samples: args.samples.clone(),
         runs: args.runs,
@@ -131,7 +132,7 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
-/// The error that everybody wants to know of, and those that are asked for, each once.
+/// Returns the default error, 1/256, and those on the command line, without duplicates.
 fn errors(asked: &[f64]) -> Vec<f64> {
     let mut errors = vec![1.0 / 256.0];
     for &error in asked {
@@ -142,19 +143,19 @@ fn errors(asked: &[f64]) -> Vec<f64> {
     errors
 }
 
-/// Samples are for those who take them.
+/// Rejects `--samples` if no method takes samples.
 fn check_methods(request: &Request) -> Result<(), Trouble> {
     let is_exact = |method: &Method| *method == Method::Exact;
-    match !request.samples.is_empty() && request.methods.iter().all(is_exact) {
-        true => Err(Trouble(
+    if !request.samples.is_empty() && request.methods.iter().all(is_exact) {
+        return Err(Trouble(
             "`--samples` is for methods that take samples, and `--methods` names `exact` alone, which takes none"
                 .to_owned(),
-        )),
-        false => Ok(()),
+        ));
     }
+    Ok(())
 }
 
-/// The language's limit on samples holds here too.
+/// Rejects more samples than the language's limit.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
@@ -166,7 +167,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     }
 }
 
-/// What is measured of a scene; nothing if Ctrl-C comes before anything is.
+/// Measures a scene; returns `None` if Ctrl-C comes before the first measurement.
 fn measure(
     subject: &Subject,
     scene: &Scene,
@@ -179,8 +180,8 @@ fn measure(
         cancel: interrupt.watch(),
     };
     let measured = progress::watched(STEPS, |done| {
-        let tell = |share| done.store((share * STEPS as f64) as u64, Ordering::Relaxed);
-        speed::measure(subject, scene, request, &control, &tell)
+        let show_share = |share| done.store((share * STEPS as f64) as u64, Ordering::Relaxed);
+        speed::measure(subject, scene, request, &control, &show_share)
     });
     match measured {
         Ok(measured) if measured.runs() == 0 => Ok(None),
@@ -190,8 +191,8 @@ fn measure(
     }
 }
 
-/// Where the report of each scene goes, within the folder: of one into the folder itself, of
-/// several each into a folder there, under a page on all.
+/// Returns the subfolder of each scene's report. A single scene's report goes into the folder
+/// itself; those of several scenes go into subfolders, beside a page on all of them.
 fn folders(scenes: &[PathBuf]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];
@@ -203,15 +204,15 @@ fn folders(scenes: &[PathBuf]) -> Vec<String> {
     names.iter().map(|name| format!("{name}/")).collect()
 }
 
-/// The names of a report's files.
+/// Returns the names of a report's files.
 fn files(folder: &str) -> [String; 5] {
     FILES.map(|name| format!("{folder}{name}"))
 }
 
-/// What goes into these files.
+/// Returns the contents of a report's files.
 fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
     Ok([
-        to_csv(measured).map_err(unmade)?,
+        to_csv(measured).map_err(report_error)?,
         format!("{:#}\n", to_json(measured)),
         against_time(measured),
         against_samples(measured),
@@ -220,16 +221,16 @@ fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
 }
 
 fn page(measured: &[Measurement]) -> Result<String, Trouble> {
-    speed::page(measured).map_err(unmade)
+    speed::page(measured).map_err(report_error)
 }
 
-fn unmade(error: io::Error) -> Trouble {
+fn report_error(error: io::Error) -> Trouble {
     Trouble(format!("cannot make the report: {error}"))
 }
 
-/// A scene's folder: its file's name without the ending, with a number if another one has that, or
-/// the page. It is a name within the report's folder, whatever the file is called: no dots at its
-/// ends, and nothing but letters, digits and what is usual between them.
+/// Returns the name of a scene's subfolder: the file's name without the ending, with a number if
+/// another scene or the page has that name. The name cannot lead out of the report's folder: it has
+/// no dots at its ends, and only letters, digits and a few usual signs.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
@@ -241,7 +242,7 @@ fn name(scene: &Path, taken: &[String]) -> String {
         "" => "scene",
         stem => stem,
     };
-    // There are file systems that do not tell capital letters from small ones.
+    // Some file systems do not distinguish capital letters from small ones.
     let is_taken = |name: &String| {
         let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
         is_same(INDEX) || taken.iter().any(|other| is_same(other))

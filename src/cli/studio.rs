@@ -1,4 +1,4 @@
-//! `studio`: a scene as a page in the browser.
+//! `studio`: edits a scene in a browser.
 
 use std::{
     env,
@@ -45,7 +45,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     Ok(Status::Interrupted)
 }
 
-/// The scene's file; a new scene is saved in the current folder.
+/// Returns the scene's file; a new scene is saved in the current folder.
 fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()
@@ -62,7 +62,7 @@ fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
         .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(scene))))
 }
 
-/// Has the system open an address in its browser. Says whether it could be asked to.
+/// Asks the system to open an address in a browser. Returns whether that program could be started.
 fn open(address: &str) -> bool {
     let (program, before): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

@@ -1,4 +1,4 @@
-//! `--sweep TARGET=FROM..TO/N`: the overrides of N scenes between two.
+//! `--sweep TARGET=FROM..TO/N`: the overrides of N scenes from one value to another.
 
 use std::str::FromStr;
 
@@ -10,10 +10,10 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum number of scenes.
+/// Maximum number of scenes in a sweep.
 const MOST: usize = 1000;
 
-/// What a sweep changes, and between what.
+/// The target and the range of a sweep.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     target: String,
@@ -22,11 +22,11 @@ pub struct Sweep {
     count: usize,
 }
 
-/// A scene of a sweep.
+/// One scene of a sweep.
 pub struct SweepStep {
-    /// The `--set` argument that makes it.
+    /// The `--set` argument of the scene.
     pub set: String,
-    /// The same with as few digits as a person wants to see.
+    /// The argument with few digits, as a caption.
     pub label: String,
 }
 
@@ -62,7 +62,7 @@ impl FromStr for Sweep {
     }
 }
 
-/// What stands before the first `..` outside of parentheses, and behind it.
+/// Splits at the first `..` outside of parentheses.
 fn ends(values: &str) -> Option<(&str, &str)> {
     let mut open = 0_usize;
     let at = values.char_indices().find(|&(at, c)| {
@@ -78,17 +78,17 @@ fn ends(values: &str) -> Option<(&str, &str)> {
 }
 
 impl Sweep {
-    /// The first scene's argument and the last one's, as they are written.
+    /// Returns the `--set` arguments of the first and last scene, as they are written.
     pub fn ends(&self) -> [String; 2] {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// All of them, for a scene in which both ends have their values. The language itself says what
-    /// is between: as the values of `let`s behind all others.
+    /// Returns all steps, for a scene in which both ends can be evaluated. The language itself
+    /// interpolates: the steps are evaluated as `let`s after all other definitions.
     ///
     /// # Errors
     ///
-    /// There is nothing between the two, as between words or colours.
+    /// The ends cannot be interpolated, such as words or colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

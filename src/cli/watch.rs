@@ -1,4 +1,4 @@
-//! `watch`: a scene is rendered whenever its file is saved.
+//! `watch`: renders a scene whenever its file is saved.
 
 use std::{
     path::Path,
@@ -14,10 +14,10 @@ use std::{
 use super::{
     Status, Trouble,
     args::WatchArgs,
-    input::{self, Input, shown},
+    input::{self, SceneInput, shown},
     interrupt::Interrupt,
     output,
-    picture::{Keep, Output, Picture, picture},
+    picture::{KeptPixels, PictureOutput, RenderedPicture, picture},
     show::Screen,
 };
 use crate::{
@@ -35,55 +35,57 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let output = output(args)?;
     check_scene(&args.scene)?;
     output.check(&args.scene)?;
-    let mut screen = match args.show {
-        true => Screen::of_pictures()?,
-        false => Screen::of_words(),
+    let mut screen = if args.show {
+        Screen::of_pictures()?
+    } else {
+        Screen::of_words()
     };
     let scene = shown(&args.scene);
     let latest = preview::watch(&args.scene, input::bytes)
         .map_err(|error| Trouble(format!("cannot watch the folder of {scene}: {error}")))?;
     let ended = Arc::clone(&latest);
     interrupt.then(move || ended.end());
-    screen.say(&format!("watching {scene}; Ctrl-C ends it\n"));
+    screen.print(&format!("watching {scene}; Ctrl-C ends it\n"));
     let mut is_first = true;
     while let Some(content) = latest.take_while(REFIT, || screen.fit()) {
         if !is_first {
             screen.begin();
         }
-        let made = content
+        let written = content
             .bytes
             .map_err(|error| Trouble(format!("cannot read {scene}: {error}")))
-            .and_then(|bytes| make(args, bytes, &output, latest.stale(), &mut screen));
-        match made {
+            .and_then(|bytes| render_and_write(args, bytes, &output, latest.stale(), &mut screen));
+        match written {
             Ok(None) => {}
             Ok(Some(done)) => {
-                let (since, what) = match is_first {
-                    true => (start, "after the start"),
-                    false => (content.since, "after the save"),
+                let (since, what) = if is_first {
+                    (start, "after the start")
+                } else {
+                    (content.since, "after the save")
                 };
                 let time = time(done.duration_since(since));
-                screen.say(&format!("wrote {output} {time} {what}\n"));
+                screen.print(&format!("wrote {output} {time} {what}\n"));
             }
-            // Whatever it is, the next save may find it gone.
-            Err(trouble) => screen.say(&output::worded_error(&trouble)),
+            // Watching goes on after any error, as the cause may be gone at the next save.
+            Err(trouble) => screen.print(&output::worded_error(&trouble)),
         }
         is_first = false;
     }
     Ok(Status::Interrupted)
 }
 
-/// How often the size of the terminal is looked at while nothing happens.
+/// Interval at which the terminal's size is checked while nothing happens.
 const REFIT: Duration = Duration::from_millis(200);
 
-/// The file that the picture goes to.
-fn output(args: &WatchArgs) -> Result<Output, Trouble> {
+/// Returns the file that the picture is written to.
+fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     if input::is_standard(&args.scene) {
         return Err(Trouble(
             "standard input cannot be watched: it is read once; give a file".to_owned(),
         ));
     }
-    match Output::of(&args.scene, args.output.as_deref())? {
-        Output::Standard => Err(Trouble(
+    match PictureOutput::of(&args.scene, args.output.as_deref())? {
+        PictureOutput::Standard => Err(Trouble(
             "standard output holds one picture, and watch writes one after every save: give a file"
                 .to_owned(),
         )),
@@ -91,37 +93,38 @@ fn output(args: &WatchArgs) -> Result<Output, Trouble> {
     }
 }
 
-/// What can be known at the start: later, files come and go.
+/// Checks at the start that the scene can be read and is not a picture. Later, files may come and
+/// go.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)
 }
 
 fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
-    match bytes.starts_with(&SIGNATURE) {
-        false => Ok(()),
-        true => Err(Trouble(format!(
+    if bytes.starts_with(&SIGNATURE) {
+        return Err(Trouble(format!(
             "{} is a picture, and what is watched is a text that somebody edits: `render` takes pictures",
             shown(scene)
-        ))),
+        )));
     }
+    Ok(())
 }
 
-/// Makes the picture of a text; answers when it was written. None is made of a text with mistakes,
-/// nor when there is a newer one.
-fn make(
+/// Renders a text and writes its picture. Returns when it was written; `None` if the text has
+/// errors or a newer text has arrived.
+fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
-    output: &Output,
+    output: &PictureOutput,
     is_stale: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Option<Instant>, Trouble> {
     check_text(&args.scene, &bytes)?;
-    let input = Input::of(&args.scene, bytes, &args.overrides);
+    let input = SceneInput::of(&args.scene, bytes, &args.overrides);
     let Ok(reading) = scene::read_unless(&input.sources, is_stale) else {
         return Ok(None);
     };
-    screen.say(&input.report(&reading));
+    screen.print(&input.report(&reading));
     let Some(scene) = reading.scene else {
         return Ok(None);
     };
@@ -138,26 +141,26 @@ fn make(
     }
     let done = Instant::now();
     let notes = picture.notes(whole, output);
-    // Also one that cannot be written can be seen.
+    // The picture is shown even if it could not be written.
     if let Some(film) = picture.into_film() {
         screen.draw(film);
     }
     written?;
-    screen.say(&output.note_of_length(&recipe));
-    screen.say(&notes);
+    screen.print(&output.note_of_length(&recipe));
+    screen.print(&notes);
     Ok(Some(done))
 }
 
-/// A picture that takes longer is sketched first, ever finer.
+/// Time after which coarse pictures are shown until the picture is done.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene, and shows coarse pictures where people would wait.
+/// Renders the scene, and shows ever finer pictures if it takes long.
 fn with_sketch(
     scene: &Scene,
-    keep: Keep,
+    keep: KeptPixels,
     is_stale: &AtomicBool,
     screen: &mut Screen,
-) -> Result<Picture, RenderError> {
+) -> Result<RenderedPicture, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let world = World::new_unless(scene, is_stale)?;
     let Some(side) = screen.side(whole) else {
@@ -176,19 +179,20 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // Cancelled, it has nothing more to show, and the picture's own end says so.
+                // If it is cancelled, there is nothing more to show; the picture's own render
+                // reports that.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
                 });
             }
         });
-        let picture = picture(scene, &world, whole, Keep::Light, is_stale);
+        let picture = picture(scene, &world, whole, KeptPixels::Light, is_stale);
         drop(done);
         picture
     })
 }
 
-/// A time that somebody waited.
+/// Formats a waiting time.
 fn time(waited: Duration) -> String {
     match waited.as_secs_f64() {
         seconds if seconds < 1.0 => format!("{:.0} ms", seconds * 1e3),

@@ -1,4 +1,4 @@
-//! A file is replaced in such a way that what was there can still be looked at, and brought back.
+//! Replaces a file such that its previous content can still be checked, and restored.
 
 use std::{
     fs::{self, File},
@@ -13,14 +13,15 @@ use super::{
     original::{Original, changed, id},
 };
 
-/// Has a temporary file take the place of what was read.
+/// Replaces the file that was read by a temporary file.
 ///
-/// Another program may save the file right then, after it was looked at for the last time. So the
-/// two exchange their names, and what was there is looked at again: if it is not what was read,
-/// they exchange them back. Where the system cannot do that, the file is replaced without another
-/// look.
+/// Another program may save the file between the last check and the replacement. Therefore the two
+/// files exchange their names, and the replaced file is checked once more: if it is not what was
+/// read, the names are exchanged back. On systems that cannot exchange names, the file is replaced
+/// without the second check.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
-    // It will have the name of a temporary file, and nobody may take it for one that was left.
+    // The file gets the name of a temporary one; the lock keeps other processes from removing it as
+    // a leftover.
     let found = kind::open(path).ok();
     let _is_locked = found.as_ref().map(File::try_lock);
     original.check(path)?;
@@ -38,8 +39,8 @@ pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io
     }
 }
 
-/// Gives what has a temporary file's name now its own one back. But what was saved at that place
-/// in the meantime is newer, and keeps it.
+/// Restores the file that now has the temporary name. A file that another program saved at the path
+/// in the meantime is newer, and keeps the path.
 fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     let mut at_path = id(&temporary.as_file().metadata()?);
     loop {
@@ -52,7 +53,7 @@ fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     }
 }
 
-/// Exchanges the names of two files at once.
+/// Exchanges the names of two files atomically.
 #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
 fn exchange(one: &Path, other: &Path) -> io::Result<()> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
@@ -64,10 +65,13 @@ fn exchange(_: &Path, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Whether the system, or the file system, cannot exchange names.
+/// Whether the error says that the system or the file system cannot exchange names.
 fn is_not_known(error: &io::Error) -> bool {
-    use io::ErrorKind as Kind;
-    matches!(error.kind(), Kind::Unsupported | Kind::InvalidInput)
+    use io::ErrorKind;
+    matches!(
+        error.kind(),
+        ErrorKind::Unsupported | ErrorKind::InvalidInput
+    )
 }
 
 #[cfg(test)]
@@ -78,10 +82,10 @@ mod tests {
 
     use super::*;
 
-    /// The last round of saving beside another program.
+    /// Index of the last round.
     const LAST: u32 = 400;
 
-    /// Another program saves the file at all times from before it is replaced to after that.
+    /// Another program saves the file at moments from before the replacement to after it.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -95,8 +99,8 @@ mod tests {
             let theirs = folder.path().join("theirs");
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
-            // Before all of it in the first round, and after all of it in the last: on a full
-            // machine the thread may never be in time.
+            // Before the replacement in the first round and after it in the last: on a busy machine
+            // the thread may never run in between.
             let done = match round {
                 0 => {
                     save();
@@ -132,7 +136,7 @@ mod tests {
         let folder = tempdir().unwrap();
         let path = folder.path().join("a.scn");
         let temporary = NamedTempFile::new_in(folder.path()).unwrap();
-        // What was at the path has the temporary name, and what is there now is not ours.
+        // The older file has the temporary name; the newer one at the path is another program's.
         fs::remove_file(temporary.path()).unwrap();
         fs::write(temporary.path(), "older").unwrap();
         fs::write(&path, "newer").unwrap();

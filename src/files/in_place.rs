@@ -1,5 +1,5 @@
-//! Texts of files that cannot be replaced by renaming another one: in a folder that cannot be
-//! written to, or that something is mounted on.
+//! Writes files in place that cannot be replaced by renaming another one: their folder cannot be
+//! written to, or something is mounted on them.
 
 use std::{
     fs::{self, OpenOptions},
@@ -10,29 +10,29 @@ use std::{
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
-    kind::{Kind, folder, without_waiting},
+    error_words::in_words,
+    kind::{FileKind, folder, without_waiting},
     original::Original,
     state::{self, digest, state_folder},
     temporary::{self, locked},
-    words::in_words,
 };
 
-/// Whether a file that cannot be replaced for this reason may be written in place.
+/// Whether a file may be written in place if replacing it failed with this error.
 pub fn is_reason(error: &io::Error) -> bool {
-    use io::ErrorKind as Kind;
+    use io::ErrorKind;
     matches!(
         error.kind(),
-        Kind::PermissionDenied
-            | Kind::ReadOnlyFilesystem
-            | Kind::ResourceBusy
-            | Kind::CrossesDevices
+        ErrorKind::PermissionDenied
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::ResourceBusy
+            | ErrorKind::CrossesDevices
     )
 }
 
-/// Writes over a file that is still what was read. A copy of all that is to be in it stands beside
-/// it, or else in the user's folder for such things, until that is done: whatever happens
-/// meanwhile, one of the two is whole. Where no copy can be made, `reason` stays what kept the file
-/// from being replaced.
+/// Overwrites a file that is still what was read. Until that is done, a copy of the new content
+/// stands beside it, or else in the user's state folder: whatever happens meanwhile, one of the two
+/// is complete. If no copy can be made, returns `reason`, the error that kept the file from being
+/// replaced.
 pub fn write_in_place(
     path: &Path,
     original: &Original,
@@ -46,8 +46,8 @@ pub fn write_in_place(
     copy.as_file().sync_all()?;
     let mut file = without_waiting(OpenOptions::new().write(true)).open(path)?;
     let found = file.metadata()?;
-    if Kind::of(&found) != Kind::File {
-        return Err(Kind::of(&found).refused());
+    if FileKind::of(&found) != FileKind::File {
+        return Err(FileKind::of(&found).refused());
     }
     original.check(path)?;
     let written = file
@@ -66,10 +66,10 @@ pub fn write_in_place(
     }
 }
 
-/// The copies of a file that were left by processes that were killed while they wrote it, whole or
-/// in part: beside it, and in the user's folder for such things.
+/// Returns the copies of a file, complete or not, that processes left when they were killed while
+/// writing it: those beside it and those in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
-    // A file beside one that no link leads to is named as that is.
+    // A copy is named after the file itself, not after a link to it.
     let beside = match fs::read_link(path) {
         Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
         Err(_) => path.to_owned(),
@@ -88,20 +88,22 @@ pub fn copies_left(path: &Path) -> Vec<PathBuf> {
     left
 }
 
-/// What the name of a copy beside its file begins with.
+/// Prefix of the name of a copy beside its file.
 fn copy_prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(50).collect();
     format!("{name}.copy-")
 }
 
-/// What it begins with where files of all folders have theirs, for a canonical path.
+/// Prefix of the name of a copy in the state folder, which has the copies of all folders; `path` is
+/// canonical.
 fn prefix_in_state(path: &Path) -> String {
     let digest = digest(path.as_os_str().as_encoded_bytes());
     format!("{digest}-{}", copy_prefix(path))
 }
 
-/// An empty file for the copy of what is at a canonical path, if there is a place for one.
+/// Creates an empty file for the copy of the file at a canonical path. Returns `None` if neither
+/// its folder nor the state folder takes one.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let copy_in = |folder: &Path, prefix: &str| {
         let mut builder = Builder::new();

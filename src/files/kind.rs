@@ -1,5 +1,5 @@
-//! What a path leads to, which is looked at before it is opened: opening a pipe may wait without
-//! end, and opening a device may do something.
+//! The kind of file that a path leads to. It is checked before opening: opening a pipe may block
+//! forever, and opening a device may have effects.
 
 use std::{
     fmt,
@@ -8,31 +8,31 @@ use std::{
     path::Path,
 };
 
-use super::words::in_words;
+use super::error_words::in_words;
 
-/// What there can be at a path, links followed.
+/// Kind of file at a path, links followed.
 #[cfg_attr(
     not(unix),
     allow(dead_code, reason = "other systems do not tell these kinds")
 )]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A file with bytes.
+pub enum FileKind {
+    /// A regular file.
     File,
     /// A folder.
     Folder,
-    /// A named pipe, a FIFO.
+    /// A named pipe (FIFO).
     Pipe,
-    /// A device of characters, such as `/dev/null` or a terminal.
+    /// A character device, such as `/dev/null` or a terminal.
     Device,
-    /// A device of blocks, such as a disk.
+    /// A block device, such as a disk.
     Disk,
     /// A socket.
     Socket,
 }
 
-impl Kind {
-    /// The kind of what was found.
+impl FileKind {
+    /// Returns the kind that metadata says.
     pub fn of(found: &Metadata) -> Self {
         if found.is_dir() {
             return Self::Folder;
@@ -54,7 +54,7 @@ impl Kind {
         Self::File
     }
 
-    /// Why this is not taken for a file.
+    /// Returns the error that refuses this kind where a regular file is needed.
     pub fn refused(self) -> io::Error {
         let kind = match self {
             Self::Folder => io::ErrorKind::IsADirectory,
@@ -64,7 +64,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for FileKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::File => "a file",
@@ -77,7 +77,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// The folder that a file lies in.
+/// Returns the folder of a file: `.` for a bare name.
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -85,13 +85,13 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Opens a file to be read. Whatever else there is at the path, or at the end of a link there, is
-/// refused, and never waited for.
+/// Opens a regular file for reading. Rejects any other kind, also at the end of a link, and never
+/// blocks on it.
 pub fn open(path: &Path) -> io::Result<File> {
-    open_if(path, |kind| kind == Kind::File)
+    open_if(path, |kind| kind == FileKind::File)
 }
 
-/// Whether a path names something that this process has open already: `/dev/stdin`, or the
+/// Whether a path names a descriptor that this process has open already: `/dev/stdin`, or the
 /// `/dev/fd/63` that a shell writes for `<(…)`.
 fn is_argument(path: &Path) -> bool {
     path == Path::new("/dev/stdin")
@@ -100,35 +100,36 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens what the command line names to be read: a file, or whatever the shell has connected.
+/// Opens an argument of the command line for reading: a regular file, or anything except a folder
+/// that the shell has connected.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
     }
-    let file = open_if(path, |kind| kind != Kind::Folder)?;
-    // Who connected it means it to be waited for.
+    let file = open_if(path, |kind| kind != FileKind::Folder)?;
+    // Whoever connected a pipe expects the program to wait for its data.
     wait_for_it(&file)?;
     Ok(file)
 }
 
-fn open_if(path: &Path, is_wanted: impl Fn(Kind) -> bool) -> io::Result<File> {
+fn open_if(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result<File> {
     open_at_once(path, is_wanted).map_err(in_words)
 }
 
-fn open_at_once(path: &Path, is_wanted: impl Fn(Kind) -> bool) -> io::Result<File> {
-    let check = |found: &Metadata| match Kind::of(found) {
+fn open_at_once(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result<File> {
+    let check = |found: &Metadata| match FileKind::of(found) {
         kind if is_wanted(kind) => Ok(()),
         kind => Err(kind.refused()),
     };
     check(&fs::metadata(path)?)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;
-    // It may have become something else meanwhile.
+    // Another program may have put something else there meanwhile.
     check(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Has a file opened without waiting for whoever is at the other end of a pipe, and no terminal
-/// take this process over.
+/// Sets flags such that opening a pipe does not wait for its other end, and no terminal becomes the
+/// controlling one of this process.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use rustix::fs::OFlags;
@@ -141,7 +142,7 @@ pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Has reading from and writing to an open pipe wait again.
+/// Makes reads and writes of an open pipe blocking again.
 #[cfg(unix)]
 pub(super) fn wait_for_it(file: &File) -> io::Result<()> {
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
@@ -154,26 +155,26 @@ pub(super) fn wait_for_it(_: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a file of at most so many bytes.
+/// Reads a file of at most `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     read_from(file, most)
 }
 
-/// Reads what the system tells in a file, such as `/proc/meminfo`, if it does.
+/// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if it cannot be read.
 pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum number of bytes: a table has a few thousand for each processor.
+    /// Maximum length in bytes: a table has a few thousand for each processor.
     const LIMIT: u64 = 16 << 20;
     String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
 }
 
-/// Reads to the end of a stream of at most so many bytes.
+/// Reads a stream of at most `most` bytes to its end.
 pub fn read_from(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut from = from.take(most.saturating_add(1));
     from.read_to_end(&mut bytes).map_err(in_words)?;
-    match bytes.len() as u64 > most {
-        true => Err(io::ErrorKind::FileTooLarge.into()),
-        false => Ok(bytes),
+    if bytes.len() as u64 > most {
+        return Err(io::ErrorKind::FileTooLarge.into());
     }
+    Ok(bytes)
 }

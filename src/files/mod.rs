@@ -1,34 +1,35 @@
-//! Files of the system: the one place where they are opened, made and replaced.
+//! The one place where files are opened, created and replaced.
 //!
-//! In: a path, and what somebody wants with it. Out: a file, or why there is none. `kind` looks at
-//! what a path leads to before it is opened, so that nothing waits for a pipe; `original` knows a
-//! file again that was read; `write` writes every file whole or not at all, by way of a `temporary`
-//! one, and has the two `exchange` their names where somebody else may save the old one; and
-//! `output_folder` replaces in a folder only what was made there; `kept` has the small files that
-//! are kept of a user, in the folder that `state` knows. What the system says when that fails,
-//! `words` says to people. What is in the files is left to others.
+//! In: a path and a purpose. Out: a file, or an error in words. `kind` checks what a path leads to
+//! before it is opened, so that nothing blocks on a pipe. `original` recognises a file that was
+//! read. `write` writes every file completely or not at all, through a `temporary` one; the two
+//! `exchange` their names if another program may save the old one meanwhile, and a file that cannot
+//! be replaced is written `in_place`. `output_folder` replaces only files that Pinhole itself wrote
+//! into a folder. `user_files` has small files for the user alone, in the `state` folder.
+//! `error_words` turns the system's errors into plain words. The content of files is left to
+//! others.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"
 )]
 
+mod error_words;
 mod exchange;
 mod in_place;
-#[cfg(feature = "studio")]
-mod kept;
 mod kind;
 mod original;
 #[cfg(feature = "cli")]
 mod output_folder;
 mod state;
 mod temporary;
-mod words;
+#[cfg(feature = "studio")]
+mod user_files;
 mod write;
 
-#[cfg(feature = "studio")]
-pub use self::kept::{forget, forget_older, keep, kept_folder, name_of};
 #[cfg(feature = "cli")]
 pub use self::output_folder::{NotWritten, OutputFolder};
+#[cfg(feature = "studio")]
+pub use self::user_files::{forget, forget_older, keep, kept_folder, name_of};
 pub use self::{
     in_place::copies_left,
     kind::{folder, open, open_argument, read, read_from, read_system_text},

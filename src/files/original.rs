@@ -1,5 +1,5 @@
-//! A file as it was when it was read, to be known again before it is replaced: another program may
-//! have saved it meanwhile.
+//! A file as it was read. It is compared before it is replaced, as another program may have saved
+//! it meanwhile.
 
 use std::{
     fmt,
@@ -8,50 +8,52 @@ use std::{
     path::Path,
 };
 
-use super::{kind::read, words::in_words};
+use super::{error_words::in_words, kind::read};
 
-/// What tells a file from another one that takes its place: its device, and its number there.
+/// Identity of a file: its device and its inode number there. A file that replaces it has another
+/// identity.
 pub type FileId = (u64, u64);
 
-/// The identity of a file that was found.
+/// Returns the identity of the file that the metadata is of.
 #[cfg(unix)]
 pub fn id(found: &Metadata) -> FileId {
     use std::os::unix::fs::MetadataExt as _;
     (found.dev(), found.ino())
 }
 
-/// Elsewhere the library tells no number.
+/// Returns (0, 0): the standard library has no file numbers on this system.
 #[cfg(not(unix))]
 pub fn id(_: &Metadata) -> FileId {
     (0, 0)
 }
 
-/// A file as it was when it was read: which one it was, and its bytes; or none.
+/// A file as it was read, its identity and its bytes; or the fact that there was none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Original(Option<(FileId, Vec<u8>)>);
 
 impl Original {
-    /// Has `read` read the file at a path.
+    /// Reads the file at a path by `read`.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // One that takes its place in between has another number, and so counts as changed.
+        // A file that replaces it between the two calls has another identity, and so counts as
+        // changed.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// No file.
+    /// Returns the original of a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
 
-    /// Its bytes, if there was one.
+    /// Returns the bytes; `None` if there was no file.
     pub fn bytes(&self) -> Option<&[u8]> {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails unless what is at the path now is what was read.
+    /// Fails unless the file at the path is still what was read.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // The system makes sure of it when the file is made.
+            // The system checks that there is still no file when the new one is created.
             return Ok(());
         };
         let is_same = || {
@@ -66,7 +68,7 @@ impl Original {
     }
 }
 
-/// Why a file is not replaced: it is no longer what was read.
+/// Error: a file is not replaced, because it is no longer what was read.
 #[derive(Debug)]
 struct Changed;
 
@@ -82,7 +84,7 @@ pub(super) fn changed() -> io::Error {
     io::Error::other(Changed)
 }
 
-/// Whether a file was not replaced because another program has changed it.
+/// Whether an error says that another program has changed the file, so that it was not replaced.
 pub fn is_changed(error: &io::Error) -> bool {
     error.get_ref().is_some_and(|cause| cause.is::<Changed>())
 }

@@ -1,8 +1,8 @@
-//! A folder for what a command makes, in which nothing else is replaced.
+//! A folder for the files of a command, in which no other files are replaced.
 //!
-//! The folder keeps a list, `.pinhole`, of the files that were made there and the SHA-256 of what
-//! was written into each, in the form that `sha256sum --check` reads. A file that is not in it, or
-//! no longer has one of its hashes, is somebody's own.
+//! The folder keeps a list, `.pinhole`, of the files that Pinhole wrote there, with the SHA-256 of
+//! each content, in the format that `sha256sum --check` reads. A file that is not in the list, or
+//! whose hash is not one of its hashes there, belongs to the user.
 
 use std::{
     collections::BTreeMap,
@@ -14,39 +14,39 @@ use std::{
 use hmac_sha256::Hash;
 
 use super::{
-    kind::{Kind, folder, read},
+    error_words::in_words,
+    kind::{FileKind, folder, read},
     original::Original,
-    words::in_words,
     write::{Purpose, check_writable, write},
 };
 
-/// The list's name.
+/// File name of the list.
 const LIST: &str = ".pinhole";
 
-/// Its first line.
+/// First line of the list.
 const HEAD: &str = "# Files that pinhole made here, and replaces unless they were changed\n";
 
-/// A list with more bytes is none.
+/// Maximum length of the list, in bytes.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// A file with more bytes is none that was made here.
+/// Maximum length of a file that Pinhole wrote into the folder, in bytes.
 const FILE_LIMIT: u64 = 256 << 20;
 
-/// A folder for what a command makes.
+/// A folder for the files of a command.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// What was made there: a file's name, in which `/` stands between folders, and the hashes of
-    /// what it may hold.
-    made: BTreeMap<String, Vec<String>>,
+    /// The files that Pinhole wrote: the name, with `/` between folders, and the hashes that its
+    /// content may have.
+    hashes: BTreeMap<String, Vec<String>>,
 }
 
-/// Why nothing is written, and because of what.
+/// Error: a file or folder that keeps the files from being written.
 #[derive(Debug)]
 pub struct NotWritten {
     /// The file or folder.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The cause, in words.
     pub error: io::Error,
 }
 
@@ -60,11 +60,12 @@ impl NotWritten {
 }
 
 impl OutputFolder {
-    /// The folder at a path, which is made if there is none, for files with these names.
+    /// Opens the folder at a path, which is created if it is missing, for files with these names.
     ///
     /// # Errors
     ///
-    /// It cannot be made or written to, or a file there is in the way. Nothing was written.
+    /// The folder cannot be created or written to, or a file there is in the way. Nothing was
+    /// written.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
@@ -72,7 +73,7 @@ impl OutputFolder {
         let failed = |error| NotWritten::new(path, error);
         match fs::metadata(path) {
             Ok(found) if !found.is_dir() => {
-                let message = format!("it is {}, not a folder", Kind::of(&found));
+                let message = format!("it is {}, not a folder", FileKind::of(&found));
                 return Err(failed(io::Error::new(
                     io::ErrorKind::NotADirectory,
                     message,
@@ -86,7 +87,7 @@ impl OutputFolder {
         }
         let mut folder = Self {
             path: path.to_owned(),
-            made: BTreeMap::new(),
+            hashes: BTreeMap::new(),
         };
         folder.read_list()?;
         let list = path.join(LIST);
@@ -98,21 +99,22 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Writes files, after it has looked at all of them.
+    /// Writes files, after all of their places have been checked.
     ///
     /// # Errors
     ///
-    /// A file in the way, which is known before the first one is written, unless another program
-    /// puts it there meanwhile; or what kept one from being written. Those after it are missing.
+    /// A file is in the way, which is found before the first one is written unless another program
+    /// puts it there meanwhile; or a file cannot be written. The files after it are missing.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
-        // Another run may have made other files here since it was opened.
+        // Another run may have written other files here since the folder was opened.
         let list = self.read_list()?;
         for (name, _) in files {
             self.check(name)?;
         }
-        // Wherever this process is ended, the list has what each file holds by then.
+        // The list gets all new hashes first: wherever this process is ended, it has the hash of
+        // each file's content.
         for (name, text) in files {
-            let hashes = self.made.entry(name.clone()).or_default();
+            let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());
             if !hashes.contains(&hash) {
                 hashes.push(hash);
@@ -120,7 +122,7 @@ impl OutputFolder {
         }
         self.write_list(&list)?;
         for (name, text) in files {
-            // Another program may have put something there while those before it were written.
+            // Another program may have put a file there while the files before it were written.
             let original = self.check(name)?;
             let path = self.path.join(name);
             let folder = folder(&path);
@@ -129,12 +131,12 @@ impl OutputFolder {
         }
         let list = self.read_list()?;
         for (name, text) in files {
-            self.made.insert(name.clone(), vec![hash(text.as_ref())]);
+            self.hashes.insert(name.clone(), vec![hash(text.as_ref())]);
         }
         self.write_list(&list)
     }
 
-    /// Writes a file, if what was there before still is.
+    /// Writes a file, if its place is still as it was read.
     fn write_one(&self, name: &str, original: &Original, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
@@ -146,33 +148,33 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads the list of what was made.
+    /// Reads the list.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
-        let list = list(&path).map_err(|error| NotWritten::new(&path, error))?;
-        self.made = made(&list).map_err(|error| NotWritten::new(&path, error))?;
+        let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
+        self.hashes = parse_list(&list).map_err(|error| NotWritten::new(&path, error))?;
         Ok(list)
     }
 
-    /// Writes the list in the place of the one that was read.
+    /// Replaces the list that was read.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
-        match original.bytes() == Some(text.as_bytes()) {
-            true => Ok(()),
-            false => self.write_one(LIST, original, text.as_bytes()),
+        if original.bytes() == Some(text.as_bytes()) {
+            return Ok(());
         }
+        self.write_one(LIST, original, text.as_bytes())
     }
 
     fn list(&self) -> String {
-        let lines = self.made.iter().flat_map(|(name, hashes)| {
+        let lines = self.hashes.iter().flat_map(|(name, hashes)| {
             let line = move |hash| format!("{hash}  {name}\n");
             hashes.iter().map(line)
         });
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Reads what there is of a name. Refuses what was not made here, or was changed since, and a
-    /// folder on the way to it that is none.
+    /// Reads the file of a name, if it exists. Rejects a file that Pinhole did not write or that
+    /// was changed since, and a path on the way to it that is not a folder.
     fn check(&self, name: &str) -> Result<Original, NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();
@@ -194,12 +196,12 @@ impl OutputFolder {
 
     fn check_file(&self, path: &Path, name: &str) -> io::Result<Original> {
         let found = fs::symlink_metadata(path)?;
-        match Kind::of(&found) {
+        match FileKind::of(&found) {
             _ if found.is_symlink() => return Err(refused(LINK)),
-            Kind::File => {}
+            FileKind::File => {}
             kind => return Err(kind.refused()),
         }
-        let Some(hashes) = self.made.get(name) else {
+        let Some(hashes) = self.hashes.get(name) else {
             return Err(refused(
                 "pinhole did not make this file: move it away, or name another folder",
             ));
@@ -217,9 +219,9 @@ impl OutputFolder {
 
 fn check_folder(path: &Path) -> io::Result<()> {
     let found = fs::symlink_metadata(path)?;
-    match Kind::of(&found) {
+    match FileKind::of(&found) {
         _ if found.is_symlink() => Err(refused(LINK)),
-        Kind::Folder => Ok(()),
+        FileKind::Folder => Ok(()),
         _ => Err(refused(
             "it is in the place of a folder: move it away, or name another folder",
         )),
@@ -232,8 +234,8 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// What there is of a list.
-fn list(path: &Path) -> io::Result<Original> {
+/// Reads the list at a path, if it exists.
+fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
         Ok(_) => {}
@@ -243,8 +245,8 @@ fn list(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// What a list says was made.
-fn made(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
+/// Parses a list: the files' names and their hashes.
+fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());
     };
@@ -254,17 +256,18 @@ fn made(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
         io::Error::new(io::ErrorKind::InvalidData, message)
     };
     let text = std::str::from_utf8(bytes).map_err(|_| no_list())?;
-    let mut made = BTreeMap::<_, Vec<_>>::new();
+    let mut hashes = BTreeMap::<_, Vec<_>>::new();
     for line in text.strip_prefix(HEAD).ok_or_else(no_list)?.lines() {
         let (hash, name) = line.split_once("  ").ok_or_else(no_list)?;
-        made.entry(name.to_owned())
+        hashes
+            .entry(name.to_owned())
             .or_default()
             .push(hash.to_owned());
     }
-    Ok(made)
+    Ok(hashes)
 }
 
 fn hash(bytes: &[u8]) -> String {
-    let digits = Hash::hash(bytes).into_iter();
-    digits.map(|byte| format!("{byte:02x}")).collect()
+    let digest = Hash::hash(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

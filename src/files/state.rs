@@ -1,27 +1,27 @@
-//! Where the system has a place for what programs keep of a user.
+//! The folder for the state of programs, for each user.
 
 use std::{
     env, fs, io,
     path::{Path, PathBuf},
 };
 
-/// The folder for what programs keep of a user, where the system has one.
+/// Returns Pinhole's folder in the user's folder for the state of programs; `None` if no absolute
+/// path is known.
 pub(super) fn state_folder() -> Option<PathBuf> {
     let absolute = |name| {
         env::var_os(name)
             .map(PathBuf::from)
             .filter(|p| p.is_absolute())
     };
-    let base = match cfg!(windows) {
-        true => absolute("LOCALAPPDATA")?,
-        false => {
-            absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
-        }
+    let base = if cfg!(windows) {
+        absolute("LOCALAPPDATA")?
+    } else {
+        absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?
     };
     Some(base.join("pinhole"))
 }
 
-/// Makes such a folder, or one in it, where there is none yet. No other user can look into it.
+/// Creates the state folder, or a folder in it, if it is missing. No other user can read it.
 pub(super) fn make(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
@@ -30,7 +30,7 @@ pub(super) fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// What stands in a file's name for something longer.
+/// Returns 128 bits of the SHA-256 of a key in hexadecimal, as a part of a file's name.
 pub(super) fn digest(long: &[u8]) -> String {
     let digest = hmac_sha256::Hash::hash(long);
     let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));

@@ -1,5 +1,5 @@
-//! Files of our own beside others, until their content is complete. Each is locked as long as it is
-//! open: one that nobody has locked was left by a process that was killed.
+//! Temporary files beside others, until their content is complete. Each is locked as long as it is
+//! open: one without a lock was left by a process that was killed.
 
 use std::{
     ffi::OsString,
@@ -12,18 +12,18 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are made until one can be locked. Others can look for leftovers at
-/// the same moment, but not at so many.
+/// Maximum number of files that are created until one can be locked. Other processes may lock a new
+/// file while they look for leftovers, but not this many times in a row.
 const MOST_TRIES: usize = 100;
 
-/// Has `make` make a file until it makes one that can be locked, without waiting for whoever locked
-/// it first.
+/// Calls `make` until it creates a file that can be locked. Does not wait for other processes'
+/// locks.
 pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     for _ in 0..MOST_TRIES {
         let file = make()?;
-        // Where the file system has no locks, nobody finds one that is free.
+        // On a file system without locks, no process can lock the file as a leftover either.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
-        // Before that, another process may have taken it for a leftover.
+        // Before it was locked, another process may have removed it as a leftover.
         if is_locked && file.path().exists() {
             return Ok(file);
         }
@@ -32,8 +32,8 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
     Err(io::Error::other(message))
 }
 
-/// The files in a folder that nobody has locked, with six random characters between this prefix and
-/// this suffix: their names, and the files themselves, which are now locked as long as they are
+/// Returns the unlocked files in a folder whose names have six random characters between this
+/// prefix and this suffix: their names and the files, which are now locked as long as they are
 /// open.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {

@@ -1,4 +1,5 @@
-//! The one writer: files are written whole or not at all, and only where they are meant to go.
+//! The one writer of files. A file is written completely or not at all, and only to the place that
+//! its purpose allows.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -10,44 +11,44 @@ use std::{
 use tempfile::{Builder, NamedTempFile};
 
 use super::{
+    error_words::in_words,
     exchange, in_place,
-    kind::{self, Kind, folder, without_waiting},
+    kind::{self, FileKind, folder, without_waiting},
     original::{Original, changed},
     temporary::{self, locked},
-    words::in_words,
 };
 
-/// What a file's content is written to.
+/// Destination of a file's content.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// What a file is written for, which says what may be at its path.
+/// Purpose of a file, which decides what may be at its path already.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
-    /// It has a name that somebody gave: what is there is replaced, a link is followed, and a pipe
-    /// or a device gets the content once it is complete.
+    /// The user named the file: an existing one is replaced, a link is followed, and a pipe or a
+    /// device gets the content once it is complete.
     Named,
-    /// It has a name of our own in this folder, or below it: a file is replaced, also one that a
-    /// link there leads to, but none outside of the folder.
+    /// Pinhole chose the name, in or below this folder: an existing file is replaced, also at the
+    /// end of a link, but never outside of the folder.
     Within(&'a Path),
-    /// The same, if there still is what was read, or still nothing.
+    /// As `Within`, if the file is still what was read, or still missing.
     Again {
-        /// The folder.
+        /// The folder that the file must not lead out of.
         within: &'a Path,
-        /// What was read.
+        /// The file as it was read.
         original: &'a Original,
     },
-    /// The same as `Within`, and no other user can read it.
+    /// As `Within`, and no other user can read the file.
     Private(&'a Path),
-    /// It is new: whatever is there stays.
+    /// The file is new: an existing one is left as it is.
     New,
-    /// The text of a file is changed, if it still is what was read; a link is followed.
+    /// A file that was read is changed, if it is still what was read; a link is followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// The folder that it must not lead out of.
+    /// Returns the folder that the file must not lead out of, if there is one.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
@@ -57,7 +58,7 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// What must still be there.
+    /// Returns the file that must still be at the path, if there is one.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -66,22 +67,22 @@ impl<'a> Purpose<'a> {
     }
 }
 
-/// Has `write` write the content of the file at `path`, which stays as it was until the new content
-/// is complete.
+/// Writes the file at `path` by `write`. The old file stays as it is until the new content is
+/// complete.
 ///
-/// The content goes into a temporary file in the same folder, which then takes the place of the old
-/// one, with its permissions and, where that is allowed, its owner; but it never runs as its owner
-/// (setuid). A hard link is cut: its other names keep the old content. Where the text of a file is
-/// changed that cannot be replaced so, it is written in place, with a complete copy elsewhere
-/// meanwhile. When `cancel` is set, or an error occurs, the temporary file is removed; where this
-/// process is killed, the next one that writes the file does it.
+/// The content goes into a temporary file in the same folder, which then replaces the old one. It
+/// gets the old permissions, except setuid and its kin, and the old owner if that is allowed. Other
+/// hard links keep the old content. A file that is changed and cannot be replaced in this way is
+/// written in place, with a complete copy elsewhere meanwhile. If `cancel` is set or an error
+/// occurs, the temporary file is removed; if this process is killed, the next process that writes
+/// the file removes it.
 pub fn write(
     path: &Path,
     purpose: Purpose<'_>,
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    write_at_once(path, purpose, cancel, write).map_err(|error| told(path, error))
+    write_at_once(path, purpose, cancel, write).map_err(|error| writing_error(path, error))
 }
 
 fn write_at_once(
@@ -90,12 +91,12 @@ fn write_at_once(
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    let place = match place(path, purpose)? {
-        Place::File(place) => place,
-        Place::Stream => return write_device(path, cancel, write),
+    let target = match target(path, purpose)? {
+        WriteTarget::File(target) => target,
+        WriteTarget::Stream => return write_device(path, cancel, write),
     };
     let Purpose::Change(original) = purpose else {
-        return replace(&place, purpose, cancel, write);
+        return replace(&target, purpose, cancel, write);
     };
     let mut content = Checked {
         sink: Cursor::new(Vec::new()),
@@ -103,17 +104,17 @@ fn write_at_once(
     };
     write(&mut content)?;
     let content = content.sink.into_inner();
-    let replaced = replace(&place, purpose, cancel, |out| out.write_all(&content));
+    let replaced = replace(&target, purpose, cancel, |out| out.write_all(&content));
     match replaced {
-        Err(error) if place.found.is_some() && in_place::is_reason(&error) => {
-            in_place::write_in_place(&place.path, original, &content, error)
+        Err(error) if target.found.is_some() && in_place::is_reason(&error) => {
+            in_place::write_in_place(&target.path, original, &content, error)
         }
         replaced => replaced,
     }
 }
 
-/// Has `write` write a stream, such as standard output, until `cancel` is set. What was written by
-/// then cannot be taken back.
+/// Writes a stream, such as standard output, by `write`, until `cancel` is set. Bytes that were
+/// written by then cannot be taken back.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -124,19 +125,19 @@ pub fn write_stream(
     out.flush()
 }
 
-/// Whether a file could be written at `path`, as far as one can tell beforehand: nobody wants to
-/// learn it after a long render.
+/// Checks that a file can be written at `path`, as far as that can be known beforehand: nobody
+/// wants to learn it after a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
-    let is_writable = match place(path, purpose) {
-        Ok(Place::File(place)) => temporary(&place, purpose).and_then(NamedTempFile::close),
-        Ok(Place::Stream) => Ok(()),
+    let is_writable = match target(path, purpose) {
+        Ok(WriteTarget::File(target)) => temporary(&target, purpose).and_then(NamedTempFile::close),
+        Ok(WriteTarget::Stream) => Ok(()),
         Err(error) => Err(error),
     };
-    is_writable.map_err(|error| told(path, error))
+    is_writable.map_err(|error| writing_error(path, error))
 }
 
-/// Why nothing can be written at a path, in words.
-fn told(path: &Path, error: io::Error) -> io::Error {
+/// Returns an error of writing to a path in plain words.
+fn writing_error(path: &Path, error: io::Error) -> io::Error {
     match error.kind() {
         kind @ io::ErrorKind::NotFound if !folder(path).exists() => {
             io::Error::new(kind, "there is no such folder")
@@ -145,79 +146,77 @@ fn told(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Where the content goes.
-enum Place {
-    File(FilePlace),
-    /// A pipe or a device, which must not be replaced.
+/// Target of the content.
+enum WriteTarget {
+    File(FileTarget),
+    /// A pipe or a device, which is written to and not replaced.
     Stream,
 }
 
-/// A file that is made or replaced, behind all links, and what there is to know about the one that
-/// exists already.
-struct FilePlace {
+/// A file that is created or replaced, with all links followed, and the metadata of the existing
+/// one.
+struct FileTarget {
     path: PathBuf,
     found: Option<Metadata>,
 }
 
-fn place(path: &Path, purpose: Purpose<'_>) -> io::Result<Place> {
+fn target(path: &Path, purpose: Purpose<'_>) -> io::Result<WriteTarget> {
     if matches!(purpose, Purpose::New) {
         let path = path.to_owned();
         return match fs::symlink_metadata(&path) {
             Ok(_) => Err(exists()),
-            Err(_) => Ok(Place::File(FilePlace { path, found: None })),
+            Err(_) => Ok(WriteTarget::File(FileTarget { path, found: None })),
         };
     }
-    let place = behind_links(path)?;
-    match &place {
-        Place::Stream if matches!(purpose, Purpose::Named) => {}
-        Place::Stream => return Err(Kind::of(&fs::metadata(path)?).refused()),
-        Place::File(place) => {
-            check_folder(place, purpose)?;
-            let is_there = place.found.is_some();
+    let target = behind_links(path)?;
+    match &target {
+        WriteTarget::Stream if matches!(purpose, Purpose::Named) => {}
+        WriteTarget::Stream => return Err(FileKind::of(&fs::metadata(path)?).refused()),
+        WriteTarget::File(target) => {
+            check_folder(target, purpose)?;
+            let is_there = target.found.is_some();
             let original = purpose.original().map(Original::bytes);
             if original.is_some_and(|bytes| bytes.is_some() != is_there) {
                 return Err(changed());
             }
         }
     }
-    Ok(place)
+    Ok(target)
 }
 
-/// Fails if what is written to a place would now lie outside of the folder that it is meant for.
-fn check_folder(place: &FilePlace, purpose: Purpose<'_>) -> io::Result<()> {
+/// Fails if the target now lies outside of the folder that its purpose allows.
+fn check_folder(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<()> {
     let Some(outer) = purpose.outer() else {
         return Ok(());
     };
-    let inner = fs::canonicalize(folder(&place.path))?;
-    match inner.starts_with(fs::canonicalize(outer)?) {
-        true => Ok(()),
-        false => {
-            let message = "a link leads out of its folder from there";
-            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
-        }
+    let inner = fs::canonicalize(folder(&target.path))?;
+    if !inner.starts_with(fs::canonicalize(outer)?) {
+        let message = "a link leads out of its folder from there";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
+    Ok(())
 }
 
-fn behind_links(path: &Path) -> io::Result<Place> {
+fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     match fs::metadata(path) {
-        Ok(found) => match Kind::of(&found) {
-            Kind::File => {
-                // Replacing a file only takes the right to write to its folder; not to touch a file
-                // that is write-protected is what its owner expects.
+        Ok(found) => match FileKind::of(&found) {
+            FileKind::File => {
+                // Replacing a file takes only the permission to write to its folder, but its owner
+                // expects that a write-protected file is not touched.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
-                Ok(Place::File(FilePlace {
+                Ok(WriteTarget::File(FileTarget {
                     path: fs::canonicalize(path)?,
                     found: Some(found),
                 }))
             }
-            Kind::Pipe | Kind::Device => Ok(Place::Stream),
+            FileKind::Pipe | FileKind::Device => Ok(WriteTarget::Stream),
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // A link to nothing: the file that it would create. Links in a circle are another
+            // A dangling link: the target is the file that it names. Links in a circle are another
             // error.
             Ok(target) => behind_links(&folder(path).join(target)),
-            Err(_) => Ok(Place::File(FilePlace {
+            Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
                 found: None,
             })),
@@ -226,35 +225,36 @@ fn behind_links(path: &Path) -> io::Result<Place> {
     }
 }
 
-/// Writes a temporary file, and has it take its place.
+/// Writes a temporary file, and replaces the target by it.
 fn replace(
-    place: &FilePlace,
+    target: &FileTarget,
     purpose: Purpose<'_>,
     cancel: &AtomicBool,
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
-    let temporary = temporary(place, purpose)?;
-    // Not the temporary file itself, whose errors would name it.
+    let temporary = temporary(target, purpose)?;
+    // The `File` and not the `NamedTempFile`, whose errors would name the temporary path.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()?;
     drop(out);
-    // Only now it is known that there was room for all of it.
+    // Only the sync tells whether there was room for all of the content.
     temporary.as_file().sync_all()?;
     check(cancel)?;
-    check_folder(place, purpose)?;
-    // While the content was written, others may have changed what was found before.
+    check_folder(target, purpose)?;
+    // Other programs may have changed the target while the content was written.
     let (must_be_new, refused) = match purpose.original() {
         Some(original) if original.bytes().is_some() => {
-            return exchange::replace(temporary, &place.path, original);
+            return exchange::replace(temporary, &target.path, original);
         }
         Some(_) => (true, changed()),
         None => (matches!(purpose, Purpose::New), exists()),
     };
-    let persisted = match must_be_new {
-        true => temporary.persist_noclobber(&place.path),
-        false => temporary.persist(&place.path),
+    let persisted = if must_be_new {
+        temporary.persist_noclobber(&target.path)
+    } else {
+        temporary.persist(&target.path)
     };
     match persisted {
         Ok(_) => Ok(()),
@@ -268,8 +268,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes to a pipe or a device. Nobody is waited for to open the other end, and what comes after
-/// that is up to whoever did.
+/// Writes to a pipe or a device. Does not wait until another program opens the other end; if one
+/// has, the write takes as long as that program needs.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,
@@ -281,15 +281,15 @@ fn write_device(
     let mut device = without_waiting(OpenOptions::new().write(true))
         .open(path)
         .map_err(
-            |error| match fs::metadata(path).map(|found| Kind::of(&found)) {
-                Ok(Kind::Pipe) if error.kind() != io::ErrorKind::PermissionDenied => {
+            |error| match fs::metadata(path).map(|found| FileKind::of(&found)) {
+                Ok(FileKind::Pipe) if error.kind() != io::ErrorKind::PermissionDenied => {
                     io::Error::new(error.kind(), "it is a pipe that nobody reads")
                 }
                 _ => error,
             },
         )?;
-    match Kind::of(&device.metadata()?) {
-        Kind::Pipe | Kind::Device => {}
+    match FileKind::of(&device.metadata()?) {
+        FileKind::Pipe | FileKind::Device => {}
         kind => return Err(io::Error::other(format!("it has become {kind}"))),
     }
     kind::wait_for_it(&device)?;
@@ -297,24 +297,24 @@ fn write_device(
     device.flush()
 }
 
-/// What the name of a temporary file ends in.
+/// Suffix of the name of a temporary file.
 const SUFFIX: &str = ".tmp";
 
-/// A temporary file for a place.
-fn temporary(place: &FilePlace, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
-    let FilePlace { path, found } = place;
+/// Creates a temporary file for a target.
+fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
+    let FileTarget { path, found } = target;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // In most systems a name has at most 255 bytes, of which each character may take four.
+    // On most systems a name has at most 255 bytes, and each character may take four.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
-    // What nothing else is said of, no other user can read.
+    // By default, no other user can read a temporary file.
     let is_private = matches!(purpose, Purpose::Private(_));
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // The usual permissions of a new file: the system takes the mask off.
+        // The usual permissions of a new file, from which the system removes those of the umask.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;
@@ -326,16 +326,16 @@ fn temporary(place: &FilePlace, purpose: Purpose<'_>) -> io::Result<NamedTempFil
     Ok(temporary)
 }
 
-/// Removes temporary files of processes that were killed. It is no matter if that fails.
+/// Removes temporary files of processes that were killed. Failures are ignored.
 fn remove_leftovers(folder: &Path, prefix: &str) {
-    // Each stays locked until it is gone: nobody can begin to write to it.
+    // Each file stays locked until it is removed, so that no process begins to write to it.
     for (name, _lock) in temporary::left(folder, prefix, SUFFIX) {
         let _ = fs::remove_file(folder.join(name));
     }
 }
 
-/// Gives a file the owner and the permissions of another one, as far as the system allows that.
-/// Only root may give files away, and others may give them to their own groups.
+/// Gives a file the owner and the permissions of another one, as far as the system allows. Only
+/// root may change the owner; other users may choose among their own groups.
 #[cfg(unix)]
 fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     use std::{
@@ -348,10 +348,11 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         .or_else(|_| fchown(file, None, group))
         .is_ok();
     let mode = found.mode() & 0o777;
-    // Another group may do no more than everybody.
-    let allowed = match has_group {
-        true => mode,
-        false => mode & (0o707 | mode << 3),
+    // If the group could not be kept, the new group gets no more permissions than all users.
+    let allowed = if has_group {
+        mode
+    } else {
+        mode & (0o707 | mode << 3)
     };
     file.set_permissions(Permissions::from_mode(allowed))
 }
@@ -361,7 +362,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     file.set_permissions(found.permissions())
 }
 
-/// A sink that fails once the flag is set.
+/// A sink that fails once `cancel` is set.
 struct Checked<'a, S> {
     sink: S,
     cancel: &'a AtomicBool,

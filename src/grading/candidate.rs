@@ -1,4 +1,5 @@
-//! A program with mistakes: the scene that it makes a picture of, how it behaves, and what it does to the picture's light.
+//! A program with mistakes: the scene that it makes a picture of, how it behaves, and what it does
+//! to the picture's light.
 
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ pub enum Mistake {
     Row(&'static Row, Option<usize>),
     /// Numbers that are others.
     Numbers(Parameter, Vec<f64>),
-    /// Something too many: pixels of a colour, in linear light, between the least and the greatest column and row.
+    /// Something too many: pixels of a colour, in linear light, between the least and the greatest
+    /// column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
     /// Two objects of one colour each have each other's.
     ColorsExchanged(usize, usize),
@@ -124,7 +126,8 @@ impl Candidate {
         }
     }
 
-    /// The same with one more mistake; none if that cannot be, or if it is a row that changes nothing.
+    /// The same with one more mistake; none if that cannot be, or if it is a row that changes
+    /// nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -181,7 +184,8 @@ impl Candidate {
             .collect()
     }
 
-    /// The same, where a vector of which the direction alone counts has a length with which it is short: its greatest number is 1.
+    /// The same, where a vector of which the direction alone counts has a length with which it is
+    /// short: its greatest number is 1.
     pub fn leveled_numbers(&self) -> Vec<f64> {
         let leveled = |(parameter, numbers): (&Parameter, &[f64])| -> Vec<f64> {
             let greatest = match parameter.fields[..] {

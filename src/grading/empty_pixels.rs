@@ -1,6 +1,7 @@
 //! Pixels without a sample.
 //!
-//! Samples at random over the whole picture leave some pixels empty: these show the background, or black in some programs, and say nothing of the scene.
+//! Samples at random over the whole picture leave some pixels empty: these show the background, or
+//! black in some programs, and say nothing of the scene.
 
 use std::sync::Arc;
 
@@ -12,11 +13,13 @@ use super::{
 };
 use crate::film::Film;
 
-/// A picture without its empty pixels, which have no number in it; none if it has none. `empty` is what these show.
+/// A picture without its empty pixels, which have no number in it; none if it has none. `empty` is
+/// what these show.
 ///
-/// A pixel that should show no such colour and does is empty if such pixels lie at random, so that not more pairs of neighbours, beside or below each other, are
-/// empty than of independent pixels, and if there are not more than the noise of the others lets expect: of n samples in a pixel on an average, a share of e⁻ⁿ
-/// of the pixels has none.
+/// A pixel that should show no such colour and does is empty if such pixels lie at random, so that
+/// not more pairs of neighbours, beside or below each other, are empty than of independent pixels,
+/// and if there are not more than the noise of the others lets expect: of n samples in a pixel on
+/// an average, a share of e⁻ⁿ of the pixels has none.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
@@ -43,7 +46,8 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // A pair has a pixel in common with six others, from which it is not independent: so much more the count varies than one of independent pairs.
+    // A pair has a pixel in common with six others, from which it is not independent: so much more
+    // the count varies than one of independent pairs.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     is_chance(empty_pairs / more, pairs * both / more).then_some(())?;
     let mut without = film.clone();
@@ -59,13 +63,15 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         curve: Curve::Right,
         is_cut_off: false,
     };
-    // The noise is that of as many samples as one over the mean of 1/n over the pixels that have some, which is less than one more than n.
+    // The noise is that of as many samples as one over the mean of 1/n over the pixels that have
+    // some, which is less than one more than n.
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)
 }
 
-/// Whether a count of independent events may be so large by chance, by Chernoff's bound of the Poisson distribution: P(X ≥ k) ≤ e^(k − m) (m / k)^k for k > m.
+/// Whether a count of independent events may be so large by chance, by Chernoff's bound of the
+/// Poisson distribution: P(X ≥ k) ≤ e^(k − m) (m / k)^k for k > m.
 fn is_chance(count: f64, mean: f64) -> bool {
     count <= mean
         || count * libm::log(count / mean) - (count - mean) <= DEVIATIONS * DEVIATIONS / 2.0

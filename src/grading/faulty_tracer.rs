@@ -1,8 +1,9 @@
 //! A ray tracer by the formulas of a `textbook`, with the mistakes of a program as switches.
 //!
-//! In: a scene, the switches, a part of its picture, and how many samples. Out: for each pixel of the part the mean and the variance of what one sample in it
-//! sees, from so many at fixed places. The exact picture decides what is right; this one compares hundreds of scenes with a picture in a second, and
-//! can be wrong in the ways in which a program can.
+//! In: a scene, the switches, a part of its picture, and how many samples. Out: for each pixel of
+//! the part the mean and the variance of what one sample in it sees, from so many at fixed places.
+//! The exact picture decides what is right; this one compares hundreds of scenes with a picture in
+//! a second, and can be wrong in the ways in which a program can.
 
 use glam::{DVec2, DVec3};
 
@@ -176,8 +177,8 @@ impl Behaviour {
 impl Squares {
     /// Whether the square that a point lies in has the first colour.
     fn is_first(self, x: f64, z: f64) -> bool {
-        // `f64::floor` is a call where a processor need not have an instruction for it, and each ray that meets a board asks. Beyond what an i64 holds no square is
-        // told from another.
+        // `f64::floor` is a call where a processor need not have an instruction for it, and each
+        // ray that meets a board asks. Beyond what an i64 holds no square is told from another.
         let trunc = |x: f64| x as i64;
         let floor = |x: f64| trunc(x).wrapping_sub(i64::from(trunc(x) as f64 > x));
         match self {
@@ -452,7 +453,8 @@ fn on_plane([a, b, c]: &[DVec3; 3], hit: Hit, eye: DVec3, ray: DVec3) -> Option<
     is_within.then_some([t; 2])
 }
 
-/// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind it.
+/// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind
+/// it.
 pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     let (min, max) = match shape {
         Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
@@ -475,7 +477,8 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     Some([least - 1e-6, most + 1e-6])
 }
 
-/// Places in a unit square: a Fibonacci lattice of at least so many, whose rows and columns have one each, so that edges along the grid do no harm.
+/// Places in a unit square: a Fibonacci lattice of at least so many, whose rows and columns have
+/// one each, so that edges along the grid do no harm.
 fn lattice(samples: usize) -> Vec<DVec2> {
     let (mut step, mut count) = (1, 1);
     while count < samples {

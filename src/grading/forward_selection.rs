@@ -33,7 +33,8 @@ const BEHAVING: usize = 12;
 /// Rows that turn the picture or mirror it.
 const TURNS: [&str; 4] = ["mirrored", "upside_down", "turned_180", "up_negated"];
 
-/// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier ones from this.
+/// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier
+/// ones from this.
 const ROUNDS: usize = 4;
 
 /// So many objects are looked at, those in and beside which most is wrong.
@@ -354,7 +355,8 @@ fn step(judge: &Judge, from: &Judged) -> Vec<Judged> {
     judge.compare_with(from.candidate());
     let suspects = suspects(judge, from);
     let mut tried = rows(judge, from, &suspects);
-    // A row says more than numbers that make the same picture: where it explains all, they need not be looked for.
+    // A row says more than numbers that make the same picture: where it explains all, they need not
+    // be looked for.
     let explaining = |tried: &[(f64, Candidate)]| {
         let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
         let found = likelier(judge, from, &row?.1)?;
@@ -381,7 +383,8 @@ fn step(judge: &Judge, from: &Judged) -> Vec<Judged> {
     let mut unfitted: Vec<Judged> = unfitted.collect();
     unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     let mut judged: Vec<Judged> = Vec::new();
-    // What explains all is taken to be beaten only by what has fewer numbers: more of them come nearer before all are fitted to the end.
+    // What explains all is taken to be beaten only by what has fewer numbers: more of them come
+    // nearer before all are fitted to the end.
     let mut fewest = usize::MAX;
     for found in unfitted {
         if found.candidate().fitted() < fewest
@@ -401,7 +404,8 @@ fn step(judge: &Judge, from: &Judged) -> Vec<Judged> {
     };
     // The few that were judged are looked at in all pixels, however much work that is.
     judge.work.without_limit(|| judged.retain(is_better));
-    // Something too many would explain anything; it is thought of where nothing else explains more than before.
+    // Something too many would explain anything; it is thought of where nothing else explains more
+    // than before.
     let patched = || {
         are_all_tried.then_some(())?;
         let patched = from.candidate().with(patch(judge, from)?)?;

@@ -1,6 +1,8 @@
-//! A grid over the part of a picture that is compared, of cells of some pixels each: a coarse one to search on, the pixels themselves to judge on.
+//! A grid over the part of a picture that is compared, of cells of some pixels each: a coarse one
+//! to search on, the pixels themselves to judge on.
 //!
-//! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever makes pictures makes that of the cells.
+//! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever
+//! makes pictures makes that of the cells.
 
 use glam::DVec2;
 
@@ -107,7 +109,8 @@ impl Grid {
         (camera, image)
     }
 
-    /// The means of the part's pixels, told by column and row in it, but for those without a number.
+    /// The means of the part's pixels, told by column and row in it, but for those without a
+    /// number.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
         let factor = f64::from(self.factor);
         // The pixels that a cell has a share of, in columns or in rows, and how much of each.

@@ -84,7 +84,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f6
         let [least, most] = range(mean, width, at, reach);
         let mixed = [0, 1, 2].map(|i| most[i] - least[i]);
         [0, 1, 2].map(|i| {
-            // Before the transform and after it numbers are rounded, or cut off, which makes four times the square.
+            // Before the transform and after it numbers are rounded, or cut off, which makes four
+            // times the square.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
             // In light a step is the more, the brighter: it is told from so many deviations.

@@ -55,7 +55,8 @@ pub struct Judged {
     /// What it makes on the level that it was judged on.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Half a logarithm of the number of pixels for each number that was fitted, less the logarithm of the likelihood.
+    /// Half a logarithm of the number of pixels for each number that was fitted, less the logarithm
+    /// of the likelihood.
     pub cost: f64,
 }
 
@@ -105,8 +106,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The tiny level around a candidate that others are compared with. Where it is known what this makes exactly, the error of its samples is added to what is
-    /// seen, so that it cancels.
+    /// The tiny level around a candidate that others are compared with. Where it is known what this
+    /// makes exactly, the error of its samples is added to what is seen, so that it cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -125,7 +126,8 @@ impl<'a> Judge<'a> {
         Some(level.predict(&rendering))
     }
 
-    /// By how much a level differs from what a candidate makes, channel by channel; none if there was too much work before.
+    /// By how much a level differs from what a candidate makes, channel by channel; none if there
+    /// was too much work before.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.may_go_on().then_some(())?;
         Some(self.predicted(candidate, level)?.differences())
@@ -153,7 +155,8 @@ impl<'a> Judge<'a> {
 
     /// Whether it is known that nothing shows something else than a candidate for certain.
     ///
-    /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its cells is so in a pixel, if what the cells show is exact.
+    /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its
+    /// cells is so in a pixel, if what the cells show is exact.
     pub fn explains_all(&self, candidate: &Candidate) -> bool {
         let is_exact = candidate.behaviour.is_right() && self.fine.jpeg.is_none();
         let has_none = |level: &Level| {
@@ -167,7 +170,8 @@ impl<'a> Judge<'a> {
         (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
     }
 
-    /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change the picture by about so much of a cell.
+    /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change
+    /// the picture by about so much of a cell.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -219,7 +223,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// What so many numbers cost that are fitted to a level. A part of a picture is judged as the whole is: of a few pixels anything can be fitted.
+/// What so many numbers cost that are fitted to a level. A part of a picture is judged as the whole
+/// is: of a few pixels anything can be fitted.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size().map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)

@@ -2,7 +2,8 @@
 
 use crate::area::Area;
 
-/// How a picture is laid out otherwise than it should be: in place of a pixel that of another place is shown.
+/// How a picture is laid out otherwise than it should be: in place of a pixel that of another place
+/// is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// Left and right are exchanged.

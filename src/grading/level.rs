@@ -1,4 +1,5 @@
-//! The picture that is judged, at one resolution: what it shows in the cells of a grid, and what candidates should show there.
+//! The picture that is judged, at one resolution: what it shows in the cells of a grid, and what
+//! candidates should show there.
 
 use std::{
     cell::{OnceCell, RefCell},
@@ -56,7 +57,8 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The same, where all that is compared is off by what one prediction differs from an exact one.
+    /// The same, where all that is compared is off by what one prediction differs from an exact
+    /// one.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
         level.base = self.base.clone();

@@ -1,8 +1,11 @@
-//! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small differences and absolute values of large ones.
+//! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small
+//! differences and absolute values of large ones.
 //!
-//! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of nonlinear parameters, 1963) with weights that make of squares
-//! absolute values (Schlossmacher, 1973), so that what the numbers cannot explain does not draw them away from what they can. Slopes are found by varying each
-//! number once, and then updated by what each move does (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
+//! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of
+//! nonlinear parameters, 1963) with weights that make of squares absolute values (Schlossmacher,
+//! 1973), so that what the numbers cannot explain does not draw them away from what they can.
+//! Slopes are found by varying each number once, and then updated by what each move does (Broyden,
+//! A class of methods for solving nonlinear simultaneous equations, 1965).
 
 /// A round whose first move changes no number by more than this part of its step is the last.
 const CLOSE: f64 = 0.05;
@@ -25,8 +28,8 @@ pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// What is to be small: the sum of squares of differences; or in units of their deviations, and of absolute values of what is beyond one (Huber, Robust
-/// estimation of a location parameter, 1964).
+/// What is to be small: the sum of squares of differences; or in units of their deviations, and of
+/// absolute values of what is beyond one (Huber, Robust estimation of a location parameter, 1964).
 struct Loss(Option<Vec<f64>>);
 
 impl Loss {
@@ -44,11 +47,13 @@ impl Loss {
     }
 }
 
-/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial` gives the differences from a picture; none for numbers that
-/// cannot be, and where no more work may be done.
+/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial`
+/// gives the differences from a picture; none for numbers that cannot be, and where no more work
+/// may be done.
 ///
-/// By squares first, which have one valley; then in standard deviations, of which more than one counts by its absolute value, so that what the numbers
-/// cannot explain does not draw them away from what they can. `rounds` are those of both.
+/// By squares first, which have one valley; then in standard deviations, of which more than one
+/// counts by its absolute value, so that what the numbers cannot explain does not draw them away
+/// from what they can. `rounds` are those of both.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -98,7 +103,8 @@ pub fn fit(
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
             let (mut has_improved, mut is_far) = (false, None);
-            // A move that fails with updated slopes is blamed on these: they are found anew before damping is tried.
+            // A move that fails with updated slopes is blamed on these: they are found anew before
+            // damping is tried.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();
@@ -152,7 +158,8 @@ pub fn fit(
     })
 }
 
-/// Slopes that agree with what a move did, by Broyden's method: to vary each number once more would take most of the time.
+/// Slopes that agree with what a move did, by Broyden's method: to vary each number once more would
+/// take most of the time.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {

@@ -1,10 +1,13 @@
 //! How likely a picture is if a prediction of it is right.
 //!
-//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that of one sample within it and r² that of rounding to a step,
-//! a twelfth of its square. n is fitted. As no sampling but a random one has just that variance everywhere, and as something else may be wrong in some pixels, too,
-//! errors are taken to have Student's distribution with two degrees of freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution,
-//! 1989). Of two candidates that one is taken which has the greater likelihood, less half a logarithm of the number of pixels for each number that was fitted: Schwarz,
-//! Estimating the dimension of a model, 1978.
+//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that
+//! of one sample within it and r² that of rounding to a step, a twelfth of its square. n is fitted.
+//! As no sampling but a random one has just that variance everywhere, and as something else may be
+//! wrong in some pixels, too, errors are taken to have Student's distribution with two degrees of
+//! freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution, 1989).
+//! Of two candidates that one is taken which has the greater likelihood, less half a logarithm of
+//! the number of pixels for each number that was fitted: Schwarz, Estimating the dimension of a
+//! model, 1978.
 
 use super::{
     light::Curve,
@@ -24,7 +27,8 @@ pub struct Score {
     pub likelihood: f64,
     /// The number of independent samples in a pixel that make as much noise.
     pub samples: Option<f64>,
-    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of its channels.
+    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of
+    /// its channels.
     pub off: Vec<f64>,
     /// The squared difference.
     pub squares: f64,
@@ -34,7 +38,8 @@ pub struct Score {
     pub share: f64,
 }
 
-/// The error of a pixel, the variance of a sample in it, and that of rounding and of what is expected itself.
+/// The error of a pixel, the variance of a sample in it, and that of rounding and of what is
+/// expected itself.
 struct Error {
     difference: [f64; 3],
     variance: [f64; 3],
@@ -53,7 +58,8 @@ impl Error {
         }
     }
 
-    /// The sum of the squares in standard deviations, if an error has this share of a sample's variance.
+    /// The sum of the squares in standard deviations, if an error has this share of a sample's
+    /// variance.
     fn off(&self, share: f64) -> f64 {
         let channel = |i: usize| {
             self.difference[i] * self.difference[i] / (self.variance[i] * share + self.rounding[i])
@@ -108,7 +114,8 @@ impl Prediction<'_> {
             _ => -self.seen.iter().flatten().map(stretch).sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Of pixels of several colours: the variances of a sample, and the squared differences beyond rounding.
+        // Of pixels of several colours: the variances of a sample, and the squared differences
+        // beyond rounding.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);

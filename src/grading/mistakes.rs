@@ -1,4 +1,5 @@
-//! The table of mistakes that a class makes: a word for programs, what it is, the way out, and what it changes in a candidate.
+//! The table of mistakes that a class makes: a word for programs, what it is, the way out, and what
+//! it changes in a candidate.
 
 use std::sync::Arc;
 

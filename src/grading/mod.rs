@@ -1,20 +1,26 @@
 //! What is wrong with a picture of a scene.
 //!
-//! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict: right, right but for sampling noise, wrong by mistakes that
-//! are named, or wrong for an unknown reason; and how far each object is off.
+//! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict:
+//! right, right but for sampling noise, wrong by mistakes that are named, or wrong for an unknown
+//! reason; and how far each object is off.
 //!
-//! 1. A `Reference` is the exact picture, and the variance of a sample in each pixel (`moments`): made once for a class. `empty_pixels` are taken out of a picture.
-//! 2. A `candidate` is a program with mistakes: rows of the table in `mistakes`, numbers of the scene (`parameters`), or a `patch` that no object explains. They
-//!    change its scene, its `layout`, what it does to `light`, or how it behaves.
-//! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a `rendering`: exact, or by the `faulty_tracer` where it behaves as no
-//!    scene can say, and on the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a `prediction`.
+//! 1. A `Reference` is the exact picture, and the variance of a sample in each pixel (`moments`):
+//!    made once for a class. `empty_pixels` are taken out of a picture.
+//! 2. A `candidate` is a program with mistakes: rows of the table in `mistakes`, numbers of the
+//!    scene (`parameters`), or a `patch` that no object explains. They change its scene, its
+//!    `layout`, what it does to `light`, or how it behaves.
+//! 3. A `level` is the picture on a `grid`. What a candidate's program traces there is a
+//!    `rendering`: exact, or by the `faulty_tracer` where it behaves as no scene can say, and on
+//!    the tiny grid. Laid out, with its light changed, and with what `jpeg` does, it is a
+//!    `prediction`.
 //! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains
 //!    (`strays`), and whether it lies elsewhere (`displacement`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is
 //!    what it may spend. `levenberg_marquardt` fits numbers, `numeric_mistakes` says which, and
 //!    `forward_selection` takes one mistake after the other while that pays, and goes back where it
 //!    led nowhere.
-//! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the `objects`.
+//! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the
+//!    `objects`.
 
 mod candidate;
 mod displacement;
@@ -99,7 +105,8 @@ pub struct Reference<'a> {
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl<'a> Reference<'a> {
-    /// Makes the exact picture of a part of a scene's, as well as pictures that are rounded so are to be judged by it.
+    /// Makes the exact picture of a part of a scene's, as well as pictures that are rounded so are
+    /// to be judged by it.
     ///
     /// # Errors
     ///
@@ -169,7 +176,8 @@ impl<'a> Reference<'a> {
         Self { effort, ..self }
     }
 
-    /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is coded, if it is one.
+    /// Judges a picture; `comparison` is that with the exact one, and `jpeg` is how its file is
+    /// coded, if it is one.
     ///
     /// # Errors
     ///
@@ -285,7 +293,8 @@ fn told(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     verdict
 }
 
-/// Whether a picture has a channel that is less or more than in all colours of the scene, which no mean of them is.
+/// Whether a picture has a channel that is less or more than in all colours of the scene, which no
+/// mean of them is.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let colors = scene.objects.iter();
     let colors = colors.flat_map(|object| object.shape.colors());
@@ -307,7 +316,8 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 /// they are guesses.
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // The squared difference on the same grid for all, less what noise leaves of it in the end. Of half a pixel only pixels tell.
+    // The squared difference on the same grid for all, less what noise leaves of it in the end. Of
+    // half a pixel only pixels tell.
     let is_shifted = last.behaviour.offset != [0.0; 2] || last.behaviour.pixel != 1.0;
     let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
         true => &judge.edges,

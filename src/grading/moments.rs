@@ -58,7 +58,8 @@ impl Moments {
     }
 }
 
-/// The least and the greatest of a cell and those so far around it, channel by channel, in rows of a width.
+/// The least and the greatest of a cell and those so far around it, channel by channel, in rows of
+/// a width.
 pub fn range(values: &[[f64; 3]], width: usize, at: usize, around: usize) -> [[f64; 3]; 2] {
     let (x, y) = (at % width, at / width);
     let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -73,7 +74,8 @@ pub fn range(values: &[[f64; 3]], width: usize, at: usize, around: usize) -> [[f
     [least, most]
 }
 
-/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each channel, decoded by a curve, and its square.
+/// The numbers of a colour whose means tell the mean and the variance of what is averaged: each
+/// channel, decoded by a curve, and its square.
 pub fn numbers(averaged: Curve) -> impl Fn(Color) -> [f64; 6] {
     move |color| {
         let [r, g, b] = color.to_linear().map(|light| averaged.light(light));

@@ -27,7 +27,8 @@ const FAR: f64 = 2.0;
 /// So many parameters of objects and so many others are fitted on the coarse grid.
 const FITTED: usize = 4;
 
-/// Some numbers of the scene, each with what comes nearest on the coarse grid: those that leave least on the tiny one.
+/// Some numbers of the scene, each with what comes nearest on the coarse grid: those that leave
+/// least on the tiny one.
 pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
     let Some(tiny) = judge.tiny(candidate) else {
@@ -104,7 +105,8 @@ fn least_first<T>(all: impl Iterator<Item = (f64, T)>) -> impl Iterator<Item = T
     all.into_iter().map(|(_, one)| one)
 }
 
-/// The colours that a picture has where these colours alone should be seen: the medians of their channels.
+/// The colours that a picture has where these colours alone should be seen: the medians of their
+/// channels.
 fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
     let color = |own: &[f64]| {
         let light = Color {
@@ -142,7 +144,8 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     std::iter::once(numbers).chain(depths).collect()
 }
 
-/// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two exchanged, a double or a half.
+/// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two
+/// exchanged, a double or a half.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
     // A single number costs little: all within reach are tried.

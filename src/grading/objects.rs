@@ -48,7 +48,8 @@ pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
 
 /// All of them, and whether the background is right, in a picture with these mistakes.
 ///
-/// An object is right if it has its own numbers in the candidate's scene, and if where a right program would show it in that scene the picture shows nothing else.
+/// An object is right if it has its own numbers in the candidate's scene, and if where a right
+/// program would show it in that scene the picture shows nothing else.
 pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
     let scene = judge.scene;
     let is_drawn = &candidate.is_drawn;
@@ -82,7 +83,8 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     (objects, is_background_right)
 }
 
-/// The object that a program without other mistakes than a layout shows of a candidate's scene in the middle of each cell of a grid; none if it is cancelled.
+/// The object that a program without other mistakes than a layout shows of a candidate's scene in
+/// the middle of each cell of a grid; none if it is cancelled.
 pub fn labels(
     judge: &Judge,
     candidate: &Candidate,
@@ -104,7 +106,8 @@ pub fn labels(
     grid.cells.iter().map(label).collect()
 }
 
-/// How far an object is moved in the picture from one scene to another, in pixels: the farthest of some points of it.
+/// How far an object is moved in the picture from one scene to another, in pixels: the farthest of
+/// some points of it.
 fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let projections = [from, to].map(|scene| Projection::quick(&scene.camera, &scene.image));
     let size = projections[0].size;

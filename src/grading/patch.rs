@@ -16,7 +16,8 @@ const SMALLEST: usize = 4;
 const FILLED: f64 = 0.25;
 const MOST: f64 = 0.2;
 
-/// Something of one colour where the picture shows what the scene does not: the largest piece of such pixels that hang together.
+/// Something of one colour where the picture shows what the scene does not: the largest piece of
+/// such pixels that hang together.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     let has_one = others.any(|one| matches!(one, Mistake::Patch(..)));

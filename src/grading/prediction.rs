@@ -123,7 +123,8 @@ impl Prediction<'_> {
         let encoded = |light| linear_to_srgb(self.curve.seen(light));
         [0, 1, 2].map(|i| {
             let by = (encoded(seen[i]) - encoded(mean[i])) / STEP;
-            // A colour alone is cut off or not, by the last bit of its number; mixtures lose half a step.
+            // A colour alone is cut off or not, by the last bit of its number; mixtures lose half a
+            // step.
             let expected = match is_flat {
                 true => by.clamp(2.0 * CUT_OFF, 0.0),
                 false => CUT_OFF,
@@ -146,7 +147,8 @@ impl Prediction<'_> {
         (0..self.seen.len()).flat_map(own).collect()
     }
 
-    /// The standard deviations that these may have, as the mean of a single sample: an edge may be one pixel off.
+    /// The standard deviations that these may have, as the mean of a single sample: an edge may be
+    /// one pixel off.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.seen.len();
         let deviations = cells.flat_map(|at| {

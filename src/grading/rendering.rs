@@ -1,5 +1,6 @@
-//! What a candidate makes in the cells of a grid, before it is laid out and its light is changed: exactly, or sampled by the faulty tracer, on the tiny grid
-//! and for behaviour that no scene can say.
+//! What a candidate makes in the cells of a grid, before it is laid out and its light is changed:
+//! exactly, or sampled by the faulty tracer, on the tiny grid and for behaviour that no scene can
+//! say.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -17,7 +18,8 @@ use crate::{area::Area, projection::Projection, scene::Scene};
 /// Samples in a cell of what no scene can say.
 const SAMPLES: usize = 34;
 
-/// The share of a cell that may be missed where the faulty tracer takes it for one of a single colour.
+/// The share of a cell that may be missed where the faulty tracer takes it for one of a single
+/// colour.
 const MISSED: f64 = 1e-3;
 
 /// What a candidate makes.
@@ -25,7 +27,8 @@ const MISSED: f64 = 1e-3;
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// What it would make if it behaved as a right program; in samples, what it makes as it behaves.
+    /// What it would make if it behaved as a right program; in samples, what it makes as it
+    /// behaves.
     pub right: Arc<Moments>,
     /// What it makes, if it behaves otherwise.
     behaved: Option<Arc<Moments>>,
@@ -77,8 +80,9 @@ impl Candidate {
         scene
     }
 
-    /// What it makes in the cells of a grid: exactly, or by so many samples in a cell where these are given. What it makes as one of others does is taken from
-    /// that which makes most of it. None if it is cancelled, or takes too much work.
+    /// What it makes in the cells of a grid: exactly, or by so many samples in a cell where these
+    /// are given. What it makes as one of others does is taken from that which makes most of it.
+    /// None if it is cancelled, or takes too much work.
     pub fn render(
         &self,
         grid: &Grid,
@@ -150,7 +154,8 @@ impl Candidate {
         })
     }
 
-    /// The area of a part of the picture, before it is laid out, outside of which it is known that another candidate shows the same.
+    /// The area of a part of the picture, before it is laid out, outside of which it is known that
+    /// another candidate shows the same.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         let nothing = Area {
             width: 0,
@@ -213,8 +218,8 @@ fn completed(
     }
 }
 
-/// What samples show of a program that behaves otherwise, and how far off these means may be; where samples of a right one show the same, it is what that shows
-/// exactly.
+/// What samples show of a program that behaves otherwise, and how far off these means may be; where
+/// samples of a right one show the same, it is what that shows exactly.
 fn replaced_where_they_differ(mut right: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];

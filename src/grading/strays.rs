@@ -2,7 +2,8 @@
 
 use super::{moments::range, prediction::Prediction};
 
-/// How much a difference may be, in standard deviations, where that is known of what is random in it: of a million normal errors one is greater.
+/// How much a difference may be, in standard deviations, where that is known of what is random in
+/// it: of a million normal errors one is greater.
 pub const DEVIATIONS: f64 = 5.0;
 
 /// In steps: half of one is rounding, and half of that another way to decode.
@@ -11,11 +12,13 @@ pub const WRONG: f64 = 0.75;
 /// The pixels that no sampling of a candidate explains.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// The pixels of one colour that show another, by more than an edge brings into them that is half a pixel off.
+    /// The pixels of one colour that show another, by more than an edge brings into them that is
+    /// half a pixel off.
     pub pixels: Vec<usize>,
     /// Their squared difference.
     square: f64,
-    /// The pixels of several colours, their squared difference, and that which is expected of one sample in each.
+    /// The pixels of several colours, their squared difference, and that which is expected of one
+    /// sample in each.
     edges: Vec<(usize, f64, f64)>,
 }
 
@@ -53,8 +56,8 @@ impl Strays {
                 (*squares, *expected) = (*squares + square, *expected + variance);
             }
         }
-        // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be no more than three times the sum, and its variance no more
-        // than that.
+        // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be
+        // no more than three times the sum, and its variance no more than that.
         let is_noise = |(squares, expected): (f64, f64)| {
             squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
         };
@@ -90,8 +93,9 @@ impl Prediction<'_> {
         strays
     }
 
-    /// How much the light of a pixel may change if edges move by half a pixel: half of how much the pixels around it differ, or the standard deviation of a
-    /// sample in one of them, which half of each of two colours make half of their difference.
+    /// How much the light of a pixel may change if edges move by half a pixel: half of how much the
+    /// pixels around it differ, or the standard deviation of a sample in one of them, which half of
+    /// each of two colours make half of their difference.
     fn reach(&self, at: usize) -> [f64; 3] {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);

@@ -1,20 +1,20 @@
-//! The texts that are open in the editor, and places in them by line and column.
+//! The texts that are open in the editor, and positions in them by line and column.
 
 use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
 
 use crate::source::{Source, Sources};
 
-/// In what the columns of a line are counted.
+/// Unit in which columns of a line are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// In bytes.
+    /// Bytes.
     Utf8,
-    /// In units of UTF-16, or in characters.
+    /// Units of UTF-16, or characters.
     Wide(WideEncoding),
 }
 
 impl Encoding {
-    /// How many columns a text takes.
+    /// Returns the number of columns of a text.
     pub fn columns(self, text: &str) -> usize {
         match self {
             Self::Utf8 => text.len(),
@@ -23,29 +23,29 @@ impl Encoding {
     }
 }
 
-/// A line and a column, both counted from 0.
-pub type Place = (u32, u32);
+/// A position: line and column, both counted from 0.
+pub type LineColumn = (u32, u32);
 
 /// A text that is open in the editor.
 #[derive(Debug)]
 pub struct Document {
-    /// Which state of the text it is, as the editor counts.
+    /// The version of the text, as the editor counts.
     pub version: i32,
     /// The text.
     pub sources: Sources,
     encoding: Encoding,
 }
 
-/// What takes the place of a part of a text; of all of it, if no range is given.
-pub struct Change {
-    /// The part, as the places of its start and end.
-    pub range: Option<[Place; 2]>,
+/// A change that replaces a part of a text, or all of it if there is no range.
+pub struct TextChange {
+    /// Start and end of the part.
+    pub range: Option<[LineColumn; 2]>,
     /// The new text.
     pub text: String,
 }
 
 impl Document {
-    /// A text as it is opened, with its columns counted as the client does.
+    /// Makes the document of a text that is opened, with columns in the client's encoding.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -54,13 +54,13 @@ impl Document {
         }
     }
 
-    /// Changes the text; each change counts on those before it. If one of them is none, the text
-    /// stays as it is.
+    /// Applies changes in order; the positions of each refer to the text after the previous ones.
+    /// If one of them is invalid, the text stays as it is.
     ///
     /// # Errors
     ///
-    /// A change begins or ends below the text.
-    pub fn change(&mut self, version: i32, changes: &[Change]) -> Result<(), String> {
+    /// A change begins or ends after the last line.
+    pub fn change(&mut self, version: i32, changes: &[TextChange]) -> Result<(), String> {
         let mut text = self.text().to_owned();
         let mut lines = self.sources.file.lines().clone();
         for change in changes {
@@ -88,15 +88,16 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// The offset of a place. What lies behind a line's end counts as its end, what lies within a
-    /// character as its start, and what lies below the text as its end.
-    pub fn offset(&self, place: Place) -> usize {
+    /// Returns the offset of a position. A position after the end of a line counts as its end, one
+    /// within a character as the character's start, and one after the last line as the end of the
+    /// text.
+    pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
     }
 
-    /// The place of an offset.
-    pub fn place(&self, offset: usize) -> Place {
+    /// Returns the position of an offset.
+    pub fn line_column(&self, offset: usize) -> LineColumn {
         let place = self.sources.file.line_col(offset);
         match self.encoding {
             Encoding::Utf8 => (place.line, place.col),
@@ -108,9 +109,14 @@ impl Document {
     }
 }
 
-/// The offset of a place in a text that has these lines; none below the text. The line behind the
-/// last one is the text's end.
-fn offset(text: &str, lines: &LineIndex, encoding: Encoding, (line, col): Place) -> Option<usize> {
+/// Returns the offset of a position in a text with these lines. The line after the last one is the
+/// end of the text; returns `None` for later lines.
+fn offset(
+    text: &str,
+    lines: &LineIndex,
+    encoding: Encoding,
+    (line, col): LineColumn,
+) -> Option<usize> {
     let Some(range) = lines.line(line) else {
         let last = lines.try_line_col(lines.len())?;
         return (line == last.line + 1).then_some(text.len());
@@ -146,22 +152,22 @@ mod tests {
         {
             let document = Document::new("a.scn", 1, "\u{feff}é🎱b\r\nd\n".to_owned(), encoding);
             for (offset, column) in [3, 5, 9, 10].into_iter().zip(columns) {
-                assert_eq!(document.place(offset), (0, column));
+                assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // Behind the end of the line, and of the text.
+            // After the end of the line, and of the text.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
-            assert_eq!(document.place(99), (2, 0));
+            assert_eq!(document.line_column(99), (2, 0));
         }
         // Within a character: its start.
         let document = Document::new("a.scn", 1, "é🎱b".to_owned(), Encoding::Utf8);
         assert_eq!(document.offset((0, 4)), 2);
     }
 
-    fn change(range: [Place; 2], text: &str) -> Change {
-        Change {
+    fn change(range: [LineColumn; 2], text: &str) -> TextChange {
+        TextChange {
             range: Some(range),
             text: text.to_owned(),
         }
@@ -174,14 +180,14 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // Backwards, and far behind the end of the line; then the line behind the last one.
+            // Backwards, and far after the end of the line; then the line after the last one.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];
         assert_eq!(document.change(7, &changes), Ok(()));
         assert_eq!(document.text(), "🎱 !\nend");
         assert_eq!(document.version, 7);
-        let whole = Change {
+        let whole = TextChange {
             range: None,
             text: "new".to_owned(),
         };

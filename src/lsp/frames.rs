@@ -1,7 +1,7 @@
-//! Frames: pictures of an open text, made in slices, so that other messages are answered in
+//! Frames: pictures of an open text, rendered in slices, so that other messages are answered in
 //! between.
 //!
-//! A frame that is not wanted any more is dropped between two slices.
+//! A frame that is no longer wanted is dropped between two slices.
 
 use std::{collections::HashMap, mem};
 
@@ -22,10 +22,11 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// The most pixels of a frame. More than a page can show is a file's business.
+/// Maximum number of pixels of a frame: a page cannot show more. Larger pictures are rendered to
+/// files.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// The frames that are asked for and not done, the oldest first.
+/// The requested frames that are not finished, the oldest first.
 #[derive(Debug, Default)]
 pub struct Frames(Vec<Frame>);
 
@@ -35,15 +36,15 @@ struct Frame {
     uri: Uri,
     /// The version of the text.
     version: i32,
-    /// What width and height are divided by.
+    /// Divisor of width and height.
     scale: u32,
-    /// What the scene asks for if it is none.
+    /// Samples per pixel; `None` for the scene's own sampler.
     samples: Option<u64>,
     slices: Slices<[u8; 3]>,
 }
 
 impl Frames {
-    /// Takes a frame in. Returns the requests that it supersedes.
+    /// Adds a frame. Returns the requests that it supersedes.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -54,7 +55,7 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // What is asked for again goes on.
+        // A frame that is requested again goes on under the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -63,17 +64,17 @@ impl Frames {
         Ok(superseded)
     }
 
-    /// Whether any is to be made.
+    /// Whether no frame is left to render.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Drops the frame that a request asked for. Says whether there was one.
+    /// Drops the frame of a request. Returns whether there was one.
     pub fn cancel(&mut self, id: &RequestId) -> bool {
         !self.remove(|frame| frame.id == *id).is_empty()
     }
 
-    /// Drops the frames of a text, or of all if it is none. Returns who asked for them.
+    /// Drops the frames of a text, or of all texts for `None`. Returns their requests.
     pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
         self.remove(|frame| uri.is_none_or(|uri| frame.uri == *uri))
     }
@@ -83,12 +84,12 @@ impl Frames {
         removed.map(|frame| frame.id).collect()
     }
 
-    /// Who asked for the oldest one.
+    /// Returns the request of the oldest frame.
     pub fn oldest(&self) -> Option<RequestId> {
         self.0.first().map(|frame| frame.id.clone())
     }
 
-    /// Makes a slice of the oldest one. Returns its answer once it is done.
+    /// Renders a slice of the oldest frame. Returns its answer once it is finished.
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
@@ -132,7 +133,7 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // By the largest scale there is one pixel, which fits.
+        // At the largest scale the frame has one pixel, which fits.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);
@@ -166,7 +167,7 @@ impl Frame {
         })
     }
 
-    /// Makes the next slice. Returns the answer if none is left.
+    /// Renders the next slice. Returns the answer after the last one.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let (_, world) = version.world(self.scale);
         if !self.slices.advance(world).map_err(Refusal::failed)? {

@@ -1,4 +1,4 @@
-//! Messages as JSON.
+//! Reads and writes messages as JSON.
 
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response, ResponseError};
 use serde::{Deserialize, Serialize};
@@ -8,20 +8,20 @@ use serde_json::{Value, json};
 /// text may have eight; this is 40 000 changes of a text at once.
 const MOST_VALUES: usize = 1 << 19;
 
-/// Why a text is no message.
+/// Error: a text is not a message.
 #[derive(Debug)]
 pub enum Malformed {
-    /// The response that it gets.
+    /// The sender gets this response.
     Answered(Value),
-    /// It gets none, as responses do; what is to be said to a log.
+    /// A malformed response, which is not answered; the text is for the log.
     Unanswered(String),
 }
 
-/// The message that a text is.
+/// Parses a message.
 ///
 /// # Errors
 ///
-/// It is none.
+/// The text is not a message.
 pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let malformed = |id, code: ErrorCode, message: String| {
         // A response of lsp-server cannot have the id null.
@@ -29,15 +29,15 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
     };
-    if most_values(text) > MOST_VALUES {
+    if value_bound(text) > MOST_VALUES {
         let message = format!("this message has more than {MOST_VALUES} values");
-        return malformed(asked(text), ErrorCode::InvalidRequest, message);
+        return malformed(request_id(text), ErrorCode::InvalidRequest, message);
     }
     let value: Value = match serde_json::from_slice(text) {
         Ok(value) => value,
         Err(error) => {
             let message = format!("this is not JSON: {error}");
-            return malformed(asked(text), ErrorCode::ParseError, message);
+            return malformed(request_id(text), ErrorCode::ParseError, message);
         }
     };
     if value.is_array() {
@@ -58,8 +58,8 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// The message that a value is, if it is one. lsp-server would copy each text in it, and take a
-/// request with an odd identifier for a notification.
+/// Converts a JSON value to a message, if it is one. Not done by lsp-server, which would copy each
+/// text in it, and take a request with an invalid identifier for a notification.
 fn message(mut value: Value) -> Option<Message> {
     let mut take = |name: &str| value.get_mut(name).map(Value::take);
     let id = match take("id") {
@@ -92,9 +92,9 @@ fn message(mut value: Value) -> Option<Message> {
     })
 }
 
-/// Returns how many values a text in JSON may have: each but the first follows one of these signs.
-/// Nothing is built of the text, which may have any number.
-fn most_values(text: &[u8]) -> usize {
+/// Returns an upper bound on the number of values in a JSON text: each value except the first
+/// follows `[`, `,` or `:`. Nothing is allocated, as the text may have any number of values.
+fn value_bound(text: &[u8]) -> usize {
     let (mut values, mut is_in_text, mut is_escaped) = (1, false, false);
     for byte in text {
         match byte {
@@ -108,27 +108,27 @@ fn most_values(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request that is no JSON as far as its parameters go, so that whoever
-/// asked gets an answer. Browsers write half of a surrogate pair, which stands for no character, as
-/// an escape that no text can be made of.
-fn asked(text: &[u8]) -> Value {
+/// Returns the identifier of a request whose parameters cannot be parsed, so that the sender gets
+/// an answer. Browsers write half of a surrogate pair, which is not a character, as an escape that
+/// no Rust text can hold.
+fn request_id(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {
         id: Value,
     }
-    // Fields that are not wanted are passed over without making texts and numbers of them.
+    // Other fields are skipped without being converted to texts and numbers.
     let asked = serde_json::from_slice(text).ok();
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns what a response can have as its identifier.
+/// Returns the identifier if a response can have it, and otherwise null.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()
 }
 
-/// The text of a message.
-pub fn written(message: &Message) -> String {
+/// Serialises a message.
+pub fn to_text(message: &Message) -> String {
     #[derive(Default, Serialize)]
     struct Text<'a> {
         jsonrpc: &'static str,
@@ -166,7 +166,7 @@ pub fn written(message: &Message) -> String {
             text.error = it.response_result.as_ref().err();
         }
     }
-    // Nothing in a message cannot be written: its keys are texts.
+    // Serialising a message cannot fail, as all keys are texts.
     serde_json::to_string(&text).unwrap_or_default()
 }
 

@@ -1,11 +1,11 @@
-//! The language server: the editor's answers, spoken in the Language Server Protocol.
+//! The language server: serves the answers of the editor module by the Language Server Protocol.
 //!
 //! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`) and
-//! knows neither threads nor streams, so that any host can carry it; [`stdio`] does over standard
-//! input and output. [`crate::editor`] has the answers, `text_requests` asks it, and `convert`
-//! makes of them what the protocol has (`protocol`). `picture_requests` and `frames` answer about a
-//! text's picture, which `scene_version` keeps at hand, by requests of our own that
-//! docs/protocol.md describes.
+//! knows neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard
+//! input and output. [`crate::editor`] computes the answers, `text_requests` calls it, and
+//! `convert` turns its answers into the types of the protocol (`protocol`). `picture_requests` and
+//! `frames` answer Pinhole's own requests about a text's picture, which docs/protocol.md describes;
+//! `scene_version` caches what they need.
 
 mod convert;
 mod documents;
@@ -21,4 +21,4 @@ mod text_requests;
 
 pub use params::{Answer, Refusal, optional, response};
 pub use server::Server;
-pub(crate) use server::unharmed;
+pub(crate) use server::catch_panics;

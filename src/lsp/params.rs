@@ -1,45 +1,45 @@
-//! Parameters and results as JSON, and why a request gets none.
+//! Parameters and results of requests as JSON, and errors.
 
 use lsp_server::{ErrorCode, Message, RequestId, Response};
 use serde_json::Value;
 
-/// Why a request gets no answer.
+/// The error that answers a request.
 #[derive(Debug)]
 pub struct Refusal(pub ErrorCode, pub String);
 
 impl Refusal {
-    /// What was asked is not what can be asked.
+    /// The parameters are invalid.
     pub fn invalid(why: impl ToString) -> Self {
         Self(ErrorCode::InvalidParams, why.to_string())
     }
 
-    /// The request was right, and cannot be done; editors show the reason.
+    /// The request is valid, but cannot be carried out. Editors show the reason.
     pub fn failed(why: impl ToString) -> Self {
         Self(ErrorCode::RequestFailed, why.to_string())
     }
 
-    /// The client does not want the answer any more.
+    /// The client has cancelled the request.
     pub fn cancelled() -> Self {
         Self(ErrorCode::RequestCanceled, "cancelled".to_owned())
     }
 
-    /// There is no such method.
+    /// The method is unknown.
     pub fn unknown(method: &str) -> Self {
         let why = format!("`{method}` is not known here");
         Self(ErrorCode::MethodNotFound, why)
     }
 }
 
-/// What is answered, as JSON.
+/// The answer to a request, as JSON.
 pub type Answer = Result<Value, Refusal>;
 
-/// What stands at a place in the parameters.
+/// Reads the value at a JSON pointer in the parameters.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)
 }
 
-/// A field of the parameters; none where it is left out or null.
+/// Reads a field of the parameters; `None` if it is missing or null.
 pub fn optional<T: serde::de::DeserializeOwned>(
     params: &Value,
     name: &str,
@@ -48,7 +48,7 @@ pub fn optional<T: serde::de::DeserializeOwned>(
     serde_json::from_value(field).map_err(|error| Refusal::invalid(format!("`{name}`: {error}")))
 }
 
-/// The message that answers a request.
+/// Returns the message that answers a request.
 pub fn response(id: RequestId, answer: Answer) -> Message {
     let response = match answer {
         Ok(result) => Response::new_ok(id, result),

@@ -1,4 +1,4 @@
-//! A request about a document's picture, and its answer: docs/protocol.md has the contract.
+//! Answers requests about a document's picture. docs/protocol.md is the contract.
 
 use std::{borrow::Cow, cell::LazyCell};
 
@@ -19,11 +19,11 @@ use crate::{
     scene::{Object, Shape},
 };
 
-/// What the names of our own requests begin with.
+/// Prefix of the names of Pinhole's own requests.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// The answer to a request but that for a frame; null where the text has errors. The analysis is
-/// not made where it is not asked.
+/// Answers any request except for a frame; null if the text has errors. The analysis is computed
+/// only if it is needed.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -50,7 +50,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Between which numbers the one at a position may be; of texts with errors, too.
+/// Answers the limits of the number at a position, also in texts with errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -66,7 +66,7 @@ fn written_limits(limits: editor::Limits) -> Value {
     })
 }
 
-/// The numbers and angles that definitions are; of texts with errors, too.
+/// Answers the numbers and angles that are defined by `let`, also in texts with errors.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
     let written = |slider: editor::Slider<'_>| {
@@ -80,8 +80,8 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     Ok(sliders.map(written).collect())
 }
 
-/// A block that is new, or that stands there another time. In a text with errors it is put beside
-/// what can be read of it.
+/// Answers the edits that add a new block or duplicate an object. In a text with errors, the
+/// position of a new block depends on what can be read of it.
 fn add(
     params: &Value,
     converter: Converter<'_>,
@@ -107,7 +107,7 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     let (hit, color) = viewport::pick(scene, world, at).unzip();
     let hit = hit.flatten();
     let image = &scene.image;
-    // A point of the right or lower edge belongs to the last pixel.
+    // A point on the right or lower edge belongs to the last pixel.
     let pixel = [(at.x, image.width), (at.y, image.height)];
     let pixel = pixel.map(|(at, count)| (at as u32).min(count - 1));
     let seen = color.map(|color| {
@@ -132,7 +132,7 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     }))
 }
 
-/// An object of the scene, and where it stands in the text.
+/// Returns an object of the scene, and its range in the text.
 fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
     let object = &version.scene.objects[index];
     let mut facts = json!({
@@ -149,7 +149,7 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     facts
 }
 
-/// The name, or the kind with the indices by which the members of a block are told apart.
+/// Returns the object's name, or else its kind, with the indices of a member of a repetition.
 fn label(object: &Object) -> Cow<'_, str> {
     let kind = object.shape.kind();
     match (&object.name, &*object.indices) {
@@ -159,11 +159,11 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// The objects without what is drawn of them.
+/// Answers the objects without their outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // Objects stand on the first board, wherever it stands in the text.
+    // The first board is listed in any case, as objects stand on it, wherever it is in the text.
     let floor = match shown {
         Shown::First(_) => objects.iter().position(is_board),
         Shown::Only(_) => None,
@@ -173,7 +173,7 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // Of a board that is not crossed by the view axis nothing is drawn, but it may be seen.
+        // A board that the view axis does not cross has no outline, but may be visible.
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object
@@ -227,7 +227,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// In which part of the picture an object's first handle is seen, in words.
+/// Returns, in words, the part of the picture in which an object's first handle is seen.
 fn place(outline: &Outline, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));
@@ -300,7 +300,7 @@ fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
     point.map(DVec2::from).ok_or_else(refusal)
 }
 
-/// A point to a hundredth of a pixel, which nobody sees, in a third of the bytes.
+/// Rounds a point to a hundredth of a pixel, which cannot be seen and takes a third of the bytes.
 fn written_point(point: DVec2) -> Value {
     json!(((point * 100.0).round() / 100.0).to_array())
 }

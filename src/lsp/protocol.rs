@@ -1,5 +1,6 @@
-//! The types of the protocol that are read, or that several answers have. What is written besides
-//! is an object of JSON where it is made: a crate of all types took nine seconds to compile.
+//! Types of the protocol that are read, or that several answers share. Other answers are JSON
+//! objects where they are made: a crate with all types of the protocol took nine seconds to
+//! compile.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -9,7 +10,7 @@ use serde_json::Value;
 #[serde(transparent)]
 pub struct Uri(pub String);
 
-/// A place between two characters, both counted from 0.
+/// A position between two characters: line and column, both counted from 0.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub struct Position {
     pub line: u32,
@@ -22,7 +23,7 @@ pub struct Range {
     pub end: Position,
 }
 
-/// A colour, each channel from 0 to 1.
+/// A colour; each channel is from 0 to 1.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Color {
     pub red: f32,
@@ -31,7 +32,7 @@ pub struct Color {
     pub alpha: f32,
 }
 
-/// An object without the fields that are null: the protocol leaves out what there is not.
+/// Removes the null fields of an object: the protocol leaves out missing values.
 pub fn without_nulls(mut object: Value) -> Value {
     if let Value::Object(fields) = &mut object {
         fields.retain(|_, field| !field.is_null());

@@ -1,8 +1,7 @@
-//! A version of a text as its picture needs it: the scene, and the worlds that pictures and rays
-//! ask.
+//! The scene of a version of a text, and the worlds by which its pictures and rays are traced.
 //!
-//! All is made once for a version, so that a pick in a scene of 100 000 spheres reads none of them
-//! again.
+//! Everything is computed once for a version, so that a pick in a scene of 100 000 spheres reads
+//! none of them again.
 
 use std::collections::VecDeque;
 
@@ -16,26 +15,26 @@ use crate::{
     tracer::World,
 };
 
-/// Worlds are kept for so many sizes: the picture's own, and those of the frames that are shown
-/// until it is done.
+/// Maximum number of picture sizes whose worlds are kept: the picture's own size, and those of the
+/// coarse frames that are shown until it is finished.
 const WORLDS: usize = 4;
 
-/// A version of a text that has a picture.
+/// A version of a text without errors.
 #[derive(Debug)]
 pub struct SceneVersion {
-    /// Which version it is, as the client counts.
+    /// The version's number, as the client counts.
     pub number: i32,
-    /// What it means.
+    /// The scene.
     pub scene: Scene,
-    /// For each object the name or the keyword that stands for it.
+    /// For each object, the span of its name or keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// The text with the object that was dragged last alone.
+    /// The text with only the object that was dragged last.
     alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
-    /// None where the text has errors.
+    /// Makes the version of a text; `None` if it has errors.
     pub fn new(analysis: &Analysis<'_>, number: i32) -> Option<Self> {
         let scene = analysis.scene()?;
         Some(Self {
@@ -47,7 +46,8 @@ impl SceneVersion {
         })
     }
 
-    /// The scene, and its world for a picture of which width and height are divided by `scale`.
+    /// Returns the scene, and its world for a picture whose width and height are divided by
+    /// `scale`.
     pub fn world(&mut self, scale: u32) -> (&Scene, &World) {
         let found = self.worlds.iter().position(|(known, _)| *known == scale);
         let index = found.unwrap_or_else(|| {
@@ -68,7 +68,8 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// The text with an object alone, or with none, by which drags are read: each step asks for it.
+    /// Returns the scene, and the text with only one object or none, in which a drag is evaluated.
+    /// It is cached, as each step of a drag needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));
@@ -76,7 +77,7 @@ impl SceneVersion {
         (&self.scene, alone)
     }
 
-    /// Width and height divided by `scale`, rounded up.
+    /// Returns width and height divided by `scale`, rounded up.
     pub fn size(&self, scale: u32) -> (u32, u32) {
         let image = &self.scene.image;
         (image.width.div_ceil(scale), image.height.div_ceil(scale))

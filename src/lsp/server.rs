@@ -1,11 +1,11 @@
 //! The server as a value: messages in, messages out.
 //!
-//! What a client tells is taken in at once, and what it asks is put into a queue, of which
-//! [`Server::advance`] answers a slice; so a host can see what has come in the meantime, as a
-//! request's cancelling. Each answer is about the text as it was when it was asked for: before a
-//! text changes, what waits about it is answered. Diagnostics are computed for a text's last
-//! version alone. A frame, which takes longer than all else, is made in slices when nothing else is
-//! to be done, and given up where its text changes, unless it was asked for by `last`.
+//! Notifications are handled at once. Requests are put into a queue, from which [`Server::advance`]
+//! answers a slice at a time, so that a host can take in other messages in between, such as a
+//! cancellation. Each answer is about the text as it was when the request came: before a text
+//! changes, the waiting requests about it are answered. Diagnostics are computed only for the last
+//! version of a text. A frame takes longer than everything else: it is rendered in slices when
+//! there is no other work, and given up if its text changes, unless it was requested with `last`.
 
 use std::{
     cell::LazyCell,
@@ -28,39 +28,38 @@ use super::{
 };
 use crate::editor::Analysis;
 
-/// How far a conversation has come.
+/// Phase of a conversation.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// The client has not introduced itself.
+    /// The client has not sent `initialize`.
     Silent,
-    /// The client has introduced itself.
+    /// The client has sent `initialize`.
     Talking(Client),
-    /// The client has asked to shut down.
+    /// The client has sent `shutdown`.
     ShutDown,
-    /// The client has said `exit`, after `shutdown` or not.
+    /// The client has sent `exit`; `properly` if after `shutdown`.
     Ended { properly: bool },
 }
 
-/// A language server that is talking to one client.
+/// A language server for one client.
 #[derive(Debug)]
 pub struct Server {
     phase: Phase,
     documents: HashMap<Uri, Document>,
-    /// The requests that have no answer yet.
+    /// Requests without an answer.
     waiting: VecDeque<Request>,
-    /// The documents whose diagnostics are to be told.
+    /// Documents whose diagnostics are to be sent.
     changed: BTreeSet<String>,
-    /// What the pictures of documents are made from, where one was asked for; none where a text
-    /// has errors.
+    /// Scenes of the documents whose picture was requested; `None` if the text has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// Of each text that has changed, the last version without errors before that.
+    /// The last version without errors of each text that has changed since.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
 
 impl Server {
-    /// A server that nobody has spoken to. What cannot be understood is said to `log`.
+    /// Makes a server that waits for `initialize`. Malformed notifications are reported to `log`.
     pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
@@ -74,8 +73,8 @@ impl Server {
         }
     }
 
-    /// Whether the conversation has ended properly, by `exit` after `shutdown`; none while it goes
-    /// on.
+    /// Returns whether the conversation has ended properly, by `exit` after `shutdown`; `None`
+    /// while it goes on.
     pub fn ended(&self) -> Option<bool> {
         match self.phase {
             Phase::Ended { properly } => Some(properly),
@@ -83,33 +82,32 @@ impl Server {
         }
     }
 
-    /// Takes a message in, and returns what has to be said before anything else.
+    /// Handles a message, and returns the messages that must be sent before any others.
     pub fn handle(&mut self, message: Message) -> Vec<Message> {
         match (message, &self.phase) {
-            (Message::Request(request), Phase::Talking(_)) if !is_of_life(&request) => {
+            (Message::Request(request), Phase::Talking(_)) if !is_lifecycle(&request) => {
                 self.waiting.push_back(request);
                 Vec::new()
             }
             (Message::Request(request), _) => {
-                let mut said = self.answer_all(|_| true);
-                said.extend(self.frames.drop_of(None).into_iter().map(cancelled));
-                said.push(self.answer_about_life(request));
-                said
+                let mut outgoing = self.answer_all(|_| true);
+                outgoing.extend(self.frames.drop_of(None).into_iter().map(cancelled));
+                outgoing.push(self.answer_lifecycle(request));
+                outgoing
             }
-            (Message::Notification(notification), _) => self.notice(notification),
-            // Nothing was asked of the client.
+            (Message::Notification(notification), _) => self.handle_notification(notification),
+            // The server sends no requests.
             (Message::Response(_), _) => Vec::new(),
         }
     }
 
-    /// Whether there is work left.
+    /// Whether any work is left.
     pub fn is_busy(&self) -> bool {
         !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
-    /// Does a piece of the work that is left, and returns what is to be said of it. A piece is one
-    /// text: everything that was asked about it, and what is wrong with it; or, where nothing
-    /// else is left, a slice of a frame.
+    /// Does a piece of the work, and returns the messages to send. A piece is all requests about
+    /// one text and its diagnostics or, if nothing else is left, a slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -120,18 +118,18 @@ impl Server {
         self.work_on(next.as_ref(), is_changed)
     }
 
-    /// Answers what waits about such texts.
+    /// Answers all waiting requests about texts that `is_about` selects.
     fn answer_all(&mut self, is_about: impl Fn(Option<&Uri>) -> bool) -> Vec<Message> {
-        let mut said = Vec::new();
+        let mut outgoing = Vec::new();
         while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
             let uri = uri(request);
-            said.extend(self.work_on(uri.as_ref(), false));
+            outgoing.extend(self.work_on(uri.as_ref(), false));
         }
-        said
+        outgoing
     }
 
-    /// Answers what waits about a text, or about none, and tells what is wrong with it if it has
-    /// changed.
+    /// Answers the waiting requests about a text, or about none, and publishes its diagnostics if
+    /// it has changed.
     fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
@@ -149,23 +147,23 @@ impl Server {
         let analysis = converter
             .map(|converter| LazyCell::new(move || Analysis::new(&converter.document.sources)));
         let analysis = analysis.as_ref();
-        let mut said = Vec::new();
+        let mut outgoing = Vec::new();
         for request in asked {
             let id = request.id.clone();
             let Some(about) = request.method.strip_prefix(picture_requests::NAMESPACE) else {
                 let known = converter.zip(analysis.map(|analysis| &**analysis));
-                said.push(response(id, unharmed(|| answer(request, known))));
+                outgoing.push(response(id, catch_panics(|| answer(request, known))));
                 continue;
             };
             let Some((converter, analysis)) = converter.zip(analysis) else {
-                said.push(response(id, Err(not_open())));
+                outgoing.push(response(id, Err(not_open())));
                 continue;
             };
             let (uri, number) = (converter.uri.clone(), converter.document.version);
             let version = self.scenes.entry(uri.clone());
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             if version.is_some() && about == "frame" {
-                // From now on this one is the last without errors.
+                // From now on this version is the last one without errors.
                 self.last.remove(&uri);
             }
             let params = &request.params;
@@ -175,57 +173,57 @@ impl Server {
             match (pictured, about) {
                 (Some(version), "frame") => {
                     let push = || self.frames.push(id.clone(), uri, params, version);
-                    match unharmed(push) {
-                        Ok(superseded) => said.extend(superseded.into_iter().map(cancelled)),
-                        Err(refusal) => said.push(response(id, Err(refusal))),
+                    match catch_panics(push) {
+                        Ok(superseded) => outgoing.extend(superseded.into_iter().map(cancelled)),
+                        Err(refusal) => outgoing.push(response(id, Err(refusal))),
                     }
                 }
                 _ => {
                     let answer =
                         || picture_requests::answer(about, params, converter, analysis, version);
-                    said.push(response(id, unharmed(answer)));
+                    outgoing.push(response(id, catch_panics(answer)));
                 }
             }
         }
         if is_changed {
             let mut params = json!({ "uri": wanted, "diagnostics": [] });
-            // Nothing is wrong with a text that was closed.
+            // A text that was closed has no diagnostics.
             if let Some((converter, analysis)) = converter.zip(analysis) {
                 params["version"] = converter.document.version.into();
                 params["diagnostics"] = json!(diagnostics(converter, analysis));
             }
-            said.push(published(params));
+            outgoing.push(published(params));
         }
-        said
+        outgoing
     }
 
-    /// Makes a slice of a frame. Says the frame if it is done.
+    /// Renders a slice of a frame. Returns its answer if it is finished.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.oldest()?;
         let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);
-        let answer = unharmed(|| frames.advance(scenes, last)).transpose()?;
+        let answer = catch_panics(|| frames.advance(scenes, last)).transpose()?;
         self.frames.cancel(&id);
         Some(response(id, answer))
     }
 
-    /// Keeps the last version without errors of a text that has changed.
+    /// Moves the scene of a text that has changed to `last`, if it had no errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // Frames that are made are of an earlier version, and go on.
+            // The frames in work are of an earlier version, and go on.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);
         self.drop_frames(uri)
     }
 
-    /// Forgets a text that has come or gone.
+    /// Forgets the scenes of a text that was opened or closed.
     fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
         self.last.remove(uri);
         self.drop_frames(uri)
     }
 
-    /// Answers those who wait for a frame of a text that has changed.
+    /// Drops the frames of a text that has changed, and returns the answers to their requests.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -235,8 +233,9 @@ impl Server {
         dropped.map(changed).collect()
     }
 
-    /// The requests that begin and end a conversation, and all others before and after it.
-    fn answer_about_life(&mut self, request: Request) -> Message {
+    /// Answers the requests that begin and end a conversation, and rejects all others before and
+    /// after it.
+    fn answer_lifecycle(&mut self, request: Request) -> Message {
         let refuse = |code, message: &str| Err(Refusal(code, message.to_owned()));
         let answer = match (request.method.as_str(), self.phase) {
             ("initialize", Phase::Silent) => Ok(self.initialize(&request.params)),
@@ -266,8 +265,8 @@ impl Server {
         })
     }
 
-    /// What a client tells without asking.
-    fn notice(&mut self, notification: Notification) -> Vec<Message> {
+    /// Handles a notification.
+    fn handle_notification(&mut self, notification: Notification) -> Vec<Message> {
         let Notification { method, params } = notification;
         if method == "exit" {
             let properly = matches!(self.phase, Phase::ShutDown);
@@ -278,23 +277,23 @@ impl Server {
         };
         let about = params.pointer("/textDocument/uri").and_then(Value::as_str);
         let about = about.map(|uri| Uri(uri.to_owned()));
-        let mut said = Vec::new();
+        let mut outgoing = Vec::new();
         if method.starts_with("textDocument/did") {
-            said = self.answer_all(|uri| uri.is_some() && uri == about.as_ref());
+            outgoing = self.answer_all(|uri| uri.is_some() && uri == about.as_ref());
         }
-        let noticed = match method.as_str() {
+        let handled = match method.as_str() {
             "textDocument/didOpen" => self.open(&params, &client),
             "textDocument/didChange" => self.change(&params),
             "textDocument/didClose" => self.close(&params),
             "$/cancelRequest" => Ok(self.cancel(&params).into_iter().collect()),
-            // Others are for servers that know more.
+            // Other notifications are ignored, as the protocol allows.
             _ => Ok(Vec::new()),
         };
-        match noticed {
-            Ok(more) => said.extend(more),
+        match handled {
+            Ok(more) => outgoing.extend(more),
             Err(Refusal(_, message)) => (self.log)(&format!("{method}: {message}")),
         }
-        said
+        outgoing
     }
 
     fn open(&mut self, params: &Value, client: &Client) -> Result<Vec<Message>, Refusal> {
@@ -304,9 +303,9 @@ impl Server {
         let name = uri.0.rsplit('/').next().unwrap_or_default().to_owned();
         self.changed.insert(uri.0.clone());
         let document = Document::new(&name, version, text, client.encoding);
-        let said = self.forget(&uri);
+        let outgoing = self.forget(&uri);
         self.documents.insert(uri, document);
-        Ok(said)
+        Ok(outgoing)
     }
 
     fn change(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
@@ -317,27 +316,27 @@ impl Server {
         let Some(document) = self.documents.get_mut(&uri) else {
             return refuse(format!("{} is not open", uri.0));
         };
-        // An old state that comes late would be put on top of a newer one.
+        // A stale version would overwrite a newer one.
         if version < document.version {
             return refuse(format!("version {version} of {} is stale", uri.0));
         }
         if let Err(message) = document.change(version, &changes) {
             return refuse(message);
         }
-        let said = self.outdate(&uri);
+        let outgoing = self.outdate(&uri);
         self.changed.insert(uri.0);
-        Ok(said)
+        Ok(outgoing)
     }
 
     fn close(&mut self, params: &Value) -> Result<Vec<Message>, Refusal> {
         let uri: Uri = at(params, "/textDocument/uri")?;
         self.documents.remove(&uri);
-        let said = self.forget(&uri);
+        let outgoing = self.forget(&uri);
         self.changed.insert(uri.0);
-        Ok(said)
+        Ok(outgoing)
     }
 
-    /// Says of a request that still waits, or of a frame that is not done, that it was cancelled.
+    /// Cancels a waiting request or an unfinished frame, and returns its answer.
     fn cancel(&mut self, params: &Value) -> Option<Message> {
         let id = params.get("id").cloned().unwrap_or_default();
         let id: RequestId = serde_json::from_value(id).ok()?;
@@ -355,20 +354,20 @@ fn published(params: Value) -> Message {
     Notification::new("textDocument/publishDiagnostics".to_owned(), params).into()
 }
 
-/// Whether a request is about the conversation itself.
-fn is_of_life(request: &Request) -> bool {
+/// Whether a request begins or ends the conversation.
+fn is_lifecycle(request: &Request) -> bool {
     matches!(request.method.as_str(), "initialize" | "shutdown")
 }
 
-/// The document that a request is about.
+/// Returns the document that a request is about.
 fn uri(request: &Request) -> Option<Uri> {
     let uri = request.params.pointer("/textDocument/uri")?.as_str()?;
     Some(Uri(uri.to_owned()))
 }
 
-/// An answer, or the refusal if giving it failed: the next request may fare better, and no text is
-/// touched by an answer.
-pub(crate) fn unharmed<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+/// Returns the answer, or a refusal if computing it panicked: the next request may succeed, and
+/// computing an answer changes no text.
+pub(crate) fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))
@@ -381,7 +380,7 @@ mod tests {
 
     #[test]
     fn an_answer_that_fails_is_an_answer() {
-        let answer = unharmed::<Value>(|| panic!("on purpose"));
+        let answer = catch_panics::<Value>(|| panic!("on purpose"));
         let code = answer.err().map(|Refusal(code, _)| code as i32);
         assert_eq!(code, Some(ErrorCode::InternalError as i32));
     }

@@ -1,9 +1,9 @@
-//! The server on standard input and output, as editors start it.
+//! Runs the server on standard input and output, as editors start it.
 //!
-//! A thread of its own does nothing but read, so that all that has come is taken in before the next
-//! piece of work: what was cancelled in the meantime is not computed, and of several states of a
-//! text only the last is judged. Messages are read here rather than by lsp-server, which takes any
-//! length that is announced and ends at the first message that is none.
+//! A separate thread reads, so that all messages that have arrived are handled before the next
+//! piece of work: requests that were cancelled meanwhile are not computed, and diagnostics only for
+//! the last of several versions. Messages are not read by lsp-server, which allocates any length
+//! that is announced and stops at the first malformed message.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -19,15 +19,15 @@ use super::{
     server::Server,
 };
 
-/// A message, or the response to something that came in its place.
+/// A message, or the response to a malformed one.
 type Incoming = Result<Message, Value>;
 
-/// Has a server talk to a client until it ends. Says whether it ended properly: by `exit` after
+/// Runs a server until the conversation ends. Returns whether it ended properly, by `exit` after
 /// `shutdown`.
 ///
 /// # Errors
 ///
-/// The output cannot be written to.
+/// Writing to the output fails.
 pub fn serve(
     mut server: Server,
     input: impl Read + Send + 'static,
@@ -38,7 +38,7 @@ pub fn serve(
     thread::spawn(move || read(input, &sender, log));
     while let Some(incoming) = next_message(&receiver, &mut server, output)? {
         match incoming {
-            Ok(message) => say(output, server.handle(message))?,
+            Ok(message) => send(output, server.handle(message))?,
             Err(response) => {
                 let response = response.to_string();
                 write!(
@@ -56,8 +56,8 @@ pub fn serve(
     Ok(false)
 }
 
-/// The next message, as soon as there is one; the server works while it waits. None if no more will
-/// come, and all is done.
+/// Returns the next message as soon as it arrives; the server works meanwhile. Returns `None` if
+/// the input has ended and no work is left.
 fn next_message(
     messages: &Receiver<Incoming>,
     server: &mut Server,
@@ -67,12 +67,12 @@ fn next_message(
         if let Ok(message) = messages.try_recv() {
             return Ok(Some(message));
         }
-        say(output, server.advance())?;
+        send(output, server.advance())?;
     }
     Ok(messages.recv().ok())
 }
 
-fn say(output: &mut dyn Write, messages: Vec<Message>) -> io::Result<()> {
+fn send(output: &mut dyn Write, messages: Vec<Message>) -> io::Result<()> {
     messages
         .into_iter()
         .try_for_each(|message| message.write(&mut &mut *output))
@@ -85,7 +85,7 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
             Ok(Some(message)) => {
                 let is_exit =
                     matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
-                // Behind `exit` nobody listens any more.
+                // Nothing is read after `exit`.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }
@@ -100,18 +100,18 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// The longest message, in bytes. What announces more has lost its way, and what would follow it is
-/// anybody's guess.
+/// Maximum length of a message, in bytes. A longer announcement is garbage, after which the start
+/// of the next message is unknown.
 const LONGEST: u64 = 1 << 30;
 
-/// The longest line of a header; those that are known take some thirty bytes.
+/// Maximum length of a header's line, in bytes. Known headers take some thirty.
 const LONGEST_HEADER: u64 = 4096;
 
-/// Why nothing was read.
+/// Error of reading a message.
 enum Failed {
-    /// The next message may be a right one.
+    /// The next message may be valid.
     Once(String),
-    /// Nothing can be read any more.
+    /// No further message can be read.
     ForGood(String),
 }
 
@@ -121,12 +121,12 @@ impl From<io::Error> for Failed {
     }
 }
 
-/// The next message; none behind the last one.
+/// Reads the next message; `None` at the end of the input.
 fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     let Some(length) = length(input)? else {
         return Ok(None);
     };
-    // Memory is taken for what has come, not for what was announced.
+    // Memory is allocated for the bytes that arrive, not for the announced length.
     let mut content = Vec::new();
     let read = input.by_ref().take(length).read_to_end(&mut content)?;
     if (read as u64) < length {
@@ -140,7 +140,7 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     }
 }
 
-/// The length that a header announces; none at the end of the input.
+/// Reads a header, and returns the length that it announces; `None` at the end of the input.
 fn length(input: &mut impl BufRead) -> Result<Option<u64>, Failed> {
     let mut length = None;
     loop {

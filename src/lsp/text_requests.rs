@@ -1,5 +1,5 @@
-//! A request about a document, and its answer: the parameters read, the editor asked, the answer
-//! converted.
+//! Answers requests about a document: reads the parameters, calls the editor module, converts the
+//! result.
 
 use lsp_server::Request;
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ use crate::{
     editor::{self, Analysis},
 };
 
-/// The answer to a request about a document.
+/// Answers a request about a document.
 pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -> Answer {
     let Request { method, params, .. } = request;
     let Some(about) = method.strip_prefix("textDocument/") else {
@@ -27,7 +27,9 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
     match about {
         "completion" => {
             let completions = editor::completions(analysis, at()?).into_iter().enumerate();
-            list(completions.map(|(index, completion)| converter.completion(index, completion)))
+            list(completions, |(index, completion)| {
+                converter.completion(index, completion)
+            })
         }
         "hover" => Ok(editor::hover(analysis, at()?)
             .map(|it| converter.hover(it))
@@ -42,14 +44,13 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
         }
         "references" => {
             let all: bool = params::at(&params, "/context/includeDeclaration")?;
-            let found = editor::occurrences(analysis, at()?).into_iter();
-            let found = found.filter(|found| all || !found.is_definition);
-            list(found.map(|found| converter.location(found.span)))
+            let mut found = editor::occurrences(analysis, at()?);
+            found.retain(|found| all || !found.is_definition);
+            list(found, |found| converter.location(found.span))
         }
-        "documentHighlight" => {
-            let found = editor::occurrences(analysis, at()?).into_iter();
-            list(found.map(|found| converter.highlight(found)))
-        }
+        "documentHighlight" => list(editor::occurrences(analysis, at()?), |found| {
+            converter.highlight(found)
+        }),
         "prepareRename" => {
             let span = editor::renamable(analysis, at()?).map_err(Refusal::failed)?;
             Ok(json!({ "range": converter.range(span), "placeholder": analysis.slice(span) }))
@@ -60,32 +61,23 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             let edits = spans.into_iter().map(|span| Edit::new(span, &*new));
             Ok(converter.edit(edits))
         }
-        "documentSymbol" => {
-            let symbols = editor::symbols(analysis).into_iter();
-            list(symbols.map(|symbol| converter.symbol(symbol)))
-        }
-        "foldingRange" => list(
-            editor::folds(analysis)
-                .into_iter()
-                .map(|fold| converter.fold(fold)),
-        ),
+        "documentSymbol" => list(editor::symbols(analysis), |symbol| converter.symbol(symbol)),
+        "foldingRange" => list(editor::folds(analysis), |fold| converter.fold(fold)),
         "inlayHint" => {
-            let hints = editor::hints(analysis, range()?.range()).into_iter();
-            list(hints.map(|hint| converter.hint(hint)))
+            let hints = editor::hints(analysis, range()?.range());
+            list(hints, |hint| converter.hint(hint))
         }
-        "documentColor" => {
-            let swatches = editor::swatches(analysis).into_iter();
-            list(swatches.map(|swatch| converter.swatch(swatch)))
-        }
+        "documentColor" => list(editor::swatches(analysis), |swatch| {
+            converter.swatch(swatch)
+        }),
         "colorPresentation" => {
             let (color, span) = (params::at(&params, "/color")?, range()?);
             let labels = editor::presentations(analysis, span, convert::color(color));
-            let labels = labels.into_iter();
-            list(labels.map(|label| converter.presentation(span, label)))
+            list(labels, |label| converter.presentation(span, label))
         }
         "codeAction" => code_actions(converter, analysis, &params),
-        // Nothing for a text with mistakes of syntax: they are told already, and an editor that
-        // formats on every save must not complain each time.
+        // Null for a text with syntax errors: they are reported already, and an editor that formats
+        // on every save must not complain each time.
         "formatting" => {
             let edits = editor::formatting(analysis);
             Ok(edits.map(|edits| converter.text_edits(edits)).into())
@@ -95,13 +87,13 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
     }
 }
 
-/// A request about a document of which the client has not said that it is open.
+/// Returns the refusal of a request about a document that is not open.
 pub fn not_open() -> Refusal {
     Refusal::invalid("the document is not open")
 }
 
-fn list(items: impl Iterator<Item = Value>) -> Answer {
-    Ok(Value::Array(items.collect()))
+fn list<T>(items: impl IntoIterator<Item = T>, convert: impl FnMut(T) -> Value) -> Answer {
+    Ok(items.into_iter().map(convert).collect())
 }
 
 fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Value) -> Answer {
@@ -116,7 +108,7 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
         let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
-    // Beside a fix it is offered where there are others.
+    // Beside a single fix, "fix all" is offered if there are other fixes.
     let all = analysis.diagnostics().iter();
     let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
     let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;
@@ -126,7 +118,7 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
     Ok(Value::Array(actions))
 }
 
-/// What is wrong with a document.
+/// Returns the diagnostics of a document.
 pub fn diagnostics(converter: Converter<'_>, analysis: &Analysis<'_>) -> Vec<Value> {
     let diagnostics = analysis.diagnostics().iter();
     diagnostics

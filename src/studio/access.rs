@@ -1,11 +1,11 @@
-//! Who may do what.
+//! Access control of the host.
 //!
-//! The page's files hold no secret, and whoever asks this host for them gets them. A conversation,
-//! and with it the scene's file, is for pages that show a token. Other pages in the same browser
-//! can connect as well, but they cannot set the headers that are looked at: `Host` (a name of
-//! theirs may lead to this machine) and `Origin`. A token is never a part of what a browser sends
-//! by itself: cookies go to all servers of a machine, so there is none, and the part of an address
-//! that the token stands in stays in the browser.
+//! The page's files hold no secret, and are served to any request for this host. A conversation,
+//! and with it the scene's file, is only for pages that show a token. Other pages in the same
+//! browser can connect as well, but cannot forge the headers that are checked: `Host` (a foreign
+//! name may resolve to this machine) and `Origin`. A browser never sends a token by itself: there
+//! are no cookies, which go to all servers of a machine, and the token is in the fragment of the
+//! address, which stays in the browser.
 
 use std::{
     io,
@@ -25,10 +25,12 @@ use subtle::ConstantTimeEq as _;
 /// Path of the web socket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token that a browser is started with: a slow machine starts one in this time.
+/// Lifetime of the token that a browser is started with: even a slow machine starts one in this
+/// time.
 const LIFETIME: Duration = Duration::from_secs(60);
 
-/// Returns why a request to the host at this port is refused, whoever sends it.
+/// Returns why a request to the host at this port is refused, with or without a token; `None` if it
+/// is not.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -38,7 +40,7 @@ pub fn refusal(
     let host = only(headers, &HOST).unwrap_or_default();
     let origin = only(headers, &ORIGIN);
     let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
-        // Browsers leave the usual port out.
+        // Browsers leave out the default port.
         host == format!("{name}:{port}") || (port == 80 && host == *name)
     });
     if !is_own || uri.authority().is_some() {
@@ -60,8 +62,8 @@ pub fn refusal(
     }
 }
 
-/// Returns the value of a header; an empty one, which is never right, if there are several or it is
-/// no text.
+/// Returns the value of a header; an empty one, which is never valid, if there are several or it is
+/// not a text.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().unwrap_or_default();
@@ -71,50 +73,50 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
 /// The tokens of a host.
 #[derive(Debug)]
 pub struct Access {
-    /// In the address that is printed. It lets in any number of pages.
+    /// Token in the printed address. It admits any number of pages.
     printed: String,
     started: Mutex<Started>,
 }
 
-/// The session of the browser that the host starts. Its first token stands in a command line, which
-/// all users can read.
+/// The browser that the host starts. Its first token is in a command line, which all users can
+/// read.
 #[derive(Debug)]
 struct Started {
-    /// In the command line. It serves once.
+    /// Token in the command line. It is valid once.
     once: String,
-    /// When it stops to serve.
+    /// Time until which the token in the command line is valid.
     until: Instant,
-    /// What the page that has shown it is given in its place.
-    session: Option<Session>,
+    /// Session of the page that has shown the token.
+    session: Option<BrowserSession>,
 }
 
 #[derive(Debug)]
-struct Session {
+struct BrowserSession {
     token: String,
     is_over: Arc<AtomicBool>,
 }
 
-/// The right to a conversation.
+/// Permission for a conversation.
 #[derive(Debug)]
 pub struct Pass {
-    /// What the page shows when it connects again.
+    /// Token that the page shows when it connects again.
     pub token: String,
     is_over: Arc<AtomicBool>,
 }
 
 impl Pass {
-    /// Whether the conversation has to end, because the address it began with was used twice.
+    /// Whether the conversation has to end, because the address that it began with was used twice.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
 }
 
-/// Why a page gets no conversation. The web socket is closed with a code that says so.
+/// Reason why a page is not admitted, with the code that the web socket is closed with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAdmitted {
-    /// The token is not one of this host: it is that of an earlier run, or none.
+    /// The token is not one of this host; it may be of an earlier run.
     Unknown = 4001,
-    /// The address that a browser was started with comes too late.
+    /// The address that a browser was started with was used too late.
     Late = 4002,
     /// The address that a browser was started with was used twice.
     Twice = 4003,
@@ -125,7 +127,7 @@ impl Access {
     ///
     /// # Errors
     ///
-    /// The system has no randomness to give.
+    /// The system's random number generator fails.
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             printed: secret()?,
@@ -137,17 +139,18 @@ impl Access {
         })
     }
 
-    /// The token of the printed address, and that of the address that a browser is started with.
+    /// Returns the token of the printed address, and that of the address that a browser is started
+    /// with.
     pub fn tokens(&self) -> [String; 2] {
         let started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
         [self.printed.clone(), started.once.clone()]
     }
 
-    /// Admits whoever shows a right token at this time.
+    /// Admits a page that shows a valid token at this time.
     ///
     /// # Errors
     ///
-    /// Why the token is not, or no longer, right.
+    /// The token is not, or no longer, valid.
     pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
         let mut started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
         if is_equal(token, &self.printed) {
@@ -158,7 +161,7 @@ impl Access {
         }
         if is_equal(token, &started.once) {
             return match &started.session {
-                // Whoever was first may be somebody who has read the command line.
+                // The first page may belong to somebody who has read the command line.
                 Some(session) => {
                     session.is_over.store(true, Ordering::SeqCst);
                     Err(NotAdmitted::Twice)
@@ -166,7 +169,7 @@ impl Access {
                 None if now > started.until => Err(NotAdmitted::Late),
                 None => {
                     let token = secret().map_err(|_| NotAdmitted::Unknown)?;
-                    let session = started.session.insert(Session {
+                    let session = started.session.insert(BrowserSession {
                         token,
                         is_over: Arc::default(),
                     });
@@ -186,7 +189,7 @@ impl Access {
     }
 }
 
-impl Session {
+impl BrowserSession {
     fn pass(&self) -> Pass {
         Pass {
             token: self.token.clone(),
@@ -195,18 +198,18 @@ impl Session {
     }
 }
 
-/// Makes 128 random bits, as hexadecimal digits.
+/// Returns 128 random bits, as hexadecimal digits.
 ///
 /// # Errors
 ///
-/// The system has no randomness to give.
+/// The system's random number generator fails.
 pub fn secret() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(|error| io::Error::other(error.to_string()))?;
     Ok(format!("{:032x}", u128::from_ne_bytes(bytes)))
 }
 
-/// Compares in a time that does not tell where two texts differ.
+/// Compares two texts in constant time, which does not reveal where they differ.
 fn is_equal(a: &str, b: &str) -> bool {
     a.as_bytes().ct_eq(b.as_bytes()).into()
 }
@@ -222,8 +225,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // One that came in time is used up, whenever it is shown again: whoever was first may not
-        // be the user.
+        // A token that came in time is used up, whenever it is shown again: the first page may not
+        // be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();
@@ -238,7 +241,7 @@ mod tests {
         for token in [&once, &first.token] {
             assert_eq!(used.admit(token, begin).err(), Some(NotAdmitted::Twice));
         }
-        // The printed one always serves, here alone.
+        // The printed token is always valid, but only for its host.
         assert!(late.admit(&printed, later(100_000)).is_ok());
         assert_eq!(
             used.admit(&printed, begin).err(),

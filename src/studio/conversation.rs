@@ -1,8 +1,8 @@
 //! The conversation with one page, over a web socket.
 //!
-//! What a page asks supersedes what it asked before, so all that has come is taken in before the
-//! next slice of work. While there is no work, the socket is waited for; the scene's file and the
-//! picture that another thread makes are looked at a little later.
+//! Requests of a page supersede its earlier ones, so all messages that have arrived are handled
+//! before the next slice of work. Without work, the thread waits for the socket, and regularly
+//! checks the scene's file and the picture that another thread renders.
 
 use std::{
     convert::Infallible,
@@ -23,7 +23,7 @@ use super::{
     download,
     draft::Unsaved,
     scene_file::{NotSaved, SceneFile, lock},
-    watched::{self, Watch},
+    threaded_download::{self, Watch},
 };
 use crate::{
     lsp::{
@@ -34,27 +34,27 @@ use crate::{
     threads,
 };
 
-/// The longest message of a page, in bytes: far more than any text that an editor in a browser can
-/// hold, and little enough for memory.
+/// Maximum length of a message from a page, in bytes: far more than any text that an editor in a
+/// browser can hold, and little enough for memory.
 pub const LONGEST: usize = 64 << 20;
 
-/// How long the socket is waited for before one looks at the file and the picture: less than
-/// anybody notices.
+/// Time to wait for the socket before the file and the picture are checked: too short to be
+/// noticed.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Who does not take what is sent to it in this time is gone: a browser on this machine takes it at
-/// once, unless it is stopped.
+/// Time after which a page that does not receive a message counts as gone: a browser on this
+/// machine receives it at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// How long passes between two messages of how far a picture's file is.
+/// Interval between two messages about the progress of a picture's file.
 const PROGRESS: Duration = Duration::from_millis(200);
 
-/// How long the page has to answer a goodbye: less than the host waits for its conversations when
+/// Time for the page to answer a close frame: less than the host waits for its conversations when
 /// it ends.
 const FAREWELL: Duration = Duration::from_millis(200);
 
 /// Holds the conversation until the page leaves, its pass is over, or the host ends. The runtime
-/// carries the messages.
+/// transports the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -72,8 +72,8 @@ pub fn converse(
         known: 0,
         download: None,
     };
-    // On threads that are there for each of its pictures. Where there are none, the page connects
-    // again.
+    // The conversation has a thread pool for all of its pictures. If no threads can be started, the
+    // page connects again.
     let _ = threads::install(None, || {
         let Err(end) = conversation.run();
         conversation.cancel(None);
@@ -81,9 +81,9 @@ pub fn converse(
     });
 }
 
-/// The end of a conversation, with the code that the socket is closed with; none if it is closed or
-/// broken.
-struct End(Option<CloseCode>);
+/// The end of a conversation, with the code that the socket is closed with; `None` if it is closed
+/// or broken already.
+struct Closing(Option<CloseCode>);
 
 struct Conversation<'a> {
     runtime: Handle,
@@ -93,77 +93,75 @@ struct Conversation<'a> {
     server: Server,
     /// The file that all pages share.
     file: &'a Mutex<SceneFile>,
-    /// The version of it that the page knows.
+    /// The version of the file that the page knows.
     known: u64,
     download: Option<Download>,
 }
 
-/// A picture's file that is being made.
+/// A picture's file that is being rendered.
 struct Download {
     request: Value,
     watch: Arc<Watch>,
-    /// When the page was told of it last.
-    told: Instant,
+    /// Time of the last progress message.
+    last_progress: Instant,
     thread: JoinHandle<Message>,
 }
 
 impl Conversation<'_> {
-    fn run(&mut self) -> Result<Infallible, End> {
+    fn run(&mut self) -> Result<Infallible, Closing> {
         let params = json!({ "token": self.pass.token });
-        self.say(vec![
+        self.send_all(vec![
             Notification::new("studio/session".to_owned(), params).into(),
         ])?;
         while self.server.ended().is_none() {
             if let Some(code) = over(self.pass, self.ending) {
-                return Err(End(Some(code)));
+                return Err(Closing(Some(code)));
             }
-            self.tell_file()?;
+            self.send_file()?;
             if let Some(done) = self.download.take_if(|it| it.thread.is_finished())
                 && let Ok(answer) = done.thread.join()
             {
-                self.say(vec![answer])?;
+                self.send_all(vec![answer])?;
             }
-            self.tell_progress()?;
+            self.send_progress()?;
             match self.read()? {
-                Some(SocketMessage::Text(text)) => self.hear(&text)?,
-                Some(SocketMessage::Binary(_)) => return Err(End(Some(close_code::UNSUPPORTED))),
-                Some(SocketMessage::Close(_)) => return Err(End(None)),
+                Some(SocketMessage::Text(text)) => self.handle_text(&text)?,
+                Some(SocketMessage::Binary(_)) => {
+                    return Err(Closing(Some(close_code::UNSUPPORTED)));
+                }
+                Some(SocketMessage::Close(_)) => return Err(Closing(None)),
                 Some(SocketMessage::Ping(_) | SocketMessage::Pong(_)) => {}
                 None => {
                     let messages = self.server.advance();
-                    self.say(messages)?;
+                    self.send_all(messages)?;
                 }
             }
         }
-        Err(End(Some(close_code::NORMAL)))
+        Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// What the page has sent; nothing if there is nothing yet. Where there is work, it is not
-    /// waited for, not even as long as the shortest time that a timer knows, which is a
-    /// millisecond.
-    fn read(&mut self) -> Result<Option<SocketMessage>, End> {
+    /// Reads a message of the page; `None` if there is none yet. With work left, does not wait at
+    /// all: the shortest timeout, a millisecond, would be too long.
+    fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
-        let read = match self.server.is_busy() {
-            true => {
-                let mut context = Context::from_waker(Waker::noop());
-                pin!(socket.recv()).poll(&mut context)
-            }
-            false => {
-                let read = async { timeout(WAIT, socket.recv()).await };
-                self.runtime
-                    .block_on(read)
-                    .map_or(Poll::Pending, Poll::Ready)
-            }
+        let read = if self.server.is_busy() {
+            let mut context = Context::from_waker(Waker::noop());
+            pin!(socket.recv()).poll(&mut context)
+        } else {
+            let read = async { timeout(WAIT, socket.recv()).await };
+            self.runtime
+                .block_on(read)
+                .map_or(Poll::Pending, Poll::Ready)
         };
         match read {
             Poll::Pending => Ok(None),
-            Poll::Ready(None) => Err(End(None)),
+            Poll::Ready(None) => Err(Closing(None)),
             Poll::Ready(Some(Ok(message))) => Ok(Some(message)),
-            Poll::Ready(Some(Err(error))) => Err(End(fault(error))),
+            Poll::Ready(Some(Err(error))) => Err(Closing(fault(error))),
         }
     }
 
-    fn send(&mut self, message: SocketMessage) -> Result<(), End> {
+    fn send(&mut self, message: SocketMessage) -> Result<(), Closing> {
         let socket = &mut self.socket;
         let mut sent = pin!(socket.send(message));
         let start = Instant::now();
@@ -171,20 +169,21 @@ impl Conversation<'_> {
             let slice = async { timeout(WAIT, sent.as_mut()).await };
             match self.runtime.block_on(slice) {
                 Ok(Ok(())) => return Ok(()),
-                Ok(Err(_)) => return Err(End(None)),
-                Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(End(None)),
+                Ok(Err(_)) => return Err(Closing(None)),
+                Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(Closing(None)),
                 Err(_) => {}
             }
-            // A page that reads nothing keeps neither the host from ending nor a session.
+            // A page that reads nothing must keep neither the host nor its session from ending.
             if let Some(code) = over(self.pass, self.ending) {
-                return Err(End(Some(code)));
+                return Err(Closing(Some(code)));
             }
         }
     }
 
-    /// Closes the socket. What the page still says is read for a moment: unread, it would break the
-    /// connection before the code has arrived. The socket answers the page's own goodbye meanwhile.
-    fn close(&mut self, End(code): End) {
+    /// Closes the socket. Messages that the page has still sent are read for a moment: unread, they
+    /// would reset the connection before the code has arrived. The socket answers the page's own
+    /// close frame meanwhile.
+    fn close(&mut self, Closing(code): Closing) {
         if let Some(code) = code {
             let reason = "".into();
             let frame = CloseFrame { code, reason };
@@ -197,60 +196,57 @@ impl Conversation<'_> {
             .block_on(async { timeout(FAREWELL, rest).await });
     }
 
-    fn say(&mut self, messages: Vec<Message>) -> Result<(), End> {
-        let mut texts = messages.iter().map(messages::written);
+    fn send_all(&mut self, messages: Vec<Message>) -> Result<(), Closing> {
+        let mut texts = messages.iter().map(messages::to_text);
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
-    /// Tells the page about the file, if it is another than the page knows; a little later, while
-    /// another page has it.
-    fn tell_file(&mut self) -> Result<(), End> {
+    /// Sends the file to the page, if it differs from what the page knows. If another page holds
+    /// the lock, this is done a little later.
+    fn send_file(&mut self) -> Result<(), Closing> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
             Err(TryLockError::Poisoned(file)) => file.into_inner(),
             Err(TryLockError::WouldBlock) => return Ok(()),
         };
-        let version = file.look();
+        let version = file.refresh();
         if version == self.known {
             return Ok(());
         }
-        // A page that is new has nothing yet that a draft would take the place of.
+        // Only a new page has no text that a draft would replace.
         let is_first = self.known == 0;
-        let drafts = match is_first {
-            true => file.drafts(),
-            false => Vec::new(),
-        };
+        let drafts = if is_first { file.drafts() } else { Vec::new() };
         self.known = version;
-        let held = file.held().as_ref();
+        let content = file.content().as_ref();
         let mut params = json!({
             "name": file.name(),
-            "text": held.ok(),
-            "reason": held.err(),
+            "text": content.ok(),
+            "reason": content.err(),
             "saved": file.path().is_some(),
         });
         if !drafts.is_empty() {
             params["drafts"] = json!(drafts);
         }
         drop(file);
-        self.say(vec![
+        self.send_all(vec![
             Notification::new("studio/file".to_owned(), params).into(),
         ])
     }
 
-    /// Tells the page which part of the picture's file is made, a few times a second.
-    fn tell_progress(&mut self) -> Result<(), End> {
+    /// Sends the progress of the picture's file, a few times a second.
+    fn send_progress(&mut self) -> Result<(), Closing> {
         let now = Instant::now();
         match &mut self.download {
-            Some(download) if now.duration_since(download.told) > PROGRESS => {
-                download.told = now;
+            Some(download) if now.duration_since(download.last_progress) > PROGRESS => {
+                download.last_progress = now;
                 let share = download.watch.share();
-                self.say(vec![download::progress(share)])
+                self.send_all(vec![download::progress(share)])
             }
             _ => Ok(()),
         }
     }
 
-    fn hear(&mut self, text: &str) -> Result<(), End> {
+    fn handle_text(&mut self, text: &str) -> Result<(), Closing> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if request.method.starts_with("studio/") => {
                 self.answer(request)
@@ -262,7 +258,7 @@ impl Conversation<'_> {
                     self.cancel(Some(&params["id"]));
                 }
                 let messages = self.server.handle(message);
-                self.say(messages)
+                self.send_all(messages)
             }
             Err(Malformed::Answered(response)) => {
                 self.send(SocketMessage::text(response.to_string()))
@@ -271,8 +267,8 @@ impl Conversation<'_> {
         }
     }
 
-    /// Answers what is asked of the host.
-    fn answer(&mut self, request: Request) -> Result<(), End> {
+    /// Answers a request to the host.
+    fn answer(&mut self, request: Request) -> Result<(), Closing> {
         if download::is_asked_for(&request) {
             return self.render(request);
         }
@@ -284,7 +280,7 @@ impl Conversation<'_> {
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {
-                        // What is in it the page knows, but not where a new scene is.
+                        // The page knows the file's content, but not the path of a new scene.
                         if !is_new {
                             self.known = version;
                         }
@@ -307,34 +303,34 @@ impl Conversation<'_> {
             ("studio/save", None) => Err(Refusal::invalid("there is no `text`")),
             _ => Err(Refusal::unknown(&method)),
         };
-        self.say(vec![response(id, answer)])
+        self.send_all(vec![response(id, answer)])
     }
 
-    /// Makes a picture's file while the conversation goes on.
-    fn render(&mut self, request: Request) -> Result<(), End> {
+    /// Renders a picture's file on another thread while the conversation goes on.
+    fn render(&mut self, request: Request) -> Result<(), Closing> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
         if self.download.is_some() {
-            return self.say(failed("another picture is being made"));
+            return self.send_all(failed("another picture is being made"));
         }
         let watch = Arc::new(Watch::default());
         let watched = Arc::clone(&watch);
         let thread = thread::Builder::new().name("picture".to_owned());
-        match thread.spawn(move || watched::answer(request, &watched)) {
+        match thread.spawn(move || threaded_download::answer(request, &watched)) {
             Ok(thread) => {
                 self.download = Some(Download {
                     request: json!(id),
                     watch,
-                    told: Instant::now(),
+                    last_progress: Instant::now(),
                     thread,
                 });
                 Ok(())
             }
-            Err(error) => self.say(failed(&format!("no thread can be had: {error}"))),
+            Err(error) => self.send_all(failed(&format!("no thread can be had: {error}"))),
         }
     }
 
-    /// Gives the picture's file up that a request asked for, or any.
+    /// Cancels the picture's file of a request, or any for `None`.
     fn cancel(&self, wanted: Option<&Value>) {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
@@ -344,7 +340,7 @@ impl Conversation<'_> {
     }
 }
 
-/// The code that the socket is closed with where the host ends, or what let the page in is over.
+/// Returns the code to close the socket with if the host ends or the page's pass is over.
 fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);
@@ -352,8 +348,7 @@ fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     pass.is_over().then_some(NotAdmitted::Twice as CloseCode)
 }
 
-/// The code that says what is wrong with what the page has sent; none if the connection itself is
-/// broken.
+/// Returns the close code for an invalid message; `None` if the connection itself is broken.
 fn fault(error: axum::Error) -> Option<CloseCode> {
     use tungstenite::Error;
     match *error.into_inner().downcast().ok()? {

@@ -1,7 +1,7 @@
 //! The downloads of a page: a text's picture as a file, rendered as the scene asks for.
 //!
-//! The engine in the browser has one thread, and makes a file in slices ([`Sliced`]); the host on
-//! this machine has threads for it (`watched`).
+//! The engine in the browser has one thread, and renders a file in slices ([`Sliced`]); the host on
+//! this machine uses threads (`threaded_download`).
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Notification, Request, RequestId};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::{
     film::{self, Recipe},
-    lsp::{Refusal, response, unharmed},
+    lsp::{Refusal, catch_panics, response},
     render::Slices,
     sampling::Sampling,
     scene::{self, Scene},
@@ -17,22 +17,23 @@ use crate::{
     tracer::World,
 };
 
-/// The requests for a picture's file.
+/// Request for a picture as a PNG.
 const PNG: &str = "studio/png";
+/// Request for a picture as an EXR.
 pub(super) const EXR: &str = "studio/exr";
 
-/// Whether a request is for a picture's file.
+/// Whether a request asks for a picture's file.
 pub fn is_asked_for(request: &Request) -> bool {
     [PNG, EXR].contains(&&*request.method)
 }
 
-/// Tells the page which part of a picture is made.
+/// Returns the message that a share of a picture, from 0 to 1, is done.
 pub fn progress(share: f64) -> Message {
     let params = json!({ "share": share });
     Notification::new("studio/progress".to_owned(), params).into()
 }
 
-/// The scene that a request is about.
+/// Reads the scene that a request is about, and its text.
 pub(super) fn scene(params: &Value) -> Result<(Scene, String), Refusal> {
     let text = params.get("text").and_then(Value::as_str);
     let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
@@ -54,10 +55,10 @@ pub(super) fn recipe(scene: String) -> Recipe {
     }
 }
 
-/// A picture's file that is made in slices.
+/// A picture's file that is rendered in slices.
 #[derive(Debug)]
 pub struct Sliced {
-    /// Who asked for it.
+    /// The request for the file.
     pub request: RequestId,
     text: String,
     world: World,
@@ -65,14 +66,14 @@ pub struct Sliced {
 }
 
 impl Sliced {
-    /// Begins with the file that a request asks for. It is no EXR: the tables of that format's
-    /// compressions are a quarter of what a browser would have to load.
+    /// Begins the file that a request asks for. EXR is refused: the tables of its compressions
+    /// would be a quarter of what a browser has to load.
     ///
     /// # Errors
     ///
-    /// Why there will be no file.
+    /// The request is refused, for the reason in the error.
     pub fn new(request: &Request) -> Result<Self, Refusal> {
-        unharmed(|| {
+        catch_panics(|| {
             if request.method == EXR {
                 return Err(Refusal::failed("no EXR is written here"));
             }
@@ -87,9 +88,9 @@ impl Sliced {
         })
     }
 
-    /// Makes a slice. Returns what is to be said of it, and whether that is the answer.
+    /// Renders a slice. Returns the message to send, and whether it is the final answer.
     pub fn advance(&mut self) -> (Message, bool) {
-        match unharmed(|| self.slice()) {
+        match catch_panics(|| self.slice()) {
             Ok(None) => (progress(self.slices.share()), false),
             Ok(Some(file)) => (response(self.request.clone(), Ok(file)), true),
             Err(refusal) => (response(self.request.clone(), Err(refusal)), true),

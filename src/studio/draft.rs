@@ -1,9 +1,9 @@
-//! The drafts of a scene: what its pages have written and not saved, kept for the user alone.
+//! Drafts of a scene: texts that its pages have not saved, readable by the user only.
 //!
-//! They stand in a file of their own in the user's folder for such things, named by the scene's
-//! canonical path, since what a browser keeps belongs to a port, and the host has another one each
-//! time. Each page keeps one, under a key of its own, so that no page writes over another's. Saving
-//! their text removes them, and so does time.
+//! The drafts of a scene are in a file in the user's state folder, named after the scene's
+//! canonical path: a browser's own storage belongs to a port, and the host has another port each
+//! time. Each page keeps one draft under its own key, so that no page overwrites another's. A draft
+//! is removed when its text is saved, or when it is too old.
 
 use std::{
     io,
@@ -15,31 +15,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::files;
 
-/// What reads a file, up to the length that scenes have.
+/// A function that reads a file, up to the maximum length of scenes.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// How long a draft is kept that nobody asks for.
+/// Time for which a draft is kept.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Maximum number of drafts of a scene; with one more, the oldest is forgotten.
+/// Maximum number of drafts of a scene. With one more, the oldest is removed.
 const MOST: usize = 10;
 
-/// A text that was not saved.
+/// A text that is not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
-    /// The key that its page has given it.
+    /// The key that the page has given the draft.
     pub id: String,
-    /// What its scene is called.
+    /// The name of the scene.
     pub name: Option<String>,
     pub text: String,
-    /// What was in the file that it was made from.
+    /// The content of the file from which the text was made.
     base: Option<String>,
-    /// When it was kept, in seconds since 1970.
+    /// Time of the draft, in seconds since 1970.
     time: u64,
 }
 
 impl Unsaved {
-    /// A text of now.
+    /// Makes a draft with the current time.
     pub fn new(id: &str, name: Option<&str>, text: &str, base: Option<&str>) -> Self {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         Self {
@@ -52,12 +52,13 @@ impl Unsaved {
     }
 }
 
-/// Where the drafts of a scene are; nowhere if the system has no place for them.
+/// Path of a scene's drafts; `None` if the system has no state folder.
 #[derive(Debug, Default)]
 pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
-    /// The drafts of the scene in a file; of a new scene, of the folder that it would be saved in.
+    /// Returns the drafts of the scene at a path; for a new scene, the path is the folder that it
+    /// would be saved in.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;
@@ -70,17 +71,17 @@ impl Drafts {
         Self(place())
     }
 
-    /// What is kept, the newest first.
+    /// Reads the drafts, the newest first.
     pub fn kept(&self, read: Read) -> Vec<Unsaved> {
         let read = || serde_json::from_slice(&read(self.0.as_deref()?).ok()?).ok();
         read().unwrap_or_default()
     }
 
-    /// Keeps the first of these, which are the newest ones, in the place of what is kept.
+    /// Replaces the drafts by the first of these, which are the newest ones.
     ///
     /// # Errors
     ///
-    /// Why they are not kept, in words.
+    /// The drafts are not kept; the message says why.
     pub fn keep(&self, drafts: &[Unsaved]) -> Result<(), String> {
         if drafts.is_empty() {
             if let Some(path) = &self.0 {

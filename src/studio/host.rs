@@ -1,4 +1,4 @@
-//! The host that serves the page: its files to whoever asks, and a conversation to whoever
+//! The host that serves the page: its files to everybody, and a conversation to pages that
 //! [`Access`] admits.
 
 use std::{
@@ -28,21 +28,23 @@ use tokio::{
 
 use super::{
     access::{self, Access, Pass},
+    connection_limits::{Door, Visitor},
     conversation::{self, converse},
     scene_file::SceneFile,
-    strangers::{Door, Visitor},
 };
 
-/// Time that conversations have to finish a save and to take their leave, when the host ends.
-/// Whoever needs longer (a save on a disk that does not answer) is not waited for.
+/// Time for conversations to finish a save and to close, when the host ends. Longer ones, such as a
+/// save on a disk that does not respond, are not waited for.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// The page's files.
+/// The page's HTML.
 const INDEX: &str = include_str!("../../studio/page/dist/index.html");
+/// The page's script.
 const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
+/// The page's style sheet.
 const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 
-/// A page that is served on this machine, and a scene that it edits.
+/// The host of a page on this machine, and the scene that the page edits.
 #[derive(Debug)]
 pub struct Host {
     listener: TcpListener,
@@ -50,22 +52,21 @@ pub struct Host {
     shared: Arc<Shared>,
 }
 
-/// What all connections share.
+/// State that all connections share.
 #[derive(Debug)]
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
-    /// Whether the host ends. Each conversation listens as long as it goes on.
+    /// Whether the host ends. Each conversation holds a receiver until it has ended.
     ending: watch::Sender<bool>,
 }
 
 impl Host {
-    /// Listens at a port, or at any one that is free if it is 0. Nobody but this machine reaches
-    /// it.
+    /// Listens at a port, or at any free one if it is 0. It can be reached only from this machine.
     ///
     /// # Errors
     ///
-    /// The port is taken, or the system has no randomness to give.
+    /// The port is taken, or the system's random number generator fails.
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -80,23 +81,22 @@ impl Host {
         })
     }
 
-    /// The address that lets a browser in, for the user alone; and one that does so once, for a
-    /// command line: other users of the machine can read those.
+    /// Returns the address for the user, and one that is valid once, for a command line, which
+    /// other users of the machine can read.
     pub fn addresses(&self) -> [String; 2] {
         let port = self.port;
         let tokens = self.shared.access.tokens();
         tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `end` is there. What is being saved then is saved, unless that takes long, and
-    /// nothing more.
+    /// Serves until `end` is ready. A save in progress is completed, unless it takes long.
     ///
     /// # Errors
     ///
-    /// The system does not tell what happens to connections.
+    /// The system's event queue cannot be set up.
     pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
-        // Its only thread carries messages; what they ask for is done by the threads of the
-        // conversations.
+        // The runtime's only thread transports messages; the conversations do their work on other
+        // threads.
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
@@ -114,7 +114,7 @@ impl Host {
             let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
             Ok::<_, io::Error>(())
         })?;
-        // A conversation that has not ended may still wait for its help.
+        // A conversation that has not ended may still wait for the runtime, so it is not dropped.
         std::mem::forget(runtime);
         Ok(())
     }
@@ -136,7 +136,8 @@ fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
         .into_make_service_with_connect_info::<Visitor>()
 }
 
-/// Refuses what is not for this host, and has nothing kept, guessed, or told to others.
+/// Refuses requests that are not for this host, and forbids caching, guessing of types, and
+/// referrers.
 async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let refusal = access::refusal(port, request.method(), request.uri(), request.headers());
     let mut response = match refusal {
@@ -161,7 +162,7 @@ async fn guard(State(port): State<u16>, request: Request, next: Next) -> Respons
     response
 }
 
-/// The page. Its styles have a nonce, since the editor makes some of them while it runs.
+/// Returns the page. Styles have a nonce, since the editor creates some of them while it runs.
 async fn index() -> Response {
     let Ok(nonce) = access::secret() else {
         let why = "There is no randomness.\n";
@@ -189,8 +190,8 @@ async fn socket(
         .on_upgrade(async move |socket| admit(&shared, &visitor, socket).await)
 }
 
-/// Begins a conversation with a page whose first message is a token. How long it is waited for is
-/// the connection's matter.
+/// Begins a conversation with a page whose first message is a token. The connection itself limits
+/// how long that may take.
 async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
     let Some(Ok(Message::Text(token))) = socket.recv().await else {
         return;
@@ -205,17 +206,17 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread, what it still says would break the connection before the code has arrived.
+            // Unread messages would reset the connection before the code has arrived.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }
 }
 
-/// Has a thread hold the conversation. Where none can be started, the connection is closed.
+/// Holds the conversation on a thread. If none can be started, the connection is closed.
 fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
     let runtime = Handle::current();
     let ending = shared.ending.subscribe();
     let thread = thread::Builder::new().name("connection".to_owned());
-    // Of one that breaks there is nothing to say, and nobody to say it to.
+    // If the thread panics, there is nothing to report and nobody to report it to.
     let _ = thread.spawn(move || converse(runtime, socket, &pass, &ending, &shared.file));
 }

@@ -1,5 +1,5 @@
-//! The scene's own file. Studio reads and writes no others, except for its drafts and new scenes
-//! beside it.
+//! The scene's file. Studio reads and writes no other files, except drafts and new scenes beside
+//! it.
 
 use std::{
     io,
@@ -14,43 +14,44 @@ use crate::{
     source::Source,
 };
 
-/// What there is at a path: a text, no file, or something that is not to be overwritten, and why it
-/// cannot be read as a text.
-pub type Held = Result<Option<String>, String>;
+/// Content at a path: a text, `None` if there is no file, or the reason why it cannot be read as a
+/// text, in which case it must not be overwritten.
+pub type FileContent = Result<Option<String>, String>;
 
 /// A scene's file, or a new scene that has none yet.
 #[derive(Debug)]
 pub struct SceneFile {
     read: Read,
-    /// Where a new scene is saved.
+    /// The folder in which a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// What was there when it was looked at last.
-    held: Held,
-    /// Counts what was there.
+    /// The content when the file was last read.
+    content: FileContent,
+    /// Number of different contents so far.
     version: u64,
-    /// Tells when the file has changed. Without it, that is found when it is saved.
+    /// Notifies of changes of the file. Without it, a change is found only on saving.
     watch: Option<Arc<Latest<Content>>>,
     drafts: Drafts,
-    /// The new scenes beside the file that pages have saved, which they may save again.
+    /// New scenes beside the file that pages have saved, and may save again.
     beside: Vec<PathBuf>,
 }
 
-/// The file that pages share. A page that broke while it had it has left no half of a change.
+/// Locks the file that pages share. A lock that a panic has poisoned is used, too: no change is
+/// left half done.
 pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
     file.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Why a text was not saved.
+/// Error: a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NotSaved {
-    /// What is in the file is not what the text was made from.
+    /// The file's content is no longer what the text was made from.
     Changed(Option<String>),
-    /// Why it cannot be done, in words.
+    /// Saving is not possible, for this reason in words.
     Refused(String),
 }
 
-/// Why a file could not be written, and what could be done.
+/// Returns why a file could not be written, with advice.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
     let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
@@ -74,11 +75,11 @@ fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
 }
 
 impl SceneFile {
-    /// The file at a path.
+    /// Opens the file at a path.
     ///
     /// # Errors
     ///
-    /// Why it cannot be read, or holds no text.
+    /// The file cannot be read, or is not a text.
     pub fn open(path: &Path, read: Read) -> Result<Self, String> {
         let text = text(read(path)).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -86,14 +87,14 @@ impl SceneFile {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
             beside: Vec::new(),
             path: Some(path.to_owned()),
-            held: Ok(Some(text)),
+            content: Ok(Some(text)),
             version: 1,
             watch: preview::watch(path, read).ok(),
             drafts: Drafts::of(path),
         })
     }
 
-    /// A new scene, which the page begins. It is saved in this folder.
+    /// Makes a new scene without a file. It will be saved in this folder.
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
@@ -101,43 +102,42 @@ impl SceneFile {
             folder,
             beside: Vec::new(),
             path: None,
-            held: Ok(None),
+            content: Ok(None),
             version: 1,
             watch: None,
         }
     }
 
-    /// Where it is, if it is anywhere.
+    /// Returns the path; `None` for a new scene.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// What it is called; for a new scene what it might be called.
+    /// Returns the file's name, or a suggestion for a new scene.
     pub fn name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
         name.map_or("scene.scn".into(), |name| name.to_string_lossy())
             .into_owned()
     }
 
-    /// What was there when it was looked at last.
-    pub fn held(&self) -> &Held {
-        &self.held
+    /// Returns the content when the file was last read.
+    pub fn content(&self) -> &FileContent {
+        &self.content
     }
 
-    /// What was written and not saved and differs from what is there, the newest first.
+    /// Returns the drafts that differ from the file, the newest first.
     pub fn drafts(&self) -> Vec<Unsaved> {
-        let held = self.held.as_ref().ok().and_then(Option::as_deref);
+        let content = self.content.as_ref().ok().and_then(Option::as_deref);
         let mut drafts = self.drafts.kept(self.read);
-        drafts.retain(|it| Some(&*it.text) != held);
+        drafts.retain(|it| Some(&*it.text) != content);
         drafts
     }
 
-    /// Keeps what a page has written and not saved in the place of what was kept under its key;
-    /// forgets that for none.
+    /// Replaces the draft under a page's key; removes it for `None`.
     ///
     /// # Errors
     ///
-    /// Why it is not kept, in words.
+    /// The draft is not kept; the message says why.
     pub fn keep_draft(&self, id: &str, unsaved: Option<Unsaved>) -> Result<(), String> {
         let mut drafts = self.drafts.kept(self.read);
         drafts.retain(|it| it.id != id);
@@ -145,24 +145,24 @@ impl SceneFile {
         self.drafts.keep(&drafts)
     }
 
-    /// Looks at what is there now if the file has changed: what a watch has read may be older than
-    /// what a page has saved since. Returns the version.
-    pub fn look(&mut self) -> u64 {
+    /// Reads the file again if it has changed, as the watcher's content may be older than what a
+    /// page has saved since. Returns the version.
+    pub fn refresh(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
         {
             let found = self.found(path);
-            self.hold(found);
+            self.set_content(found);
         }
         self.version
     }
 
-    fn hold(&mut self, held: Held) {
-        self.version += u64::from(self.held != held);
-        self.held = held;
+    fn set_content(&mut self, content: FileContent) {
+        self.version += u64::from(self.content != content);
+        self.content = content;
     }
 
-    fn found(&self, path: &Path) -> Held {
+    fn found(&self, path: &Path) -> FileContent {
         match text((self.read)(path)) {
             Ok(text) => Ok(Some(text)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -170,12 +170,12 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds what it was made from, `base`; a new scene, also one
-    /// beside the file, under a name that no file has. Returns the version that it is.
+    /// Saves a text, if the file still holds `base`, from which it was made. A new scene, also one
+    /// beside the file, needs a name that no file has. Returns the version.
     ///
     /// # Errors
     ///
-    /// It is not saved, and no file has changed.
+    /// The text is not saved, and no file has changed.
     pub fn save(
         &mut self,
         new: &str,
@@ -236,17 +236,17 @@ impl SceneFile {
                 self.version += 1;
             }
         }
-        // Other texts are still to be offered.
+        // Drafts with other texts are kept.
         drafts.retain(|it| it.text != new);
         let _ = self.drafts.keep(&drafts);
         if !is_other {
-            self.hold(Ok(Some(new.to_owned())));
+            self.set_content(Ok(Some(new.to_owned())));
         }
         Ok(self.version)
     }
 }
 
-/// Makes a file for a new scene.
+/// Creates the file of a new scene.
 fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
     check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
     write(path, text, Purpose::New).map_err(|error| refused(name, path, &error))
@@ -255,14 +255,14 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // Half of the bytes of such a text are zero.
+    // In UTF-16, half of the bytes are zero.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }
     String::from_utf8(bytes).map_err(|_| no_text("it is not a text in UTF-8"))
 }
 
-/// A name for a new file in a folder, and no path that leads elsewhere, on any system.
+/// Rejects names that could escape the folder on any operating system.
 fn check_name(name: &str) -> Result<(), &'static str> {
     let is_odd = |letter: char| ":*?\"<>|".contains(letter) || letter.is_control();
     let stem = name.strip_suffix(".scn");
@@ -271,11 +271,12 @@ fn check_name(name: &str) -> Result<(), &'static str> {
         Some(_) if name.contains(['/', '\\']) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
         }
-        // Files on Windows cannot have them, and a colon there leads to another drive.
+        // Windows does not allow these characters in names, and a colon there leads to another
+        // drive.
         Some(_) if name.contains(is_odd) => {
             Err("the name of a file has none of `: * ? \" < > |`, and no control character")
         }
-        // Windows has devices of these names, whatever follows behind a dot.
+        // Windows has devices of these names, whatever follows after a dot.
         Some(stem) if is_device(stem.split('.').next().unwrap_or_default()) => {
             Err("the name is that of a device")
         }
@@ -337,7 +338,7 @@ mod tests {
         fs::write(at("a.scn"), "own").unwrap();
         fs::write(at("there.scn"), "theirs").unwrap();
         let mut file = SceneFile::open(&at("a.scn"), read).unwrap();
-        let version = file.look();
+        let version = file.refresh();
         for name in ["there.scn", "../b.scn", "b", "c/b.scn"] {
             for base in [None, Some("theirs")] {
                 let saved = file.save("new", base, Some(name));
@@ -353,7 +354,7 @@ mod tests {
         let texts = ["a.scn", "there.scn", "new.scn"].map(|name| fs::read(at(name)).unwrap());
         assert_eq!(texts, [&b"own"[..], b"theirs", b"two"]);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
-        assert_eq!(file.held(), &Ok(Some("own".to_owned())));
+        assert_eq!(file.content(), &Ok(Some("own".to_owned())));
     }
 
     #[test]

@@ -1,5 +1,5 @@
-// Builds the page: `node build.mjs` for the served host into dist/, `node build.mjs static FOLDER` for
-// a site. The bytes depend only on the sources and the lock file.
+// Builds the page: `node build.mjs` for the served host into dist/, `node build.mjs static FOLDER`
+// for a site. The bytes depend only on the sources and the lock file.
 
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -37,8 +37,8 @@ const { metafile } = await build({
 });
 await build({ entryPoints: ["src/studio.css"], bundle: true, minify: true, logLevel: "warning", outdir: folder });
 
-// A site sends no headers of its own, so the page contains its policy. The served host sends a stricter
-// one, with a nonce for the editor's styles.
+// A site sends no headers of its own, so the page contains its policy. The served host sends a
+// stricter one, with a nonce for the editor's styles.
 const policy = [
   "default-src 'none'",
   "script-src 'self' 'wasm-unsafe-eval'",

@@ -1,5 +1,5 @@
-// Records the README's animation, examples/studio.gif, from the real page: the ball is dragged, and its
-// numbers change. Needs `npm ci`; PINHOLE and CHROMIUM are as for the tests.
+// Records the README's animation, examples/studio.gif, from the real page: the ball is dragged, and
+// its numbers change. Needs `npm ci`; PINHOLE and CHROMIUM are as for the tests.
 
 import { writeFileSync } from "node:fs";
 import gifenc from "gifenc";

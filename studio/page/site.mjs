@@ -19,11 +19,11 @@ const target = path.resolve(root, process.env.CARGO_TARGET_DIR ?? "target");
 const wasm = "wasm32-unknown-unknown";
 const run = (program, ...args) => execFileSync(program, args, { cwd: page, stdio: "inherit" });
 
-// Optimizing for size inlines hardly anything; a little inlining makes frames about twice as fast, and
-// the engine 1 % larger.
+// Optimizing for size inlines hardly anything; a little inlining makes frames about twice as fast,
+// and the engine 1 % larger.
 const inlining = ["-C", "llvm-args=-inline-threshold=4"];
-// Panics contain paths of source files. Without this machine's folders they are short, and the site has
-// the same size on every machine.
+// Panics contain paths of source files. Without this machine's folders they are short, and the site
+// has the same size on every machine.
 const sources = path.join(process.env.CARGO_HOME ?? path.join(homedir(), ".cargo"), "registry/src");
 const registries = existsSync(sources) ? readdirSync(sources) : [];
 const short = registries.map(registry => `--remap-path-prefix=${path.join(sources, registry)}/=`);
@@ -35,7 +35,8 @@ rmSync(site, { recursive: true, force: true });
 run("node", "build.mjs", "static", site);
 // This level gives the smallest compressed size; higher ones write less code that compresses worse.
 const optimizer = path.join(page, "node_modules/binaryen/bin/wasm-opt");
-// The lowest thousand bytes of memory are the end of the stack, so offsets can be folded into loads.
+// The lowest thousand bytes of memory are the end of the stack, so offsets can be folded into
+// loads.
 const adding = ["--low-memory-unused", "--optimize-added-constants-propagate"];
 const passes = ["-O1", "--dae-optimizing", "--rse", "--precompute-propagate", "--code-folding", "--converge", ...adding, "--reorder-locals", "--merge-blocks"];
 run("node", optimizer, ...passes, path.join(engine, "pinhole_bg.wasm"), "-o", path.join(site, "pinhole_bg.wasm"));

@@ -1,4 +1,5 @@
--- Script for Neovim: opens the scene, waits for the server, sends requests, edits, and records the results.
+-- Script for Neovim: opens the scene, waits for the server, sends requests, edits, and records the
+-- results.
 
 local found = {}
 local wrong = {}
@@ -50,8 +51,8 @@ local edit = ask("textDocument/rename", vim.tbl_extend("force", vim.lsp.util.mak
 vim.lsp.util.apply_workspace_edit(edit, client.offset_encoding)
 found.renamed = lines()
 
--- Many changes at once, in a text with characters of every width; then a mistake, whose position shows that both sides still
--- have the same text.
+-- Many changes at once, in a text with characters of every width; then a mistake, whose position
+-- shows that both sides still have the same text.
 for _ = 1, 10 do
   vim.cmd("silent 2move 4")
   vim.cmd("silent 4move 1")

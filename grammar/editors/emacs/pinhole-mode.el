@@ -5,9 +5,9 @@
 
 ;;; Commentary:
 
-;; A mode for *.scn, and how eglot and lsp-mode, whichever is there, start Pinhole's language server
-;; in it.  The mode itself colours comments, numbers, colour codes, `let', `for' and the heads of
-;; blocks; what needs to know the language comes from the server.
+;; A mode for *.scn, which registers Pinhole's language server with eglot and lsp-mode, if they are
+;; installed.  The mode itself colours comments, numbers, colour codes, `let', `for' and the heads
+;; of blocks; everything else comes from the server.
 
 ;;; Code:
 
@@ -17,7 +17,7 @@
     (modify-syntax-entry ?* ". 23" table)
     (modify-syntax-entry ?\n "> b" table)
     (modify-syntax-entry ?_ "w" table)
-    ;; A quote means nothing: an apostrophe is no open text.
+    ;; Quotation marks have no meaning: an apostrophe opens no text.
     (modify-syntax-entry ?\" "." table)
     table))
 

@@ -1,7 +1,9 @@
-// The page that is photographed: Monaco, which is VS Code's editor, with every answer from Pinhole's language server.
+// The page of the screenshots: Monaco, the editor of VS Code, with all answers from Pinhole's
+// language server.
 //
-// `window.ask` and `window.tell` reach the server; `window.told` is called with what it says on its own. They speak the
-// protocol's JSON, and here it is turned into Monaco's terms.
+// `window.ask` and `window.tell` send requests and notifications to the server; `window.told` is
+// called with its notifications. They use the protocol's JSON, which is converted to Monaco's types
+// here.
 
 import * as monaco from "monaco-editor";
 import { colors, types } from "./theme.js";
@@ -22,14 +24,14 @@ const fromRange = ({ start, end }) => ({
 });
 const markdown = content => (typeof content === "string" ? { value: content } : { value: content.value });
 const severities = [undefined, monaco.MarkerSeverity.Error, monaco.MarkerSeverity.Warning, monaco.MarkerSeverity.Info, monaco.MarkerSeverity.Hint];
-/** The protocol counts kinds of completion from 1, in an order that is not Monaco's. */
+/** Kinds of completion in the protocol's order, which counts from 1 and differs from Monaco's. */
 const kinds = [
   "Text", "Method", "Function", "Constructor", "Field", "Variable", "Class", "Interface", "Module", "Property", "Unit", "Value",
   "Enum", "Keyword", "Snippet", "Color", "File", "Reference", "Folder", "EnumMember", "Constant", "Struct", "Event", "Operator",
   "TypeParameter",
 ];
 
-/** The diagnostics that the server sent last. */
+/** The last diagnostics from the server. */
 let diagnostics = [];
 
 function provide(capabilities, model) {
@@ -106,7 +108,7 @@ window.told = (method, { diagnostics: list }) => {
   })));
 };
 
-/** Opens the scene in an editor, with the server that has these capabilities. */
+/** Opens the scene in an editor, for a server with these capabilities. */
 window.open_scene = async (text, capabilities) => {
   monaco.languages.register({ id: LANGUAGE, extensions: [".scn"] });
   monaco.languages.setLanguageConfiguration(LANGUAGE, { wordPattern: /[A-Za-z_][A-Za-z0-9_]*|#[0-9A-Fa-f]+|[\d.][\w.]*/, brackets: [["{", "}"], ["(", ")"]] });

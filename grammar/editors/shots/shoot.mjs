@@ -1,5 +1,6 @@
-// Makes the README's pictures of an editor at work: Monaco, which is VS Code's editor, in headless Chromium, asking the real
-// `pinhole lsp`. Nothing in the pictures is drawn by hand; what the server does not say is not there.
+// Makes the README's pictures of an editor at work: Monaco, the editor of VS Code, in headless
+// Chromium, with the real `pinhole lsp`. Nothing in the pictures is drawn by hand; everything comes
+// from the server.
 //
 //     npm ci && PINHOLE=../../../target/release/pinhole npm run shoot
 
@@ -31,7 +32,7 @@ try {
   rmSync(folder, { recursive: true, force: true });
 }
 
-/** The page with all that it needs. */
+/** Bundles the page with its dependencies. */
 async function bundle() {
   const common = { bundle: true, format: "iife", logLevel: "error", outdir: folder, loader: { ".ttf": "dataurl" }, absWorkingDir: here };
   await build({ ...common, entryPoints: { page: "page.js" } });
@@ -40,7 +41,7 @@ async function bundle() {
   writeFileSync(path.join(folder, "index.html"), `<!doctype html><meta charset="utf-8">
 <link rel="stylesheet" href="page.css">
 <style>body { margin: 0; background: #1F1F1F; } #editor { width: 100vw; height: 100vh; }
-/* The menu of fixes takes its width from its longest line before the fonts are there. */
+/* The menu of fixes is sized by its longest line before the fonts are loaded. */
 .action-widget, .action-widget .monaco-list { width: 280px !important; }
 .suggest-details-container, .suggest-details { height: 150px !important; }</style>
 <div id="editor"></div>
@@ -83,7 +84,7 @@ async function take(browser, { name, width, height, scene, prepare }) {
   await connection.sendNotification("initialized", {});
   await page.evaluate((text, capabilities) => window.open_scene(text, capabilities), scene, capabilities);
   await page.evaluate(() => document.fonts.ready);
-  // What the editor asks for when it is idle (tokens, colours, hints) has to come.
+  // Waits for the answers that the editor requests when it is idle (tokens, colours, hints).
   await pause(1500);
   await prepare(editing(page));
   await pause(1000);
@@ -96,7 +97,10 @@ async function take(browser, { name, width, height, scene, prepare }) {
   connection.dispose();
 }
 
-/** What a shot does with the editor before it is taken. A place is the text up to it, which the scene has once. */
+/**
+ * The actions of shots in the editor. A position is given by the text before it, which occurs
+ * once in the scene.
+ */
 function editing(page) {
   const at = async before => page.evaluate(before => {
     const offset = window.model.getValue().indexOf(before);
@@ -106,7 +110,7 @@ function editing(page) {
     window.editor.focus();
   }, before);
   const trigger = id => page.evaluate(id => window.editor.trigger("shot", id, {}), id);
-  /** Goes down the list of completions to one. */
+  /** Moves down the list of completions to one of them. */
   const choose = async label => {
     const chosen = () => page.evaluate(() => document.querySelector(".suggest-widget .monaco-list-row.focused .label-name")?.textContent);
     for (let tries = 0; (await chosen()) !== label; tries++) {

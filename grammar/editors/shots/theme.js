@@ -1,4 +1,4 @@
-// The colours of VS Code's dark theme, for the types of the server's tokens.
+// Colours of VS Code's dark theme for the types of the server's tokens.
 
 export const types = {
   keyword: "C586C0",

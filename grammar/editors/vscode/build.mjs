@@ -1,5 +1,5 @@
-// Bundles the extension with what it uses, and the licences of that, into dist/; its page with the
-// pictures in it; Pinhole's own licences; and the program that the environment variable BUNDLE
+// Bundles into dist/: the extension with its dependencies and their licences, its page with the
+// pictures embedded, Pinhole's own licences, and the program that the environment variable BUNDLE
 // names, if it is set.
 
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -27,7 +27,7 @@ const texts = [...folders].sort().map(folder => {
 });
 writeFileSync("dist/LICENSES.txt", `dist/extension.js contains the packages below, each under its licence.\n\n${texts.join("\n\n")}`);
 
-// Nothing of the page is fetched from elsewhere when the editor shows it.
+// The editor fetches nothing when it shows the page.
 const page = readFileSync("README.md", "utf8");
 writeFileSync("dist/README.md", page.replace(/\]\(([^)]+\.png)\)/g, (_, file) => `](data:image/png;base64,${readFileSync(file, "base64")})`));
 

@@ -88,7 +88,7 @@ pub struct GradeArgs {
     pub format: GradeFormat,
 }
 
-/// For whom a class is graded.
+/// Output format of `grade`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum GradeFormat {
     /// Text for people
@@ -131,23 +131,17 @@ pub struct LargeArgs {
 }
 
 impl LargeArgs {
-    /// Maximum length of a picture's file, in bytes.
+    /// Returns the maximum length of a picture's file, in bytes.
     pub fn file_limit(&self) -> u64 {
-        match self.large {
-            true => 4 << 30,
-            false => 256 << 20,
-        }
+        if self.large { 4 << 30 } else { 256 << 20 }
     }
 
-    /// Maximum length of a decoded picture, in bytes.
+    /// Returns the maximum length of a decoded picture, in bytes.
     pub fn decoded_limit(&self) -> u64 {
-        match self.large {
-            true => u64::MAX,
-            false => DECODED_LIMIT,
-        }
+        if self.large { u64::MAX } else { DECODED_LIMIT }
     }
 
-    /// Says that a picture has more than that, and what to do.
+    /// Returns the message that a picture exceeds a limit, and what to do.
     pub fn hint(&self, what: &str, limit: u64) -> String {
         let way_out = if self.large {
             ""

@@ -1,4 +1,4 @@
-//! What users type.
+//! Definitions of the command line's arguments. Their doc comments are the help texts.
 
 mod judging;
 
@@ -89,7 +89,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// How many threads are asked for.
+    /// Returns the number of threads on the command line.
     pub fn threads(&self) -> Option<NonZero<usize>> {
         match self {
             Self::Render(args) => args.threads.count(),
@@ -123,7 +123,7 @@ pub struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// How many threads are asked for.
+    /// Returns the number of threads on the command line.
     pub fn count(&self) -> Option<NonZero<usize>> {
         NonZero::new(usize::try_from(self.threads?).unwrap_or(usize::MAX))
     }
@@ -332,13 +332,13 @@ pub struct ExplainArgs {
 #[derive(Debug, clap::Args)]
 pub struct FormatArgs {
     /// For people, on standard error, or for programs, on standard output
-    #[arg(long, value_enum, default_value_t = Format::Human)]
-    pub format: Format,
+    #[arg(long, value_enum, default_value_t = AnswerFormat::Human)]
+    pub format: AnswerFormat,
 }
 
-/// For whom an answer is.
+/// Output format of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+pub enum AnswerFormat {
     /// Text for people
     Human,
     /// JSON for programs
@@ -356,7 +356,7 @@ fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A method's word.
+/// Returns the parser of a method's name.
 fn method() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(methods().map(Method::name)).map(|name| {
         methods()
@@ -365,21 +365,21 @@ fn method() -> impl TypedValueParser<Value = Method> {
     })
 }
 
-/// All methods.
+/// Returns all methods.
 pub fn methods() -> impl Iterator<Item = Method> {
     Method::SAMPLED.into_iter().chain([Method::Exact])
 }
 
-/// An error as a number or a fraction.
+/// Parses an error: a number or a fraction.
 fn error(text: &str) -> Result<f64, String> {
     let error = match text.split_once('/') {
         None => finite(text)?,
         Some((above, below)) => finite(above)? / finite(below)?,
     };
-    match error > 0.0 && error <= 1.0 {
-        true => Ok(error),
-        false => Err("an error is above 0 and at most 1, as linear light is".to_owned()),
+    if error > 0.0 && error <= 1.0 {
+        return Ok(error);
     }
+    Err("an error is above 0 and at most 1, as linear light is".to_owned())
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Zip files as classes hand them in. They are read where they lie, and nothing of them is written
-//! anywhere: a name in one is shown and never opened.
+//! Zip files of submissions. They are read in place, and nothing is unpacked to disk: the names in
+//! them are shown, but never used as paths.
 
 use std::{
     fs::File,
@@ -15,31 +15,31 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 
 use crate::files;
 
-/// Maximum length of a file that is looked at, in a zip file or beside it, in bytes.
+/// Maximum length of a submitted file, in a zip file or beside it, in bytes.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
-/// Maximum number of entries.
+/// Maximum number of entries of a zip file.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Maximum number of bytes that are read to list the entries, each of which has 46 and its name: so
-/// many that a list of the maximum length is read whose names have a thousand letters.
+/// Maximum number of bytes that are read to list the entries. An entry takes 46 bytes and its name,
+/// so this allows the maximum number of entries with names of a thousand letters.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum number of bytes that all zip files of a class are unpacked to.
+/// Maximum number of bytes that all zip files of a class may unpack to.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// How many bytes may still be unpacked of a class's zip files, counted as they come, whatever a
-/// header says.
+/// Number of bytes that may still be unpacked of a class's zip files. Unpacked bytes are counted,
+/// not the lengths in headers.
 #[derive(Debug)]
-pub struct Budget(AtomicU64);
+pub struct UnpackBudget(AtomicU64);
 
-impl Default for Budget {
+impl Default for UnpackBudget {
     fn default() -> Self {
         Self(AtomicU64::new(WHOLE_LIMIT))
     }
 }
 
-impl Budget {
+impl UnpackBudget {
     fn take(&self, bytes: u64) -> Result<(), String> {
         let less = |left: u64| left.checked_sub(bytes);
         match self
@@ -55,7 +55,8 @@ impl Budget {
     }
 }
 
-/// A file of which only so many bytes are read: the list of a zip file's entries is read whole.
+/// A file of which at most `left` bytes are read. It bounds the list of a zip file's entries, which
+/// the library reads into memory as a whole.
 #[derive(Debug)]
 struct Bounded {
     file: BufReader<File>,
@@ -89,28 +90,28 @@ pub struct Archive(Mutex<ZipArchive<Bounded>>);
 
 /// An entry of a zip file.
 #[derive(Debug)]
-pub struct Entry {
+pub struct ArchiveEntry {
     pub index: usize,
-    /// Its name, with `/` between folders.
+    /// The name, with `/` between folders.
     pub name: String,
     pub is_folder: bool,
-    /// Seconds since 1970, even ones.
+    /// Time of change in seconds since 1970; zip files store even ones only.
     pub time: Option<i64>,
-    /// Its length, as the header says.
+    /// The unpacked length according to the header.
     pub length: u64,
-    /// The check sum of its bytes, which is looked at when they are unpacked.
+    /// The CRC-32 of the unpacked bytes, which is verified when they are unpacked.
     pub sum: u32,
-    /// Why it is not compared, whatever is in it.
+    /// Why the entry is not read, if it is encrypted or a link.
     pub refused: Option<&'static str>,
 }
 
 impl Archive {
-    /// Opens a zip file, and lists what is in it.
+    /// Opens a zip file, and lists its entries.
     ///
     /// # Errors
     ///
-    /// Why it cannot be read.
-    pub fn open(path: &Path) -> Result<(Self, Vec<Entry>), String> {
+    /// The file cannot be read; the message says why.
+    pub fn open(path: &Path) -> Result<(Self, Vec<ArchiveEntry>), String> {
         let file = files::open_argument(path).map_err(|error| error.to_string())?;
         let left = Arc::new(AtomicU64::new(LIST_LIMIT));
         let file = Bounded {
@@ -121,7 +122,7 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // From here on what is unpacked is counted.
+        // From here on, the budget counts the unpacked bytes instead.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
@@ -138,7 +139,7 @@ impl Archive {
                 () => None,
             };
             let name = name(entry.name_raw(), entry.name().ok().as_deref());
-            entries.push(Entry {
+            entries.push(ArchiveEntry {
                 index,
                 is_folder: name.ends_with('/'),
                 name,
@@ -155,9 +156,9 @@ impl Archive {
     ///
     /// # Errors
     ///
-    /// It is damaged or too large.
-    pub fn read(&self, index: usize, budget: &Budget) -> Result<Vec<u8>, String> {
-        /// How much is unpacked before it is counted.
+    /// The entry is damaged or too large.
+    pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
+        /// Number of bytes that are unpacked between two checks of the budget.
         const PIECE: u64 = 1 << 16;
         let mut zip = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;
@@ -175,20 +176,20 @@ impl Archive {
     }
 }
 
-/// An entry's name: in UTF-8 where it can be, though not all programs say so; else in code page
-/// 437.
+/// Decodes an entry's name: as UTF-8 if it is valid, even if the UTF-8 flag is not set, and
+/// otherwise as code page 437.
 fn name(raw: &[u8], decoded: Option<&str>) -> String {
     let name = match (str::from_utf8(raw), decoded) {
         (Ok(name), _) | (_, Some(name)) => name.to_owned(),
         _ => String::from_utf8_lossy(raw).into_owned(),
     };
-    // Some programs for Windows write these between folders.
+    // Some programs on Windows write `\` between folders.
     name.replace('\\', "/")
 }
 
-/// The seconds since 1970 of a time in a zip file, which has no time zone.
+/// Converts a time in a zip file, which has no time zone, to seconds since 1970.
 fn seconds(time: DateTime) -> i64 {
-    // A year begins in March here, so that a day in February is the last one: Hinnant,
+    // Years begin in March here, so that a leap day is the last day of its year: Hinnant,
     // "chrono-compatible low-level date algorithms", days_from_civil.
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);

@@ -1,9 +1,8 @@
-//! A class's work as it is handed in: single pictures, folders and zip files become students, each
-//! with files.
+//! Turns submissions (single pictures, folders and zip files) into students with files.
 //!
-//! A folder or zip file that is named has a student in each of its folders, and in each file beside
-//! these. What Moodle writes into names, and Gradescope beside the folders, says who it is. Nobody
-//! is left out.
+//! In a folder or zip file on the command line, each folder and each file beside the folders is a
+//! student. Moodle writes the students' names into file names, and Gradescope into a file beside
+//! the folders. No student is left out.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,11 +14,11 @@ use std::{
 use hmac_sha256::Hash;
 
 use super::{
-    archive::{Budget, FILE_LIMIT},
+    archive::{FILE_LIMIT, UnpackBudget},
     glob::Glob,
-    handed_in::{Content, HandedIn, Student},
     names::{self, Submitters},
-    tree::{self, METADATA, Tree},
+    submission::{ContentSource, Student, SubmittedFile},
+    tree::{self, FileTree, METADATA},
 };
 use crate::{
     cli::{
@@ -30,57 +29,59 @@ use crate::{
     files,
 };
 
-/// Why a picture that all have is not compared.
+/// Reason for not comparing a picture that all students have.
 const TEMPLATE: &str = "equal in every folder: --picture chooses it";
 
 /// A class.
 #[derive(Debug, Default)]
 pub struct Class {
     pub students: Vec<Student>,
-    /// Whether a picture that is named is not there, or no file.
+    /// Whether a picture on the command line is missing or not a file.
     pub is_one_missing: bool,
-    /// What may still be unpacked.
-    pub budget: Budget,
+    /// The number of bytes that may still be unpacked.
+    pub budget: UnpackBudget,
 }
 
 impl Class {
-    /// What is named, but for the teacher's own files. Pictures are those that are chosen.
+    /// Reads the submissions on the command line, except the teacher's own files, `own`. `chosen`
+    /// says which files are pictures.
     ///
     /// # Errors
     ///
-    /// A folder or zip file that is named cannot be read. A picture that is missing is left to
-    /// whoever reads it.
+    /// A folder or zip file on the command line cannot be read. A missing picture is reported
+    /// later, when it is read.
     pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
         let mut class = Self::default();
         let mut rest: Vec<&PathBuf> = paths.iter().collect();
-        for (parent, names) in spread(paths) {
-            let tree = Tree::of_some(parent, &names, own);
+        for (parent, names) in expanded_classes(paths) {
+            let tree = FileTree::of_some(parent, &names, own);
             let tree = tree.map_err(|error| unreadable(parent, &error))?;
             class.add(folder_name(parent), tree, chosen);
             rest.retain(|path| !(names.contains(name(path)) && parent_of(path) == parent));
         }
         for path in rest {
             if path.is_dir() {
-                let tree = Tree::of_folder(path, own).map_err(|error| unreadable(path, &error))?;
+                let tree =
+                    FileTree::of_folder(path, own).map_err(|error| unreadable(path, &error))?;
                 class.add(folder_name(path), tree, chosen);
             } else if tree::is_zip(path) {
-                let tree = Tree::of_zip(path).map_err(|error| unreadable(path, &error))?;
+                let tree = FileTree::of_zip(path).map_err(|error| unreadable(path, &error))?;
                 class.add(None, tree, chosen);
             } else {
                 class.is_one_missing |= !is_standard(path) && files::open_argument(path).is_err();
-                class.students.push(single(path));
+                class.students.push(student_of_picture(path));
             }
         }
         tell_apart(&mut class.students);
         Ok(class)
     }
 
-    /// The students of a folder or zip file, and those of each class in it.
-    fn add(&mut self, folder: Option<String>, mut tree: Tree, chosen: Option<&Glob>) {
+    /// Adds the students of a folder or zip file, and those of each class in it.
+    fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
         }
-        let is_metadata = |(names, _): &tree::Found| names.len() == 1 && names[0] == METADATA;
+        let is_metadata = |(names, _): &tree::FoundFile| names.len() == 1 && names[0] == METADATA;
         let at = tree.found.iter().position(is_metadata);
         let metadata = at.map(|at| tree.found.swap_remove(at));
         let metadata = metadata.and_then(|(_, file)| bytes(&file, &self.budget).ok());
@@ -90,7 +91,7 @@ impl Class {
         let slug = folder.and_then(|name| name.strip_suffix(names::CLONES).map(str::to_owned));
         tree.found.sort_by(|(a, _), (b, _)| a.cmp(b));
         let mut works: BTreeMap<(String, String), Student> = BTreeMap::new();
-        // Who has a folder and no file in it is somebody, too.
+        // A student with an empty folder is listed, too.
         let folders = tree.folders.iter().filter(|names| names.len() == 1);
         let folders = folders.map(|names| (vec![names[0].clone(), String::new()], None));
         let found = tree
@@ -135,10 +136,10 @@ impl Class {
             });
             student
                 .files
-                .extend(file.map(|file| HandedIn { path, ..file }));
+                .extend(file.map(|file| SubmittedFile { path, ..file }));
         }
         for (folder, name) in submitters.all() {
-            // A folder that is not there: what he handed in is lost, and he is not.
+            // A student whose folder is missing is listed without files.
             works
                 .entry((folder.to_owned(), String::new()))
                 .or_insert_with(|| Student {
@@ -154,9 +155,9 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Takes away what is equal in every folder: that was there before anybody began. A picture is
-    /// named where it is not counted. Where nobody would have a picture then, they stay: so they
-    /// all made one.
+    /// Removes the files that are equal in every folder, as they were there before anybody began.
+    /// Pictures among them are listed as not compared. If no student would have a picture left,
+    /// they are kept: then all students made the same one.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -172,7 +173,7 @@ impl Class {
             .filter(|file| self.is_in_all(file, &works))
             .map(|file| file.path.clone())
             .collect();
-        let is_own = |file: &HandedIn| !equal.contains(&file.path);
+        let is_own = |file: &SubmittedFile| !equal.contains(&file.path);
         let has_own = |student: &&mut Student| {
             let mut files = student.files.iter();
             files.any(|file| file.is_picture(chosen) && is_own(file))
@@ -184,13 +185,13 @@ impl Class {
                 .retain(|file| is_own(file) || file.is_picture(None) || file.is_picture(chosen));
             for file in student.files.iter_mut().filter(|file| !is_own(file)) {
                 if someone_has_own || !file.is_picture(chosen) {
-                    file.content = Content::Refused(TEMPLATE.to_owned());
+                    file.content = ContentSource::Refused(TEMPLATE.to_owned());
                 }
             }
         }
     }
 
-    fn is_in_all(&self, file: &HandedIn, works: &[&mut Student]) -> bool {
+    fn is_in_all(&self, file: &SubmittedFile, works: &[&mut Student]) -> bool {
         let same = works.iter().map(|student| {
             let mut files = student.files.iter();
             files.find(|other| other.path == file.path && other.length == file.length)
@@ -198,11 +199,11 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
-        // What zip files say is enough, and unpacks nothing.
+        // The check sums in zip files are enough, without unpacking.
         if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
             return same.iter().all(|other| other.sum == file.sum);
         }
-        let hash = |file: &HandedIn| {
+        let hash = |file: &SubmittedFile| {
             bytes(file, &self.budget)
                 .ok()
                 .map(|bytes| Hash::hash(&bytes))
@@ -214,27 +215,29 @@ impl Class {
     }
 }
 
-/// A file of a folder or zip file.
-fn bytes(file: &HandedIn, budget: &Budget) -> Result<Vec<u8>, String> {
+/// Reads a file of a folder or zip file.
+fn bytes(file: &SubmittedFile, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
     match &file.content {
-        Content::File(path) => files::read(path, FILE_LIMIT).map_err(|error| error.to_string()),
-        Content::Entry(archive, index) => archive.read(*index, budget),
-        Content::Refused(why) => Err(why.clone()),
+        ContentSource::File(path) => {
+            files::read(path, FILE_LIMIT).map_err(|error| error.to_string())
+        }
+        ContentSource::Entry(archive, index) => archive.read(*index, budget),
+        ContentSource::Refused(why) => Err(why.clone()),
     }
 }
 
-/// A picture that is named.
-fn single(path: &Path) -> Student {
+/// Returns the student of a picture on the command line.
+fn student_of_picture(path: &Path) -> Student {
     let place = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let moodle = names::moodle(&name);
-    let file = HandedIn {
+    let file = SubmittedFile {
         path: place.clone(),
         shown: place.clone(),
         time: None,
         length: 0,
         sum: None,
-        content: Content::File(path.to_owned()),
+        content: ContentSource::File(path.to_owned()),
         is_named: true,
     };
     Student {
@@ -248,8 +251,8 @@ fn single(path: &Path) -> Student {
     }
 }
 
-/// A file beside pictures belongs to the one that has its name but for the ending; the others are
-/// somebody's, of whom there is nothing else.
+/// Assigns each file beside pictures to the student whose picture has its name, except for the
+/// ending. A file without such a picture stays a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -282,15 +285,16 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// What a shell made of `class/*`: folders with what is named in them, where each of these is a
-/// student. That it is so is told by a repository, by Moodle's names or Gradescope's list of them,
-/// or by a picture of one name in two folders.
-fn spread(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
+/// Recognises arguments that a shell expanded from `class/*`: returns the parent folders with the
+/// names in them that are on the command line, each of which is a student. The signs are a
+/// repository in one of them, Moodle's names, Gradescope's metadata, or two folders with a picture
+/// of the same name.
+fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link that is named is followed, and `..` has no name.
+        // A link on the command line is followed instead, and `..` has no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }
@@ -321,13 +325,13 @@ fn parent_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// What a folder is called, also where it is `.`.
+/// Returns the name of a folder, even of `.`.
 fn folder_name(path: &Path) -> Option<String> {
     let path = fs::canonicalize(tree::or_here(path)).ok()?;
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Names students who are called alike by their number, too, or by their place.
+/// Adds the number or the place to the names of students with equal names.
 fn tell_apart(students: &mut [Student]) {
     let mut counts = BTreeMap::<String, usize>::new();
     for student in &*students {
@@ -341,8 +345,8 @@ fn tell_apart(students: &mut [Student]) {
     }
 }
 
-/// Says that there is nobody.
-pub fn nobody(paths: &[PathBuf]) -> Trouble {
+/// Returns the error that there are no students.
+pub fn no_students(paths: &[PathBuf]) -> Trouble {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
     Trouble(format!(
         "there are no pictures in what is named: {}",

@@ -1,4 +1,5 @@
-//! What a mistake is about: the camera, an object, the board, colours, or where samples lie.
+//! Criteria of grading: assigns each mistake to the camera, an object, the board, colours,
+//! sampling, or hits.
 
 use std::collections::BTreeSet;
 
@@ -9,24 +10,25 @@ use crate::{
     schema,
 };
 
-/// What a picture is judged by.
+/// Subject of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
     /// The camera and the window.
     Camera,
     /// An object, by its index.
     Object(usize),
-    /// The squares of checkerboards.
+    /// The checkerboards.
     Board,
     /// Colours and their encoding.
     Colours,
-    /// Where samples lie, and how they are averaged.
+    /// The positions of samples, and their average.
     Sampling,
-    /// Which hits are seen, and whatever else there is.
+    /// The choice of visible hits, and everything else.
     Hits,
 }
 
-/// How the ids of mistakes begin that are about something else than hits.
+/// Prefixes of the ids of mistakes, with their criteria. Ids without a prefix here are about a
+/// field of the camera, or about hits.
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),
@@ -66,7 +68,7 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("eye_and_lookat", Criterion::Camera),
 ];
 
-/// What a mistake is about.
+/// Returns the criterion of a mistake.
 pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
     if let Some(index) = object(finding, scene) {
         return match scene.objects[index].shape {
@@ -88,7 +90,8 @@ pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
     }
 }
 
-/// The object that a mistake is about, which its message begins with.
+/// Returns the index of the object that a mistake is about: its message begins with the object's
+/// title.
 pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
@@ -100,7 +103,8 @@ pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     (0..scene.objects.len()).find(|&index| finding.message.starts_with(&title(index)))
 }
 
-/// The ids of all mistakes: those of the table, and the fields that may have another value.
+/// Returns the ids of all mistakes: those of the table, and the fields that may have another value,
+/// in alphabetical order.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks
@@ -114,7 +118,7 @@ pub fn ids() -> impl Iterator<Item = &'static str> {
     all.into_iter()
 }
 
-/// Whether there is such a mistake.
+/// Whether a mistake has this id.
 pub fn is_id(id: &str) -> bool {
     ids().any(|own| own == id)
 }

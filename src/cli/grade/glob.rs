@@ -1,22 +1,23 @@
-//! Patterns of file names: `*` and `?` stand for any characters but `/`, `**` for those too.
+//! Patterns of file names: `*` stands for any characters except `/`, `?` for one of them, and `**`
+//! for any characters.
 
-/// A pattern.
+/// A pattern of file names, in lower case.
 #[derive(Clone, Debug)]
 pub struct Glob(Vec<char>);
 
 impl Glob {
-    /// The pattern that a text is; capital letters are as small ones.
+    /// Parses a pattern, which ignores case.
     pub fn new(text: &str) -> Self {
         Self(text.to_lowercase().chars().collect())
     }
 
-    /// Whether it stands for a path, or, where it has no `/`, for the last name of one.
+    /// Whether the pattern matches a path or, if the pattern has no `/`, the last name of the path.
     pub fn matches(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         let name = path.rsplit('/').next().unwrap_or_default();
         let text = if self.0.contains(&'/') { &path } else { name };
         let text: Vec<char> = text.chars().collect();
-        // Which beginnings of the text the pattern stands for so far.
+        // ends[n]: whether the pattern so far matches the first n characters.
         let mut ends = vec![false; text.len() + 1];
         ends[0] = true;
         let mut at = 0;

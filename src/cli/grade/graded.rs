@@ -1,50 +1,50 @@
-//! What is said of a student's work.
+//! The result of grading a student's submission.
 //!
-//! The verdict is kept as the JSON that programs get, from which every other form takes its words:
-//! what one says, all say.
+//! The verdict is kept as the JSON that programs get. All other formats take their words from it,
+//! so that all formats agree.
 
 use serde_json::{Map, Value, json};
 
 use super::thumbnails::Pictures;
 use crate::cli::Status;
 
-/// A student, and what is said of his pictures.
-pub struct Graded {
+/// A student, with the results of the pictures.
+pub struct GradedStudent {
     pub name: String,
-    /// Moodle's number.
+    /// The number of the submission in Moodle.
     pub number: Option<String>,
-    /// The folder or file.
+    /// The folder or file, to be shown.
     pub place: String,
-    /// What was compared, the best one first.
-    pub compared: Vec<Compared>,
-    /// What `--picture` chooses.
+    /// The pictures that were compared, the best one first.
+    pub compared: Vec<ComparedPicture>,
+    /// The argument of `--picture`.
     pub chosen: Option<String>,
-    /// The other files, and why they are not.
+    /// The other files, with the reasons why they were not compared.
     pub not_compared: Vec<String>,
-    /// Other students whose picture is the same in every pixel.
+    /// Names of other students whose picture is equal in every pixel.
     pub equal_to: Vec<String>,
-    /// The points, where they are known.
+    /// The points, if they are known.
     pub score: Option<f64>,
 }
 
-/// A picture.
-pub struct Compared {
-    /// Where it lies in the student's work.
+/// A picture that was compared.
+pub struct ComparedPicture {
+    /// Path in the student's submission.
     pub path: String,
-    /// The same from what was named.
+    /// Path from the argument on the command line.
     pub shown: String,
-    pub result: Result<Judged, String>,
+    pub result: Result<JudgedPicture, String>,
 }
 
-/// What is known of a picture.
-pub struct Judged {
-    /// What there is for programs.
+/// The result of judging a picture.
+pub struct JudgedPicture {
+    /// The fields of the JSON output.
     pub fields: Map<String, Value>,
-    /// What its format does to colours.
+    /// A warning if the file's format changes colours.
     pub warning: Option<&'static str>,
-    /// Tells it from other pictures.
+    /// SHA-256 of the pixels.
     pub hash: [u8; 32],
-    /// If there will be a page.
+    /// The pictures for the page; `None` if no page is written.
     pub pictures: Option<Pictures>,
 }
 
@@ -54,11 +54,11 @@ pub struct Finding<'j> {
     pub message: &'j str,
     pub help: &'j str,
     pub set: Vec<&'j str>,
-    /// The share of the squared difference beyond noise that it explains.
+    /// The share of the squared difference beyond noise that the mistake explains.
     pub explains: f64,
 }
 
-impl Judged {
+impl JudgedPicture {
     fn text(&self, key: &str) -> &str {
         self.fields
             .get(key)
@@ -66,17 +66,17 @@ impl Judged {
             .unwrap_or_default()
     }
 
-    /// The word for its verdict.
+    /// Returns the word for the verdict.
     pub fn word(&self) -> &str {
         self.text("verdict")
     }
 
-    /// The verdict in a line.
+    /// Returns the verdict as a sentence.
     pub fn line(&self) -> &str {
         self.text("line")
     }
 
-    /// Whether nothing but noise is wrong.
+    /// Whether the picture is right, except for noise.
     pub fn is_right(&self) -> bool {
         matches!(self.word(), "right" | "noise")
     }
@@ -90,17 +90,17 @@ impl Judged {
         self.fields.get("samples_per_pixel")?.as_f64()
     }
 
-    /// The share of the difference that the findings leave.
+    /// Returns the share of the difference that the findings leave unexplained.
     pub fn rest(&self) -> Option<f64> {
         self.fields.get("rest")?.as_f64()
     }
 
-    /// Whether it carries the text that Pinhole writes into its pictures.
+    /// Whether the picture carries the scene text that Pinhole writes into its own pictures.
     pub fn is_ours(&self) -> bool {
         self.fields.get("rendered_by_pinhole") == Some(&Value::Bool(true))
     }
 
-    /// Whether the search for mistakes was ended by its bound.
+    /// Whether the search for mistakes ended at its limit of work.
     pub fn is_limited(&self) -> bool {
         self.fields.get("limited") == Some(&Value::Bool(true))
     }
@@ -138,8 +138,9 @@ fn finding(one: &Value) -> Finding<'_> {
     }
 }
 
-impl Compared {
-    /// The better, the less: a student is not to be told of a worse picture than he made.
+impl ComparedPicture {
+    /// Returns a rank by which pictures are sorted, smaller for better ones: a student's best
+    /// picture counts.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
@@ -154,9 +155,9 @@ impl Compared {
     }
 }
 
-impl Graded {
-    /// The best picture, if one was compared.
-    pub fn best(&self) -> Result<&Judged, String> {
+impl GradedStudent {
+    /// Returns the result of the best picture, or why there is none.
+    pub fn best(&self) -> Result<&JudgedPicture, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
             None => Err(match &self.chosen {
@@ -166,14 +167,14 @@ impl Graded {
         }
     }
 
-    /// The file of the best picture, or the place where there is none.
+    /// Returns the file of the best picture; the student's place if there is no picture.
     pub fn file(&self) -> &str {
         self.compared
             .first()
             .map_or(&self.place, |best| &best.shown)
     }
 
-    /// The word for its verdict.
+    /// Returns the word for the verdict.
     pub fn word(&self) -> &str {
         match self.compared.first().map(|best| &best.result) {
             Some(Ok(judged)) => judged.word(),
@@ -181,7 +182,7 @@ impl Graded {
         }
     }
 
-    /// The verdict in a line.
+    /// Returns the verdict as a sentence.
     pub fn line(&self) -> String {
         let line = match self.best() {
             Ok(judged) => judged.line().to_owned(),
@@ -190,7 +191,8 @@ impl Graded {
         line + &self.note()
     }
 
-    /// What else there is to know of which picture it is about.
+    /// Returns which of several pictures the verdict is about, in parentheses; an empty text if
+    /// there is only one.
     pub fn note(&self) -> String {
         match &self.compared[..] {
             [] | [_] => String::new(),
@@ -202,7 +204,7 @@ impl Graded {
         }
     }
 
-    /// What it makes of the exit status.
+    /// Returns the exit status for this student.
     pub fn status(&self) -> Status {
         match self.best() {
             Ok(judged) if judged.is_right() => Status::Done,
@@ -210,7 +212,7 @@ impl Graded {
         }
     }
 
-    /// Its line for programs.
+    /// Returns the student's JSON object.
     pub fn json(&self) -> Value {
         let mut fields = Map::new();
         let mut put = |key: &str, value: Value| {
@@ -250,7 +252,7 @@ impl Graded {
         Value::Object(fields)
     }
 
-    /// What a student can be told.
+    /// Returns the comment for the student.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,
@@ -288,7 +290,7 @@ impl Graded {
     }
 }
 
-/// A share, rounded to what matters.
+/// Formats a share in per cent.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),

@@ -5,17 +5,17 @@ use serde_json::{Value, json};
 
 use super::{
     criteria::{Criterion, criterion},
-    graded::{Finding, Graded},
-    points::Points,
+    graded::{Finding, GradedStudent},
+    points::PointScheme,
 };
 use crate::{
     diagnostic::visible,
     scene::{Scene, Shape},
 };
 
-/// The file. Without points each test counts one. What is not known has no score, so that nobody
-/// gets one by mistake.
-pub fn results(one: &Graded, scene: &Scene, points: Option<&Points>) -> Value {
+/// Returns the file's content. Without points, each test counts 1. If the verdict is unknown, there
+/// are no scores, so that nobody gets one by mistake.
+pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
     };
@@ -28,7 +28,7 @@ pub fn results(one: &Graded, scene: &Scene, points: Option<&Points>) -> Value {
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
         if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
-            // Without points a test is passed or not.
+            // Without points, a test is either passed or failed.
             let off = off.as_ref().map_or(scores[test], |off| off[at]);
             scores[test] = (scores[test] - off).max(0.0);
         }
@@ -60,7 +60,7 @@ pub fn results(one: &Graded, scene: &Scene, points: Option<&Points>) -> Value {
     whole(one, score, tests)
 }
 
-fn whole(one: &Graded, score: Option<f64>, tests: Vec<Value>) -> Value {
+fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
     let mut results = json!({
         "output": visible(&one.comment()),
         "output_format": "text",
@@ -73,7 +73,7 @@ fn whole(one: &Graded, score: Option<f64>, tests: Vec<Value>) -> Value {
     results
 }
 
-/// What the tests are about, and their names.
+/// Returns the criteria of the tests and their names.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
     let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
@@ -99,9 +99,9 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     all
 }
 
-/// What each test is worth: an object what it has in the points, and the others equal parts of what
-/// is left.
-fn shares(criteria: &[(Criterion, String)], points: Option<&Points>) -> Vec<f64> {
+/// Returns the maximum score of each test: that of an object is `object` of the points, and the
+/// other tests share the rest equally.
+fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec<f64> {
     let Some(points) = points else {
         return vec![1.0; criteria.len()];
     };
@@ -117,11 +117,11 @@ fn shares(criteria: &[(Criterion, String)], points: Option<&Points>) -> Vec<f64>
     criteria.iter().map(share).collect()
 }
 
-/// Names for folders, one for each student, from their names, and different ones: no system takes
-/// these for anything else.
-pub fn folders(graded: &[Graded]) -> Vec<String> {
+/// Returns a folder name for each student, made from the student's name. The names differ even
+/// without regard to case, and are valid on all systems.
+pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
-    let name = |one: &Graded| {
+    let name = |one: &GradedStudent| {
         let plain = |c: char| {
             if c.is_alphanumeric() || "-_.@".contains(c) {
                 c
@@ -131,7 +131,7 @@ pub fn folders(graded: &[Graded]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows has names of its own, such as `con`, whatever comes after a dot.
+        // Windows reserves names such as `con`, whatever follows after a dot.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),
@@ -153,7 +153,7 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // The page's own files have the others.
+    // The other names are those of the page's own files.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

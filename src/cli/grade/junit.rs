@@ -1,12 +1,12 @@
-//! A class as JUnit XML, which systems of continuous integration show: a student is a test case, as
-//! Ant's junitreport and Jenkins read them.
+//! A class as JUnit XML for systems of continuous integration, in the form that Ant's junitreport
+//! and Jenkins read. Each student is a test case.
 
-use super::graded::Graded;
+use super::graded::GradedStudent;
 use crate::diagnostic::escaped;
 
-/// The file. A wrong picture is a `failure`, one of an unknown fault is `skipped`, and one that
-/// cannot be read or is missing an `error`.
-pub fn junit(scene: &str, graded: &[Graded]) -> String {
+/// Returns the file's content. A wrong picture is a `failure`, one that is wrong for unknown
+/// reasons is `skipped`, and one that is missing or cannot be read is an `error`.
+pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     let count = |word: &str| graded.iter().filter(|one| one.word() == word).count();
     let counts = format!(
         "tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"",
@@ -33,7 +33,7 @@ pub fn junit(scene: &str, graded: &[Graded]) -> String {
         };
         let message = attribute(&one.line());
         let word = match kind {
-            // It has no type.
+            // `skipped` has no type.
             "skipped" => String::new(),
             _ => format!(" type=\"{}\"", one.word()),
         };
@@ -46,7 +46,8 @@ pub fn junit(scene: &str, graded: &[Graded]) -> String {
     xml + "  </testsuite>\n</testsuites>\n"
 }
 
-/// A line as XML may hold it: two characters are none there, not even by number.
+/// Escapes a line for XML, which does not allow two of Unicode's characters, not even as
+/// references.
 fn attribute(text: &str) -> String {
     escaped(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

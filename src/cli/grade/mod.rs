@@ -1,11 +1,11 @@
-//! `grade`: a class's work against one scene.
+//! `grade`: grades a class's submissions against one scene.
 //!
-//! 1. What is named becomes a `class` of students with files (`handed_in`), from the `tree` of a
-//!    folder or of a zip file (`archive`); `names` are those of the systems that classes hand in
-//!    by, and `glob` chooses pictures.
-//! 2. Each student's pictures are compared and judged: that is `graded`, of which `points` make a
-//!    score by `criteria`.
-//! 3. Writers say it: `table` for people and as CSV, `page` with `thumbnails`, `junit`,
+//! 1. The arguments become a `class` of students with files (`submission`), from the `tree` of a
+//!    folder or of a zip file (`archive`). `names` reads the naming schemes of submission systems,
+//!    and `glob` chooses pictures.
+//! 2. Each student's pictures are compared and judged (`graded`), and `points` makes a score of the
+//!    verdict by `criteria`.
+//! 3. The result is written by `table` for people and as CSV, `page` with `thumbnails`, `junit`,
 //!    `gradescope` and `moodle`.
 
 mod archive;
@@ -14,12 +14,12 @@ mod criteria;
 mod glob;
 mod graded;
 mod gradescope;
-mod handed_in;
 mod junit;
 mod moodle;
 mod names;
 mod page;
 mod points;
+mod submission;
 mod table;
 mod thumbnails;
 mod tree;
@@ -39,16 +39,16 @@ use serde_json::json;
 use self::{
     class::Class,
     glob::Glob,
-    graded::{Compared, Graded, Judged},
-    handed_in::{HandedIn, Student},
-    points::Points,
+    graded::{ComparedPicture, GradedStudent, JudgedPicture},
+    points::PointScheme,
+    submission::{Student, SubmittedFile},
     thumbnails::Pictures,
 };
 use super::{
     Status, Trouble,
     args::{GradeArgs, GradeFormat},
     diff,
-    input::{Input, check_standard, not_written, shown},
+    input::{SceneInput, check_standard, not_written, shown},
     interrupt::Interrupt,
     judge, output, progress,
 };
@@ -62,16 +62,16 @@ use crate::{
     scene::Scene,
 };
 
-/// What a folder gets, beside pictures.
+/// Files of the output folder, apart from pictures.
 const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 
-/// Judges them.
+/// Grades the submissions that the arguments name.
 pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
-    let input = Input::read(&args.scene, &args.overrides)?;
+    let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {
         return Ok(Status::SceneErrors);
     };
-    let points = args.points.as_deref().map(Points::read).transpose()?;
+    let points = args.points.as_deref().map(PointScheme::read).transpose()?;
     let class = class(args)?;
     let names = output_names(args, &class);
     let folder = args.output.as_deref();
@@ -96,7 +96,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             output::warning(&format!("{}: {warning}", visible_line(one.file())));
         }
     }
-    let mut files = said(args, &scene, &graded, points.as_ref())?;
+    let mut files = print_results(args, &scene, &graded, points.as_ref())?;
     if let Some(mut folder) = folder {
         let total = points.map(|points| points.total);
         files.extend(page_files(args, &graded, exact, total));
@@ -106,11 +106,11 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if class.is_one_missing || !has_compared {
         return Ok(Status::Trouble);
     }
-    let status = graded.iter().map(Graded::status).max();
+    let status = graded.iter().map(GradedStudent::status).max();
     Ok(status.unwrap_or(Status::Done))
 }
 
-/// The students, without what is the teacher's own.
+/// Reads the students, without the teacher's own files.
 fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     let own = [
         Some(&args.scene),
@@ -125,7 +125,7 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     let chosen = args.picture.as_deref().map(Glob::new);
     let class = Class::read(&args.pictures, &own, chosen.as_ref())?;
     if class.students.is_empty() {
-        return Err(class::nobody(&args.pictures));
+        return Err(class::no_students(&args.pictures));
     }
     let needs_one = args.format == GradeFormat::Gradescope && args.output.is_none();
     if needs_one && class.students.len() > 1 {
@@ -143,7 +143,7 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     Ok(class)
 }
 
-/// The names of all files that a folder gets, to be looked at before the work.
+/// Returns the names of all files of the output folder, which is checked before the work.
 fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
     let pictures = (0..class.students.len()).flat_map(page::names);
     let own = FILES.map(str::to_owned).into_iter().chain(pictures);
@@ -154,19 +154,21 @@ fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
 
 fn worksheet_name(args: &GradeArgs) -> Option<String> {
     let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
-    // Next to the page's own files.
-    Some(match FILES.contains(&&*name) {
-        true => format!("moodle-{name}"),
-        false => name.into_owned(),
+    // The name must differ from those of the page's own files.
+    Some(if FILES.contains(&&*name) {
+        format!("moodle-{name}")
+    } else {
+        name.into_owned()
     })
 }
 
-/// Says it in the form that is asked for, and what of it goes into a folder.
-fn said(
+/// Prints the result in the format that is asked for, and returns the files of that format for the
+/// output folder.
+fn print_results(
     args: &GradeArgs,
     scene: &Scene,
-    graded: &[Graded],
-    points: Option<&Points>,
+    graded: &[GradedStudent],
+    points: Option<&PointScheme>,
 ) -> Result<Vec<(String, Vec<u8>)>, Trouble> {
     match args.format {
         GradeFormat::Human => output::answer(&table::table(graded))?,
@@ -204,17 +206,17 @@ fn said(
     Ok(Vec::new())
 }
 
-fn lines(graded: &[Graded]) -> String {
+fn lines(graded: &[GradedStudent]) -> String {
     graded
         .iter()
         .map(|one| format!("{}\n", one.json()))
         .collect()
 }
 
-/// The page, the pictures beside it, and the two forms for programs.
+/// Returns the page, the pictures beside it, and the CSV and JSON files.
 fn page_files(
     args: &GradeArgs,
-    graded: &[Graded],
+    graded: &[GradedStudent],
     exact: Vec<u8>,
     total: Option<f64>,
 ) -> Vec<(String, Vec<u8>)> {
@@ -238,8 +240,9 @@ fn page_files(
     files
 }
 
-/// Tells those whose pictures are the same. That all right ones without noise are is no wonder.
-fn mark_equal(graded: &mut [Graded]) {
+/// Marks students with equal pictures. Right pictures without noise are left out, as they are all
+/// equal.
+fn mark_equal(graded: &mut [GradedStudent]) {
     let mut same = BTreeMap::<[u8; 32], Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
         if let Ok(judged) = one.best()
@@ -256,10 +259,10 @@ fn mark_equal(graded: &mut [Graded]) {
     }
 }
 
-/// What is said of each student, and the exact picture's file if there will be a page.
-type Answers = (Vec<Graded>, Vec<u8>);
+/// The results of all students, and the exact picture as a PNG if a page is written.
+type Answers = (Vec<GradedStudent>, Vec<u8>);
 
-/// Each student by himself, on as many threads as there are processors.
+/// Grades the students in parallel, by default on as many threads as there are processors.
 fn graded(
     args: &GradeArgs,
     scene: &Scene,
@@ -267,17 +270,10 @@ fn graded(
     cancel: &AtomicBool,
 ) -> Result<Result<Answers, RenderError>, rayon::ThreadPoolBuildError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let processors = || thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = args.threads.count().map_or_else(processors, NonZero::get);
-    let reference = progress::watched(whole.pixels(), |done| {
-        let control = Control {
-            threads: NonZero::new(threads),
-            progress: &|more| {
-                done.fetch_add(more, Ordering::Relaxed);
-            },
-            cancel,
-        };
-        let reference = Reference::new(scene, whole, Rounding::Byte, &control);
+    let threads = args.threads.count();
+    let threads = threads.or_else(|| thread::available_parallelism().ok());
+    let reference = progress::rendering(whole.pixels(), threads, cancel, |control| {
+        let reference = Reference::new(scene, whole, Rounding::Byte, control);
         reference.map(|reference| reference.with_effort(args.effort.effort))
     });
     let reference = match reference {
@@ -291,15 +287,15 @@ fn graded(
     };
     let students = &class.students;
     let pool = ThreadPoolBuilder::new()
-        .num_threads(threads.min(students.len()).max(1))
+        .num_threads(threads.map_or(1, NonZero::get).min(students.len()).max(1))
         .build()?;
     let chosen = args.picture.as_deref().map(Glob::new);
     let graded = progress::watched(students.len() as u64, |done| {
         let grade = |student: &Student| {
             let choice = student.choice(chosen.as_ref());
-            let grade = |file: &&HandedIn| {
+            let grade = |file: &&SubmittedFile| {
                 let result = grade(file, class, scene, &reference, args, cancel)?;
-                Ok(Compared {
+                Ok(ComparedPicture {
                     path: file.path.clone(),
                     shown: file.shown.clone(),
                     result,
@@ -308,12 +304,11 @@ fn graded(
             let compared: Result<Vec<_>, RenderError> = choice.pictures.iter().map(grade).collect();
             let mut compared = compared?;
             compared.sort_by(|a, b| {
-                a.rank()
-                    .partial_cmp(&b.rank())
-                    .unwrap_or(std::cmp::Ordering::Equal)
+                let order = a.rank().partial_cmp(&b.rank());
+                order.unwrap_or(std::cmp::Ordering::Equal)
             });
             done.fetch_add(1, Ordering::Relaxed);
-            Ok(Graded {
+            Ok(GradedStudent {
                 name: student.name.clone(),
                 number: student.number.clone(),
                 place: student.place.clone(),
@@ -334,15 +329,15 @@ fn graded(
     Ok(graded.map(|graded| (graded, exact)))
 }
 
-/// A picture judged, or why it cannot be.
+/// Judges a picture; the inner error says why it cannot be judged.
 fn grade(
-    file: &HandedIn,
+    file: &SubmittedFile,
     class: &Class,
     scene: &Scene,
     whole: &Reference,
     args: &GradeArgs,
     cancel: &AtomicBool,
-) -> Result<Result<Judged, String>, RenderError> {
+) -> Result<Result<JudgedPicture, String>, RenderError> {
     let read = file.picture(&args.large, &class.budget);
     let read = read.and_then(|bytes| Ok((judge::picture(&bytes, &args.large)?, bytes)));
     let (picture, bytes) = match read {
@@ -397,7 +392,7 @@ fn grade(
     );
     let is_ours = film::read_recipe(&bytes).is_ok();
     fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
-    Ok(Ok(Judged {
+    Ok(Ok(JudgedPicture {
         fields,
         warning: picture.coding.warning(),
         hash: hash(&picture.film),
@@ -405,7 +400,7 @@ fn grade(
     }))
 }
 
-/// Tells pictures apart by their pixels.
+/// Returns the SHA-256 of a picture's width and pixels.
 fn hash(film: &Film) -> [u8; 32] {
     let mut hash = Hash::new();
     hash.update(film.width().to_le_bytes());

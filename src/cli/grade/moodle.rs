@@ -1,15 +1,15 @@
 //! Moodle's worksheet of grades, filled in.
 //!
 //! Rows are found by the number at the end of the identifier, as Moodle's importer does it
-//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings, of which it
-//! needs the identifier, the grade and the time of that. Nothing but the cells of grades and
-//! comments changes: a row in which nothing does is copied byte for byte.
+//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings; the importer
+//! needs the identifier, the grade and the time of the grade. Only the cells of grades and comments
+//! change: other rows are copied byte for byte.
 
 use std::path::Path;
 
 use csv::{ByteRecord, QuoteStyle, ReaderBuilder, Terminator, WriterBuilder};
 
-use super::graded::Graded;
+use super::graded::GradedStudent;
 use crate::{
     cli::{
         Trouble,
@@ -25,7 +25,7 @@ use crate::{
 /// Maximum length of a worksheet, in bytes.
 const LIMIT: u64 = 64 << 20;
 
-/// The headings in English, which `--columns` may replace; the last two are not needed.
+/// The English headings, which `--columns` may replace. The last two columns are optional.
 const HEADINGS: [&str; 5] = [
     "Identifier",
     "Grade",
@@ -34,15 +34,15 @@ const HEADINGS: [&str; 5] = [
     "Grade can be changed",
 ];
 
-/// Fills in a worksheet.
+/// Returns a worksheet with the grades and comments filled in.
 ///
 /// # Errors
 ///
-/// It cannot be read, or has no such columns, or grades only up to less than the points.
+/// The worksheet cannot be read, lacks a column, or has a maximum grade below the total of points.
 pub fn filled(
     path: &Path,
     columns: &[String],
-    graded: &[Graded],
+    graded: &[GradedStudent],
     total: Option<f64>,
 ) -> Result<Vec<u8>, Trouble> {
     let failed = |why: &dyn std::fmt::Display| unreadable(path, why);
@@ -67,7 +67,7 @@ pub fn filled(
     {
         rows.push(row.clone());
     }
-    // A record is said to begin before the second byte of the line end before it.
+    // The reader reports a record after a CRLF as beginning at the line feed.
     let start = |row: &ByteRecord| {
         let at = row.position().map_or(0, |at| at.byte() as usize);
         at + usize::from(at > 0 && text.get(at) == Some(&b'\n'))
@@ -106,7 +106,7 @@ pub fn filled(
     for (index, row) in rows.iter().enumerate() {
         let raw = &text[starts[index]..starts[index + 1]];
         let number = row.get(identifier).map(number_at_end).filter(|_| index > 0);
-        let is_his = |one: &Graded| one.number.is_some() && one.number.as_deref() == number;
+        let is_his = |one: &GradedStudent| one.number.is_some() && one.number.as_deref() == number;
         let at = graded.iter().position(is_his);
         let may_change = changeable.and_then(|at| row.get(at)) != Some(b"No");
         let Some((at, one)) = at.map(|at| (at, &graded[at])) else {
@@ -129,7 +129,7 @@ pub fn filled(
             )));
         }
         let cells = row.iter().enumerate().map(|(at, cell)| match at {
-            // Without points there are no grades to change.
+            // Without points, grades are left as they are.
             _ if at == grade && total.is_some() => {
                 one.score.map_or_else(String::new, short).into_bytes()
             }
@@ -138,9 +138,10 @@ pub fn filled(
         });
         let mut writer = WriterBuilder::new()
             .quote_style(QuoteStyle::Necessary)
-            .terminator(match ends_in_cr {
-                true => Terminator::CRLF,
-                false => Terminator::Any(b'\n'),
+            .terminator(if ends_in_cr {
+                Terminator::CRLF
+            } else {
+                Terminator::Any(b'\n')
             })
             .from_writer(Vec::new());
         writer.write_record(cells).map_err(|error| failed(&error))?;
@@ -152,7 +153,7 @@ pub fn filled(
     Ok(out)
 }
 
-/// A column, and what it is called in the worksheet.
+/// Parses an argument of `--columns`: the English heading and the one in the worksheet.
 fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     let (name, heading) = text.split_once('=').unwrap_or((text, ""));
     let mut headings = HEADINGS.into_iter();
@@ -165,7 +166,7 @@ fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     }
 }
 
-/// The number of `Participant 12345`, in whatever language.
+/// Returns the number at the end of an identifier such as `Participant 12345`, in any language.
 fn number_at_end(cell: &[u8]) -> &str {
     let digits = cell
         .iter()
@@ -184,7 +185,7 @@ fn decimal(cell: &[u8]) -> Option<f64> {
         .ok()
 }
 
-/// A comment is HTML there.
+/// Escapes a comment as HTML, which Moodle expects.
 fn html(text: &str) -> String {
     visible(text)
         .replace('&', "&amp;")

@@ -1,13 +1,13 @@
-//! Who handed something in: what Moodle writes into the names of files, Gradescope into a file
-//! beside them, and GitHub Classroom into those of folders.
+//! Names of students: from file names by Moodle, from a metadata file by Gradescope, and from
+//! folder names by GitHub Classroom.
 
 use std::collections::BTreeMap;
 
-/// How the folder is called, after the assignment, that GitHub Classroom makes for all clones.
+/// Suffix, after the assignment's name, of the folder that GitHub Classroom makes for all clones.
 pub const CLONES: &str = "-submissions";
 
-/// What Moodle calls a file or a folder: `Name_12345_assignsubmission_file_` and, where it is a
-/// file, its own name.
+/// Moodle's name of a file or folder: `Name_12345_assignsubmission_file_` and, for a file, the
+/// file's own name.
 #[derive(Debug)]
 pub struct MoodleName<'n> {
     pub name: &'n str,
@@ -16,7 +16,7 @@ pub struct MoodleName<'n> {
 }
 
 impl MoodleName<'_> {
-    /// As a person is called; without names there is only the number.
+    /// Returns the student's name; `Participant` and the number if Moodle hides names.
     pub fn shown(&self) -> String {
         match self.name {
             "" | "Participant" => format!("Participant {}", self.number),
@@ -25,30 +25,30 @@ impl MoodleName<'_> {
     }
 }
 
-/// The parts of such a name.
+/// Splits a name by Moodle into its parts. Returns `None` for any other name.
 pub fn moodle(text: &str) -> Option<MoodleName<'_>> {
     let (who, what) = text.split_once("_assignsubmission_")?;
     let (name, number) = who.rsplit_once('_')?;
-    // The word says by which of its plug-ins it was handed in.
+    // The word after `assignsubmission_` names the plug-in of Moodle that took the submission.
     let (_, file) = what.split_once('_').unwrap_or((what, ""));
     let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
     is_number.then_some(MoodleName { name, number, file })
 }
 
-/// What a student is called whose folder has no other name: without the `assignment-` that GitHub
-/// Classroom puts in front.
+/// Returns the name of a student by the folder, without the prefix `assignment-` that GitHub
+/// Classroom adds.
 pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     let own = slug.and_then(|slug| folder.strip_prefix(slug)?.strip_prefix('-'));
     let own = own.filter(|own| !own.is_empty()).unwrap_or(folder);
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// The students of an export of Gradescope, by folder.
+/// Students in an export of Gradescope, by folder.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
 impl Submitters {
-    /// Who handed in a folder, or a group.
+    /// Returns the name of the student of a folder, or of the group.
     pub fn name(&self, folder: &str) -> Option<String> {
         let names = self.0.get(folder)?;
         Some(match &names[..] {
@@ -57,14 +57,14 @@ impl Submitters {
         })
     }
 
-    /// All folders with who they are of.
+    /// Returns all folders with their students' names.
     pub fn all(&self) -> impl Iterator<Item = (&str, String)> {
         let named = |folder: &'_ String| self.name(folder).unwrap_or_default();
         self.0.keys().map(move |folder| (&**folder, named(folder)))
     }
 }
 
-/// Reads `submission_metadata.yml`: of YAML, what Ruby writes there.
+/// Reads `submission_metadata.yml`: only the subset of YAML that Ruby writes there.
 ///
 /// ```yaml
 /// submission_409194023:
@@ -113,7 +113,7 @@ pub fn submitters(text: &str) -> Submitters {
     Submitters(named.collect())
 }
 
-/// A name, an address and a number, as far as there are any.
+/// Name, e-mail address and student number; an empty text where one is missing.
 #[derive(Debug, Default)]
 struct Submitter([String; 3]);
 
@@ -130,7 +130,7 @@ impl Submitter {
     }
 }
 
-/// A value without its quotation marks.
+/// Returns a value without its quotation marks.
 fn scalar(text: &str) -> String {
     let inner = |mark: char| text.strip_prefix(mark)?.strip_suffix(mark);
     if let Some(inner) = inner('\'') {
@@ -142,8 +142,8 @@ fn scalar(text: &str) -> String {
     }
 }
 
-/// A text between double quotation marks, by the escapes of YAML 1.2.2 (5.7): Ruby writes what is
-/// not printable so, which to its library are all characters above U+FFFF.
+/// Decodes a double-quoted text by the escapes of YAML 1.2.2 (5.7). Ruby's library escapes what it
+/// considers not printable, such as all characters above U+FFFF.
 fn unescaped(text: &str) -> Option<String> {
     let mut chars = text.chars();
     let mut plain = String::new();
@@ -156,7 +156,7 @@ fn unescaped(text: &str) -> Option<String> {
             'x' => 2,
             'u' => 4,
             'U' => 8,
-            // A control character is no part of a name.
+            // A name has no control characters: they become blanks.
             '0' | 'a' | 'b' | 't' | '\t' | 'n' | 'v' | 'f' | 'r' | 'e' | 'N' | '_' | 'L' | 'P' => {
                 plain.push(' ');
                 continue;

@@ -6,7 +6,7 @@ for (const button of document.querySelectorAll("thead button")) {
     for (const other of document.querySelectorAll("th[aria-sort]")) other.ariaSort = "none";
     head.ariaSort = order;
     const text = row => { const cell = row.cells[head.cellIndex]; return cell.dataset.key ?? cell.textContent; };
-    // Numbers come before texts, and what is empty last, whatever the order.
+    // Numbers come before texts, and empty cells last, in either order.
     const rank = row => (text(row) === "" ? 2 : isNaN(text(row)) ? 1 : 0);
     const compare = (a, b) => (rank(a) === 0 ? text(a) - text(b) : text(a).localeCompare(text(b)));
     const sign = order === "ascending" ? 1 : -1;
@@ -37,14 +37,14 @@ for (const button of document.querySelectorAll(".copy")) {
     try {
       await navigator.clipboard.writeText(text.textContent);
     } catch {
-      // A page from a file may not be given the clipboard; what is selected can be copied by hand.
+      // A page from a file may be denied the clipboard; the selected text can be copied by hand.
       getSelection().selectAllChildren(text);
       document.execCommand("copy");
     }
     button.textContent = "copied";
   });
 }
-// A page on paper cannot be opened.
+// On paper, folded details cannot be opened.
 addEventListener("beforeprint", () => {
   for (const details of document.querySelectorAll("details")) details.open = true;
 });

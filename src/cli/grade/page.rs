@@ -1,10 +1,10 @@
-//! What is said of a class as one page of HTML: its small pictures stand in it, and the whole ones
-//! beside it.
+//! The results of a class as a page of HTML. Thumbnails are embedded in the page, and the full
+//! pictures are files beside it.
 
 use std::collections::BTreeMap;
 
 use super::{
-    graded::{Finding, Graded, Judged, percent},
+    graded::{Finding, GradedStudent, JudgedPicture, percent},
     table::figures,
 };
 use crate::{cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, numbers::short};
@@ -12,16 +12,16 @@ use crate::{cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, numbers:
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Where the exact picture of the whole scene lies.
+/// Path of the exact picture of the whole scene.
 pub const EXACT: &str = "pictures/exact.png";
 
-/// Where a student's picture, its differences, and its own exact one lie.
+/// Returns the paths of a student's picture, of its heat map, and of its own exact picture.
 pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
 
-/// The page.
-pub fn page(scene: &str, graded: &[Graded], total: Option<f64>) -> String {
+/// Returns the page.
+pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String {
     let scene = escaped(scene);
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -43,8 +43,8 @@ pub fn page(scene: &str, graded: &[Graded], total: Option<f64>) -> String {
         + "</script>\n</body>\n</html>\n"
 }
 
-/// How many there are of each verdict.
-fn summary(graded: &[Graded]) -> String {
+/// Returns the number of students with each verdict.
+fn summary(graded: &[GradedStudent]) -> String {
     let kinds = [
         ("right", "right"),
         ("noise", "right but for noise"),
@@ -67,8 +67,8 @@ fn students(count: usize) -> String {
     }
 }
 
-/// How many students made each mistake, the most frequent first.
-fn mistakes(graded: &[Graded]) -> String {
+/// Lists how many students made each mistake, the most frequent mistake first.
+fn mistakes(graded: &[GradedStudent]) -> String {
     let mut by_id = BTreeMap::<String, Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
         for mistake in one.best().iter().flat_map(|judged| judged.mistakes()) {
@@ -103,13 +103,13 @@ fn mistakes(graded: &[Graded]) -> String {
     format!("<h2>Mistakes</h2>\n<ul class=\"mistakes\">\n{lines}</ul>\n")
 }
 
-/// Who has the same picture as somebody else.
-fn equal(graded: &[Graded]) -> String {
-    let is_first = |(index, one): &(usize, &Graded)| {
+/// Lists the groups of students with equal pictures.
+fn equal(graded: &[GradedStudent]) -> String {
+    let is_first = |(index, one): &(usize, &GradedStudent)| {
         let mut before = graded[..*index].iter();
         !one.equal_to.is_empty() && !before.any(|other| one.equal_to.contains(&other.name))
     };
-    let line = |(_, one): (usize, &Graded)| {
+    let line = |(_, one): (usize, &GradedStudent)| {
         let names = [&one.name].into_iter().chain(&one.equal_to);
         let names: Vec<_> = names.map(|name| escaped(name)).collect();
         let names = names.join(", ");
@@ -127,7 +127,7 @@ fn headings(total: Option<f64>) -> String {
         format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
     };
     let all: Vec<String> = sorted.map(heading).collect();
-    // The picture comes after the student.
+    // The heading of the pictures comes after that of the students.
     format!(
         "{}<th scope=\"col\">picture</th>{}",
         all[0],
@@ -135,7 +135,7 @@ fn headings(total: Option<f64>) -> String {
     )
 }
 
-fn row(index: usize, one: &Graded, has_points: bool) -> String {
+fn row(index: usize, one: &GradedStudent, has_points: bool) -> String {
     let name = escaped(&one.name);
     let pictures = one
         .best()
@@ -165,8 +165,8 @@ fn row(index: usize, one: &Graded, has_points: bool) -> String {
     )
 }
 
-/// A thumbnail that opens.
-fn thumbnail(index: usize, name: &str, judged: &Judged) -> String {
+/// Returns a thumbnail that opens the full picture.
+fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
     let Some(pictures) = &judged.pictures else {
         return String::new();
     };
@@ -182,13 +182,14 @@ fn thumbnail(index: usize, name: &str, judged: &Judged) -> String {
     )
 }
 
-/// All that is said of a student's work.
-fn verdict(one: &Graded) -> String {
+/// Returns the verdict on a student's submission, with all details.
+fn verdict(one: &GradedStudent) -> String {
     let is_explained = one.best().is_ok_and(|judged| !judged.mistakes().is_empty());
-    let line = match is_explained {
-        // They stand below, each with its help.
-        true => format!("{}{}", one.word(), one.note()),
-        false => one.line(),
+    let line = if is_explained {
+        // The mistakes are listed below, each with its help.
+        format!("{}{}", one.word(), one.note())
+    } else {
+        one.line()
     };
     let mut html = format!("<p class=\"line\">{}</p>", escaped(&line));
     if let Ok(judged) = one.best() {
@@ -260,8 +261,8 @@ fn findings(before: &str, all: &[Finding]) -> String {
     format!("<ul>{}</ul>", all.iter().map(item).collect::<String>())
 }
 
-/// The objects that are not right, and how many are.
-fn objects(judged: &Judged) -> String {
+/// Returns the objects that are not right, and how many are right.
+fn objects(judged: &JudgedPicture) -> String {
     let all = judged.fields.get("objects").and_then(|all| all.as_array());
     let all: Vec<_> = all.into_iter().flatten().collect();
     let is_right = |one: &&&serde_json::Value| one["right"] == true;
@@ -277,11 +278,11 @@ fn objects(judged: &Judged) -> String {
         }
     });
     let wrong: Vec<_> = wrong.take(12).collect();
-    match wrong.is_empty() {
-        true => format!("<p>All {right} objects are right.</p>"),
-        false => format!(
-            "<p>Objects that are not right: {}. {right} are.</p>",
-            wrong.join(", ")
-        ),
+    if wrong.is_empty() {
+        return format!("<p>All {right} objects are right.</p>");
     }
+    format!(
+        "<p>Objects that are not right: {}. {right} are.</p>",
+        wrong.join(", ")
+    )
 }

@@ -1,10 +1,10 @@
-//! Points for pictures: what a right one gets, and what each mistake takes off.
+//! Points for pictures: the total for a right one, and the deduction for each mistake.
 
 use std::{collections::BTreeMap, path::Path};
 
 use serde_json::Value;
 
-use super::{criteria, graded::Judged};
+use super::{criteria, graded::JudgedPicture};
 use crate::{
     cli::{Trouble, input::unreadable},
     files,
@@ -14,26 +14,26 @@ use crate::{
 /// Maximum length of a file of points, in bytes.
 const LIMIT: u64 = 1 << 20;
 
-/// What stands for every mistake that is not listed.
+/// Key of the deduction for every mistake that is not listed.
 const OTHERS: &str = "*";
 
-/// How points are given.
+/// A scheme of points.
 #[derive(Debug)]
-pub struct Points {
-    /// For a right picture.
+pub struct PointScheme {
+    /// Points for a right picture.
     pub total: f64,
-    /// Taken off once for each object that mistakes are about, if these are not listed.
+    /// Deduction once for each object that mistakes are about, unless their ids are listed.
     pub object: Option<f64>,
-    /// Taken off for each mistake, by its id.
+    /// Deduction for each mistake, by its id.
     mistakes: BTreeMap<String, f64>,
 }
 
-impl Points {
+impl PointScheme {
     /// Reads `{"total": 20, "object": 2, "mistakes": {"roll_sign": 3, "*": 2}}`.
     ///
     /// # Errors
     ///
-    /// It is something else, or names a mistake that there is not.
+    /// The file is in another format, or names an unknown mistake.
     pub fn read(path: &Path) -> Result<Self, Trouble> {
         let bytes = files::read(path, LIMIT).map_err(|error| unreadable(path, &error))?;
         let value: Value =
@@ -88,8 +88,8 @@ impl Points {
         })
     }
 
-    /// What a picture gets; nothing is known of one that is wrong for unknown reasons.
-    pub fn score(&self, judged: &Judged, scene: &Scene) -> Option<f64> {
+    /// Returns the points of a picture; `None` if it is wrong for unknown reasons.
+    pub fn score(&self, judged: &JudgedPicture, scene: &Scene) -> Option<f64> {
         match judged.word() {
             "right" | "noise" => Some(self.total),
             "wrong" => {
@@ -100,8 +100,8 @@ impl Points {
         }
     }
 
-    /// What each mistake takes off, in their order.
-    pub fn taken_off(&self, judged: &Judged, scene: &Scene) -> Vec<f64> {
+    /// Returns the deduction for each mistake, in the mistakes' order.
+    pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = judged.mistakes();
         let points = mistakes.iter().map(|mistake| {
@@ -109,13 +109,11 @@ impl Points {
             let object = criteria::object(mistake, scene);
             match (listed, object, self.object) {
                 (Some(points), ..) => points,
-                (None, Some(object), Some(points)) => match objects.contains(&object) {
-                    true => 0.0,
-                    false => {
-                        objects.push(object);
-                        points
-                    }
-                },
+                (None, Some(object), Some(_)) if objects.contains(&object) => 0.0,
+                (None, Some(object), Some(points)) => {
+                    objects.push(object);
+                    points
+                }
                 _ => self.mistakes[OTHERS],
             }
         });

@@ -1,12 +1,12 @@
-//! A class in a table, for people and for other programs.
+//! The results of a class as a table, for people and as CSV.
 
 use std::iter;
 
-use super::graded::{Finding, Graded, Judged, percent};
+use super::graded::{Finding, GradedStudent, JudgedPicture, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
 
-/// Its cells: name, error, samples.
-pub fn figures(one: &Graded) -> [String; 2] {
+/// Returns the cells of the error and of the samples per pixel.
+pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],
         Ok(judged) => [
@@ -18,8 +18,8 @@ pub fn figures(one: &Graded) -> [String; 2] {
     }
 }
 
-/// A table for people, and under a line what else there is to say of a student.
-pub fn table(graded: &[Graded]) -> String {
+/// Returns a table for people, with further details below a student's line.
+pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()
         .map(|one| visible_line(&one.name).chars().count());
@@ -29,10 +29,10 @@ pub fn table(graded: &[Graded]) -> String {
         format!("{name:<widest$}  {error:>8}  {samples:>8}  {verdict}\n")
     };
     let more = |text: &str| format!("{:widest$}  {}\n", "", visible_line(text));
-    let row = |one: &Graded| {
+    let row = |one: &GradedStudent| {
         let [error, samples] = figures(one);
         let mut verdict = one.line();
-        if one.best().is_ok_and(Judged::is_ours) {
+        if one.best().is_ok_and(JudgedPicture::is_ours) {
             verdict += " (rendered by Pinhole)";
         }
         if let Some(score) = one.score {
@@ -69,9 +69,9 @@ pub fn table(graded: &[Graded]) -> String {
     iter::once(head).chain(graded.iter().map(row)).collect()
 }
 
-/// The first few of a list, and how many more there are.
+/// Joins the first few items of a list, and says how many more there are.
 pub fn some(list: &[String]) -> String {
-    /// More are not listed.
+    /// Maximum number of items that are listed.
     const MOST: usize = 6;
     let first: Vec<&str> = list.iter().take(MOST).map(String::as_str).collect();
     match list.len().saturating_sub(MOST) {
@@ -80,9 +80,9 @@ pub fn some(list: &[String]) -> String {
     }
 }
 
-/// A table for other programs.
-pub fn csv(graded: &[Graded]) -> String {
-    let row = |one: &Graded| {
+/// Returns the table as CSV.
+pub fn csv(graded: &[GradedStudent]) -> String {
+    let row = |one: &GradedStudent| {
         let [error, samples] = figures(one);
         let (mistakes, guesses, rest, limited) = match one.best() {
             Err(_) => Default::default(),
@@ -110,9 +110,10 @@ pub fn csv(graded: &[Graded]) -> String {
         let sets = mistakes.iter().flat_map(|mistake| &mistake.set);
         let sets: Vec<_> = sets.map(|set| quoted(set)).collect();
         let explains: f64 = mistakes.iter().map(|mistake| mistake.explains).sum();
-        let explains = match mistakes.is_empty() {
-            true => String::new(),
-            false => format!("{explains:.4}"),
+        let explains = if mistakes.is_empty() {
+            String::new()
+        } else {
+            format!("{explains:.4}")
         };
         let cells = [
             text_cell(one.file()),
@@ -142,13 +143,14 @@ pub fn csv(graded: &[Graded]) -> String {
 
 const HEAD: &str = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,guesses,rest,limited,not_compared,equal_to,score\n";
 
-/// A text as a cell of a CSV file: what a program that opens it would take for a formula begins
-/// with a `'`, and is a text to it so.
+/// Quotes a text as a cell of a CSV file. A text that a spreadsheet would take for a formula gets a
+/// `'` in front, which makes it a text there.
 fn text_cell(text: &str) -> String {
-    let guard =
-        match text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n']) {
-            true => "'",
-            false => "",
-        };
+    let guard = if text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n'])
+    {
+        "'"
+    } else {
+        ""
+    };
     format!("\"{guard}{}\"", visible_line(text).replace('"', "\"\""))
 }

@@ -1,25 +1,24 @@
-//! A picture, and where it differs from the exact one: small ones that stand in a page, and whole
-//! ones beside it.
+//! A picture and its heat map for a page: embedded thumbnails, and full pictures beside it.
 
 use std::io;
 
 use crate::film::{self, Film, Tolerance};
 
-/// The longer side of a thumbnail, in pixels.
+/// Maximum side of a thumbnail, in pixels.
 const LONGEST: u32 = 320;
 
-/// What a page shows of a picture.
+/// The pictures that a page shows of a student.
 pub struct Pictures {
-    /// The picture and its heat map, as `data:` URIs.
+    /// Thumbnails of the picture and its heat map, as `data:` URIs.
     pub thumbnails: [String; 2],
-    /// The same as files.
+    /// The picture and its heat map, as PNG files.
     pub whole: [Vec<u8>; 2],
-    /// The exact one, where it is another than that of the whole scene.
+    /// The exact picture of the part, as a PNG file; `None` if the picture shows the whole scene.
     pub exact: Option<Vec<u8>>,
 }
 
 impl Pictures {
-    /// Of a picture and the exact one.
+    /// Makes the pictures of a film and the exact film of the same part.
     pub fn new(
         film: &Film,
         exact: &Film,
@@ -35,13 +34,13 @@ impl Pictures {
     }
 }
 
-/// A picture as a `data:` URI, of some pixels' means where it is large.
+/// Encodes a picture as a `data:` URI; a large one is reduced to the means of blocks of pixels.
 fn data(film: &Film) -> io::Result<String> {
     let small = film::reduced(film, [LONGEST; 2]).map_err(io::Error::other)?;
     film::data_uri(&small)
 }
 
-/// A picture as a file.
+/// Encodes a picture as a PNG file.
 pub fn png(film: &Film) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     film::write_png(film, None, &mut bytes)?;

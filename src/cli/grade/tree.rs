@@ -1,5 +1,5 @@
-//! What lies in a folder or zip file, with the names of the folders around it. Links are not
-//! followed, and what systems leave behind is passed over.
+//! The files in a folder or zip file, with the names of the folders around them. Links are not
+//! followed, and files that systems leave behind are skipped.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,51 +13,51 @@ use std::{
 
 use super::{
     archive::Archive,
-    handed_in::{Content, HandedIn},
     names,
+    submission::{ContentSource, SubmittedFile},
 };
 use crate::cli::input::is_same_file;
 
-/// What Gradescope writes beside the folders of an export.
+/// Name of the file that Gradescope writes beside the folders of an export.
 pub const METADATA: &str = "submission_metadata.yml";
 
-/// Maximum number of files in a folder that is named.
+/// Maximum number of files in a folder or zip file on the command line.
 const MOST_FILES: usize = 200_000;
 
-/// Maximum depth of folders.
+/// Maximum depth of nested folders.
 const DEEPEST: usize = 40;
 
-/// Maximum depth of folders that are kept by their names: classes' and students'.
+/// Maximum depth of the folders that are recorded: those of classes and of students.
 const NAMED: usize = 2;
 
-/// A file with the names of the folders that it lies in, and its own.
-pub type Found = (Vec<String>, HandedIn);
+/// A file, after the names of its folders and its own name.
+pub type FoundFile = (Vec<String>, SubmittedFile);
 
-/// The files below a folder, or in a zip file.
+/// The files in a folder and its subfolders, or in a zip file.
 #[derive(Debug, Default)]
-pub struct Tree {
-    /// What is named, with a `/` at its end.
+pub struct FileTree {
+    /// The argument on the command line, with a `/` at its end.
     pub place: String,
-    pub found: Vec<Found>,
-    /// Folders by their names, whether there is a file in them or not.
+    pub found: Vec<FoundFile>,
+    /// Folders by their names, including empty ones.
     pub folders: BTreeSet<Vec<String>>,
-    /// Those of them that are repositories.
+    /// Folders that are repositories.
     pub clones: BTreeSet<Vec<String>>,
 }
 
-impl Tree {
-    /// Goes through a folder, past the teacher's own files and folders.
+impl FileTree {
+    /// Reads a folder, except the teacher's own files and folders, `own`.
     ///
     /// # Errors
     ///
-    /// It cannot be read, or holds too many files.
+    /// The folder cannot be read, or has too many files.
     pub fn of_folder(path: &Path, own: &[&Path]) -> io::Result<Self> {
         let mut tree = Self::at(path);
         tree.walk(path, &[], own)?;
         Ok(tree)
     }
 
-    /// Goes through some of what lies in a folder.
+    /// Reads some entries of a folder.
     ///
     /// # Errors
     ///
@@ -74,7 +74,7 @@ impl Tree {
     ///
     /// # Errors
     ///
-    /// Why it cannot be read.
+    /// The file cannot be read; the message says why.
     pub fn of_zip(path: &Path) -> Result<Self, String> {
         let mut tree = Self::at(path);
         tree.unpack(path, &[])?;
@@ -95,7 +95,7 @@ impl Tree {
         }
     }
 
-    /// Goes through a folder, whose names are those of the folders before it in what is named.
+    /// Reads a subfolder; `before` has the names of the folders from the argument down to it.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
         let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
         self.walk_entries(entries, before, own)
@@ -123,13 +123,15 @@ impl Tree {
             let kind = entry.file_type()?;
             if kind.is_dir() {
                 self.add_folder(&names);
-                let inner = match names.len() < DEEPEST {
-                    true => self.walk(&path, &names, own),
-                    false => Err(io::Error::other("folders are nested too deeply")),
+                let inner = if names.len() < DEEPEST {
+                    self.walk(&path, &names, own)
+                } else {
+                    Err(io::Error::other("folders are nested too deeply"))
                 };
-                // What is named must be readable; of what is in it one says what is not.
+                // The argument itself must be readable; a subfolder that is not is listed with the
+                // error.
                 if let Err(error) = inner {
-                    self.push(names, Content::Refused(error.to_string()), None, 0)?;
+                    self.push(names, ContentSource::Refused(error.to_string()), None, 0)?;
                 }
                 continue;
             }
@@ -139,13 +141,13 @@ impl Tree {
                 (found.len(), since.map(|since| since.as_secs() as i64))
             });
             let content = match () {
-                () if kind.is_symlink() => Content::Refused("a link".to_owned()),
-                () if !kind.is_file() => Content::Refused("not a file".to_owned()),
+                () if kind.is_symlink() => ContentSource::Refused("a link".to_owned()),
+                () if !kind.is_file() => ContentSource::Refused("not a file".to_owned()),
                 () if is_zip(&path) => match self.unpack(&path, &names) {
                     Ok(()) => continue,
-                    Err(error) => Content::Refused(error),
+                    Err(error) => ContentSource::Refused(error),
                 },
-                () => Content::File(path),
+                () => ContentSource::File(path),
             };
             self.push(names, content, time, length)?;
         }
@@ -155,7 +157,7 @@ impl Tree {
     fn push(
         &mut self,
         names: Vec<String>,
-        content: Content,
+        content: ContentSource,
         time: Option<i64>,
         length: u64,
     ) -> io::Result<()> {
@@ -163,7 +165,7 @@ impl Tree {
             let message = format!("there are more than {MOST_FILES} files in it");
             return Err(io::Error::other(message));
         }
-        let file = HandedIn {
+        let file = SubmittedFile {
             path: names.join("/"),
             shown: format!("{}{}", self.place, names.join("/")),
             time,
@@ -176,28 +178,28 @@ impl Tree {
         Ok(())
     }
 
-    /// Keeps the names of a folder and of those around it.
+    /// Records a folder and those around it.
     fn add_folder(&mut self, names: &[String]) {
         for depth in 1..=names.len().min(NAMED) {
             self.folders.insert(names[..depth].to_vec());
         }
     }
 
-    /// Keeps that there is a repository in a folder.
+    /// Records that a folder is a repository.
     fn add_clone(&mut self, names: &[String]) {
         if !names.is_empty() {
             self.clones.insert(names[..names.len().min(NAMED)].to_vec());
         }
     }
 
-    /// Adds what is in a zip file.
+    /// Adds the entries of a zip file.
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);
-        // It is somebody's, whatever is in it.
+        // The zip file is a student's, even if it is empty.
         self.add_folder(before);
         for entry in entries {
-            // No name leads out of the zip file: what is not a folder's own is only shown.
+            // Names of entries are never used as paths, so `..` is simply dropped.
             let parts = entry.name.split('/').map(str::to_owned);
             let parts: Vec<_> = parts
                 .filter(|part| !matches!(&**part, "" | "." | ".."))
@@ -207,7 +209,7 @@ impl Tree {
             if let Some(at) = junk.filter(|&at| parts[at] == ".git") {
                 self.add_clone(&names[..before.len() + at]);
             }
-            // Where only junk lies there is a folder.
+            // A folder that contains only skipped files is recorded, too.
             let folders = match (junk, entry.is_folder) {
                 (Some(at), _) => before.len() + at,
                 (None, true) => names.len(),
@@ -219,9 +221,9 @@ impl Tree {
             }
             let is_nested = is_named_as_archive(&entry.name);
             let content = match entry.refused {
-                Some(why) => Content::Refused(why.to_owned()),
-                None if is_nested => Content::Refused("an archive in a zip file".to_owned()),
-                None => Content::Entry(archive.clone(), entry.index),
+                Some(why) => ContentSource::Refused(why.to_owned()),
+                None if is_nested => ContentSource::Refused("an archive in a zip file".to_owned()),
+                None => ContentSource::Entry(archive.clone(), entry.index),
             };
             self.push(names, content, entry.time, entry.length)
                 .map_err(|error| error.to_string())?;
@@ -232,7 +234,8 @@ impl Tree {
         Ok(())
     }
 
-    /// The folder around all else in a zip file, if that is a class.
+    /// Returns the single folder around all entries of a zip file, if its content looks like a
+    /// class.
     fn only_folder(&self) -> Option<String> {
         let files = self.found.iter().map(|(names, _)| &names[..]);
         let all: Vec<_> = files
@@ -248,14 +251,15 @@ impl Tree {
         (is_alone && inner.len() > 1 && is_in_folders && !is_somebodys).then(|| root.clone())
     }
 
-    /// Takes out each folder that a system made for a whole class, with its name: one in which
-    /// Gradescope or Moodle wrote who it is of, or that is called as GitHub Classroom calls it.
+    /// Removes and returns each folder that a submission system made for a whole class, with its
+    /// name: one with Gradescope's metadata or Moodle's names in it, or with GitHub Classroom's
+    /// suffix.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // It is the class itself.
+                // The tree itself is the class.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}
@@ -277,7 +281,7 @@ impl Tree {
         roots.into_iter().map(take).collect()
     }
 
-    /// Takes out what lies in a folder.
+    /// Removes and returns the content of a folder.
     fn taken(&mut self, root: &str) -> Self {
         let found = self.found.extract_if(.., |(names, _)| names[0] == root);
         let found = found.map(|(names, file)| (names[1..].to_vec(), file));
@@ -299,11 +303,12 @@ impl Tree {
     }
 }
 
-/// A path that may be empty, which is the folder that the program runs in.
+/// Returns the path, or `.` if it is empty.
 pub fn or_here(path: &Path) -> &Path {
-    match path.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => path,
+    if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
     }
 }
 
@@ -313,7 +318,7 @@ pub fn is_zip(path: &Path) -> bool {
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
 }
 
-/// What systems leave behind, and nobody handed in.
+/// Whether a name is hidden or that of a file which systems leave behind.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))

@@ -1,31 +1,31 @@
-//! What the client understands, and what the server offers it.
+//! Capabilities of the client and of the server.
 
 use line_index::WideEncoding;
 use serde_json::{Value, json};
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
-/// The kinds of what mends one mistake, and all of them.
+/// Kind of the code actions that fix one mistake.
 pub const QUICK_FIX: &str = "quickfix";
+/// Kind of the code action that fixes all mistakes.
 pub const FIX_ALL: &str = "source.fixAll";
 
-/// What the client understands.
+/// Capabilities of the client.
 #[derive(Clone, Copy, Debug)]
 pub struct Client {
-    /// In what columns are counted.
+    /// Unit in which columns are counted.
     pub encoding: Encoding,
-    /// Whether a completion may have values to type over.
+    /// Whether completions may be snippets.
     pub snippets: bool,
-    /// Whether changes may name the version that they are for.
+    /// Whether edits may name the version of the document that they are for.
     pub versioned_edits: bool,
-    /// Whether changes may be snippets.
+    /// Whether edits may be snippets.
     pub snippet_edits: bool,
 }
 
 impl Client {
-    /// What a client says of itself in the parameters of `initialize`. The fields are looked up one
-    /// by one: to read all that a client may say would take a twentieth of the whole program's
-    /// compilation.
+    /// Reads the capabilities from the parameters of `initialize`. The fields are looked up one by
+    /// one: types for all of them would take a twentieth of the whole program's compilation.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));
@@ -43,8 +43,8 @@ impl Client {
     }
 }
 
-/// The first of the client's encodings that is known: it wants them in this order. UTF-16 if it
-/// says nothing.
+/// Returns the first of the client's encodings, which are in its order of preference, that is known
+/// here; UTF-16 by default.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
@@ -55,7 +55,7 @@ fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     known.unwrap_or(Encoding::Wide(WideEncoding::Utf16))
 }
 
-/// What the server offers.
+/// Returns the capabilities of the server.
 pub fn capabilities(client: &Client) -> Value {
     json!({
         "positionEncoding": match client.encoding {
@@ -63,7 +63,7 @@ pub fn capabilities(client: &Client) -> Value {
             Encoding::Wide(WideEncoding::Utf32) => "utf-32",
             Encoding::Wide(_) => "utf-16",
         },
-        // 2: changes come as edits of the text.
+        // 2 (Incremental): changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
         "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,
@@ -90,7 +90,7 @@ pub fn capabilities(client: &Client) -> Value {
     })
 }
 
-/// The legend's word for a kind of token.
+/// Returns the legend's word for a kind of token.
 fn token_type(kind: SemanticKind) -> &'static str {
     match kind {
         SemanticKind::Keyword => "keyword",

@@ -1,8 +1,8 @@
-//! A completion, and what is put in by it.
+//! Converts completions and the text that they insert.
 
 use serde_json::{Value, json};
 
-use super::converter::{Converter, markup};
+use super::converter::{Converter, escaped, markup};
 use crate::{
     editor::{Completion, CompletionKind, Piece},
     lsp::protocol::without_nulls,
@@ -26,25 +26,26 @@ impl Converter<'_> {
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // Editors show a swatch of a colour's code that stands here by itself.
+            // Editors show a swatch if the documentation is a colour's code alone.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
         let is_hole = |piece: &Piece| matches!(piece, Piece::Hole(_));
         let is_snippet = self.client.snippets && completion.insert.iter().any(is_hole);
-        let text = match is_snippet {
-            true => snippet(&completion.insert),
-            false => plain(&completion.insert),
+        let text = if is_snippet {
+            snippet(&completion.insert)
+        } else {
+            plain(&completion.insert)
         };
         without_nulls(json!({
             "label": completion.label,
-            // Neovim takes what has an edit and not this for filtered already, and puts the first
-            // one over what was typed.
+            // Neovim takes an item with an edit and without this field for filtered already, and
+            // replaces the typed text by the first one.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
-            // Editors sort by this text, and the list is in its order.
+            // Editors sort by this text, which keeps the list's order.
             "sortText": format!("{index:04}"),
             // PlainText, or Snippet
             "insertTextFormat": 1 + u8::from(is_snippet),
@@ -53,7 +54,7 @@ impl Converter<'_> {
     }
 }
 
-/// What is put in, as it is.
+/// Returns the inserted text without placeholders.
 fn plain(pieces: &[Piece]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         Piece::Text(text) | Piece::Hole(text) => text.as_str(),
@@ -61,7 +62,7 @@ fn plain(pieces: &[Piece]) -> String {
     texts.collect()
 }
 
-/// What is put in, with holes to type over.
+/// Returns the inserted text as a snippet, with placeholders to type over.
 fn snippet(pieces: &[Piece]) -> String {
     let mut text = String::new();
     let mut holes = 0;
@@ -75,10 +76,4 @@ fn snippet(pieces: &[Piece]) -> String {
         }
     }
     text
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('\\', "\\\\")
-        .replace('$', "\\$")
-        .replace('}', "\\}")
 }

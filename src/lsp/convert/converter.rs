@@ -1,5 +1,5 @@
-//! Converts answers about a document into those of the protocol, and the places and changes of the
-//! protocol into ours.
+//! Converts answers about a document to types of the protocol, and positions and changes of the
+//! protocol to ours.
 
 use line_index::WideEncoding;
 use serde_json::{Value, json};
@@ -12,21 +12,21 @@ use crate::{
         self, Fold, FoldKind, Hint, Hover, Occurrence, Signature, Swatch, Symbol, SymbolKind,
     },
     lsp::{
-        documents::{Change, Document, Place},
+        documents::{Document, LineColumn, TextChange},
         params::{Refusal, at},
         protocol::{self, Position, Range, Uri, without_nulls},
     },
     source::{SourceId, Span},
 };
 
-/// A document with its address, for the client that has it open.
+/// Converter for a document and the client that has it open.
 #[derive(Clone, Copy)]
 pub struct Converter<'d> {
-    /// Who has it open.
+    /// The client that has the document open.
     pub client: &'d Client,
-    /// Its address.
+    /// The document's address.
     pub uri: &'d Uri,
-    /// The text.
+    /// The document.
     pub document: &'d Document,
 }
 
@@ -35,19 +35,19 @@ pub(super) fn count(number: usize) -> u32 {
 }
 
 impl Converter<'_> {
-    /// The offset of a position.
+    /// Returns the offset of a position.
     pub fn offset(&self, position: Position) -> usize {
-        self.document.offset(place(position))
+        self.document.offset(line_column(position))
     }
 
-    /// A span of the text from a range.
+    /// Returns the span of a range.
     pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
     }
 
     pub fn position(&self, offset: usize) -> Position {
-        let (line, character) = self.document.place(offset);
+        let (line, character) = self.document.line_column(offset);
         Position { line, character }
     }
 
@@ -66,8 +66,8 @@ impl Converter<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    /// A diagnostic: the help stands below the message, the labels but the first are its other
-    /// places.
+    /// Converts a diagnostic. The help follows the message, and the labels except the first become
+    /// related places.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
         let place = labels.next().map(|label| self.range(label.span));
@@ -85,11 +85,11 @@ impl Converter<'_> {
                 Severity::Error => 1,
                 Severity::Warning => 2,
             },
-            // The source says whose code it is.
+            // The field `source` already says that the code is Pinhole's.
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // Unnecessary: an editor shows it in grey.
+            // Unnecessary: editors show it in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -101,7 +101,7 @@ impl Converter<'_> {
 
     pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
-            // Counted in UTF-16 units whatever the encoding of positions.
+            // Offsets within labels are in UTF-16 units, whatever the encoding of positions.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(WideEncoding::Utf16.measure(before))
@@ -128,30 +128,29 @@ impl Converter<'_> {
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
 
-    /// Texts that take the place of others.
+    /// Converts edits to LSP `TextEdit`s.
     pub fn text_edits(&self, edits: impl IntoIterator<Item = Edit>) -> Vec<Value> {
-        let edits = edits.into_iter();
         let edit = |edit: Edit| json!({ "range": self.range(edit.span), "newText": edit.text });
-        edits.map(edit).collect()
+        edits.into_iter().map(edit).collect()
     }
 
-    /// The same as one change of the document.
+    /// Converts edits to a `WorkspaceEdit` of the document.
     pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> Value {
         let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // With the version, an editor that is ahead of this text refuses it.
+        // With the version, an editor whose text is newer rejects the edits.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// A way out of a diagnostic, or of all of them. Values that are made up are selected, where
-    /// the client can do that.
+    /// Converts a fix of one diagnostic, or of all, to a code action. Placeholder values become
+    /// snippet placeholders if the client has them.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
-            // A snippet's further lines are indented once more.
+            // Editors would indent the further lines of a snippet once more.
             (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
                 self.snippet(only)
             }
@@ -161,14 +160,16 @@ impl Converter<'_> {
         let values = values.map(|edit| editor::made_up_values(&edit.text));
         let values = values.into_iter().flatten();
         let values: Vec<[usize; 2]> = values.map(|value| [value.start, value.end]).collect();
+        let title = if is_made_up {
+            format!("{}, then type over its value", fix.title)
+        } else {
+            fix.title.clone()
+        };
         without_nulls(json!({
-            "title": match is_made_up {
-                true => format!("{}, then type over its value", fix.title),
-                false => fix.title.clone(),
-            },
+            "title": title,
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
             "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
-            // A safe one that is the only way out is the one to take without asking.
+            // A safe fix that is the only one can be applied without asking.
             "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
             "edit": edit,
             // docs/protocol.md
@@ -179,7 +180,7 @@ impl Converter<'_> {
         }))
     }
 
-    /// An edit whose made-up values are to be typed over.
+    /// Converts an edit to a snippet whose placeholder values are to be typed over.
     fn snippet(&self, edit: &Edit) -> Value {
         let mut template = String::new();
         let mut at = 0;
@@ -197,7 +198,7 @@ impl Converter<'_> {
         json!({ "documentChanges": [{ "textDocument": document, "edits": [edit] }] })
     }
 
-    /// An entry of the outline.
+    /// Converts an entry of the outline.
     pub fn symbol(&self, symbol: Symbol) -> Value {
         let children = symbol.children.into_iter().map(|child| self.symbol(child));
         let children: Vec<_> = children.collect();
@@ -256,9 +257,9 @@ impl Converter<'_> {
     }
 }
 
-/// The changes of a text: each of a range, or of the whole text if there is none. A range that is
-/// null is neither, and taken for the whole text it would put a piece in the place of everything.
-pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
+/// Reads the changes of a text: each of a range, or of the whole text if it has no range. A range
+/// of null is an error: taken for the whole text, it would replace everything by a piece.
+pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {
         let text = at(change, "/text")?;
@@ -266,29 +267,29 @@ pub fn changes(params: &Value) -> Result<Vec<Change>, Refusal> {
             None => None,
             Some(_) => {
                 let range: Range = at(change, "/range")?;
-                Some([place(range.start), place(range.end)])
+                Some([line_column(range.start), line_column(range.end)])
             }
         };
-        Ok(Change { range, text })
+        Ok(TextChange { range, text })
     };
     changes.iter().map(change).collect()
 }
 
-/// A text within a snippet.
-fn escaped(text: &str) -> String {
+/// Escapes a text for a snippet.
+pub(super) fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\")
         .replace('$', "\\$")
         .replace('}', "\\}")
 }
 
-fn place(position: Position) -> Place {
+fn line_column(position: Position) -> LineColumn {
     (position.line, position.character)
 }
 
-/// A colour as a client picks it.
+/// Converts a colour that the client has picked.
 pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
-    // A conversion of floats ends at the bounds.
+    // Conversions of floats saturate at the bounds.
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 

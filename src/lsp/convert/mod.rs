@@ -1,5 +1,5 @@
-//! From the editor's answers to those of the protocol, and back. Their kinds are numbers, whose
-//! names in the protocol stand beside them.
+//! Converts between the types of the editor module and those of the protocol. Kinds are numbers in
+//! the protocol; comments beside them have their names there.
 
 mod client;
 mod completion;

@@ -1,4 +1,4 @@
-//! Tokens, each as far from the one before it as the protocol counts.
+//! Converts semantic tokens.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,8 @@ use crate::{
 };
 
 impl Converter<'_> {
-    /// Each token relative to the one before it; comments of several lines in pieces, a line each.
+    /// Encodes each token relative to the one before it. Comments of several lines are split into
+    /// one token per line.
     pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> Value {
         let mut data = Vec::with_capacity(5 * tokens.len());
         let mut last = Position::default();

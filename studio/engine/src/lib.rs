@@ -1,5 +1,5 @@
-//! The engine in the browser: the conversation that `docs/protocol.md` describes, as texts that a
-//! web worker passes to and from the page.
+//! The engine in the browser: exchanges the messages that `docs/protocol.md` describes, as texts
+//! that a web worker passes to and from the page.
 
 use lsp_server::{Message, Notification};
 use pinhole::{
@@ -18,13 +18,13 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[wasm_bindgen]
 pub struct Engine {
     server: Server,
-    /// The picture's file that is being made.
+    /// The picture's file that is being rendered.
     download: Option<Sliced>,
 }
 
 #[wasm_bindgen]
 impl Engine {
-    /// An engine that nobody has spoken to.
+    /// Makes an engine that waits for messages.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self {
@@ -33,13 +33,13 @@ impl Engine {
         }
     }
 
-    /// What it says first: there is no file, and a new scene.
+    /// Returns the first message: there is no file, but a new scene.
     pub fn greeting(&self) -> String {
         let params = json!({ "name": "scene.scn", "text": SMALLEST, "saved": false });
-        messages::written(&Notification::new("studio/file".to_owned(), params).into())
+        messages::to_text(&Notification::new("studio/file".to_owned(), params).into())
     }
 
-    /// Takes a message in, and returns what has to be said before anything else.
+    /// Handles a message, and returns the messages that must be sent before any others.
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if download::is_asked_for(&request) => {
@@ -65,7 +65,7 @@ impl Engine {
         }
     }
 
-    /// Does a slice of the work that is left, and returns what is to be said of it.
+    /// Does a slice of the work, and returns the messages to send.
     pub fn advance(&mut self) -> Vec<String> {
         match &mut self.download {
             Some(download) if !self.server.is_busy() => {
@@ -77,7 +77,7 @@ impl Engine {
         }
     }
 
-    /// Whether there is work left.
+    /// Whether any work is left.
     #[wasm_bindgen(js_name = isBusy)]
     pub fn is_busy(&self) -> bool {
         self.server.is_busy() || self.download.is_some()
@@ -85,7 +85,7 @@ impl Engine {
 }
 
 impl Engine {
-    /// Gives the picture's file up that is not wanted any more, and answers who asked for it.
+    /// Drops the picture's file if the message cancels it, and returns the answer to its request.
     fn cancelled(&mut self, message: &Message) -> Option<Message> {
         let Message::Notification(Notification { method, params }) = message else {
             return None;
@@ -105,5 +105,5 @@ impl Default for Engine {
 }
 
 fn texts(messages: Vec<Message>) -> Vec<String> {
-    messages.iter().map(messages::written).collect()
+    messages.iter().map(messages::to_text).collect()
 }

@@ -43,7 +43,8 @@ sphere       { center middle + ring * (cos(3 * step), 0, sin(3 * step))  radius 
 sphere       { center middle + ring * (cos(4 * step), 0, sin(4 * step))  radius 0.3  color leaf }
 sphere       { center middle + ring * (cos(5 * step), 0, sin(5 * step))  radius 0.3  color leaf }
 checkerboard { square 0.5 + 0.5  colors (slategray, lightsteelblue) }
-`],["farther_is_smaller",`// Perspective, 1: farther is smaller. Four balls of one size, each twice as far away as the one before it.
+`],["farther_is_smaller",`// Perspective, 1: farther is smaller. Four balls of one size, each twice as far away as the one
+// before it.
 let r     = 0.5
 let eye_z = 4
 
@@ -55,7 +56,8 @@ sphere Farther { center (0.1, r, eye_z - 8)   radius r  color olive }
 sphere Far     { center (2.2, r, eye_z - 16)  radius r  color olive }
 sphere Distant { center (6.4, r, eye_z - 32)  radius r  color olive }
 checkerboard   {}
-`],["foreshortening",`// Perspective, 2: foreshortening. One triangle three times, turned 0, 50 and 80 degrees away: it keeps its height and loses width.
+`],["foreshortening",`// Perspective, 2: foreshortening. One triangle three times, turned 0, 50 and 80 degrees away: it
+// keeps its height and loses width.
 let a = 50deg
 let b = 80deg
 
@@ -65,21 +67,24 @@ triangle Facing { centroid (-2.2, 1, 0)  normal (0, 0, 1) }
 triangle Turned { centroid (0, 1, 0)     normal (sin(a), 0, cos(a)) }
 triangle Edge   { centroid (2.2, 1, 0)   normal (sin(b), 0, cos(b)) }
 checkerboard    {}
-`],["straight_lines",`// Perspective, 3: straight lines stay straight, however wide the view and however tilted the camera.
+`],["straight_lines",`// Perspective, 3: straight lines stay straight, however wide the view and however tilted the
+// camera.
 camera  { eye (0.5, 1.2, 3)  lookat (0.2, 0.9, 0)  roll 25deg  fov 110deg }
 sampler { method sobol  per_pixel 16  seed 3 }
 
 box Wall { min (-6, 0, -4)   max (-2, 2.5, -3.5)  color orange }
 box Beam { min (1.5, 0, -5)  max (2, 2, 1)        color teal }
 checkerboard {}
-`],["parallel_to_the_view_plane",`// Perspective, 4: lines parallel to the view plane stay parallel. The wall of boxes faces the camera: its edges in x and in y stay level and upright.
+`],["parallel_to_the_view_plane",`// Perspective, 4: lines parallel to the view plane stay parallel. The wall of boxes faces the
+// camera: its edges in x and in y stay level and upright.
 camera { eye (0.6, 1.4, 7)  direction (0, 0, -1)  d 2.5 }
 
 box { min (-3, 0, -0.1)    max (-1.6, 2.5, 0) }
 box { min (-1.2, 0, -0.1)  max (0.2, 2.5, 0)  color teal }
 box { min (0.6, 0, -0.1)   max (2, 2.5, 0)    color olive }
 checkerboard {}
-`],["vanishing_point",`// Perspective, 5: parallel lines that are not parallel to the view plane meet in a vanishing point: here all that run along z, in the middle of the picture.
+`],["vanishing_point",`// Perspective, 5: parallel lines that are not parallel to the view plane meet in a vanishing point:
+// here all that run along z, in the middle of the picture.
 let gap = 1.5
 
 camera { eye (0, 1.5, 6)  direction (0, 0, -1)  fov 55deg }
@@ -96,7 +101,8 @@ box Left   { center (-1.6, 0.75, 0)    size (0.9, 1.5, 2)  colors (chocolate, bi
 box Middle { center (0.1, 0.75, -1.5)  size (0.9, 1.5, 2)  colors (darkcyan, paleturquoise, teal) }
 box Right  { center (2.2, 0.75, -0.5)  size (0.9, 1.5, 2)  colors (olivedrab, khaki, olive) }
 checkerboard {}
-`],["two_vanishing_points",`// Two vanishing points: the camera looks level but not along an axis, so edges along x and along z converge; uprights stay upright.
+`],["two_vanishing_points",`// Two vanishing points: the camera looks level but not along an axis, so edges along x and along z
+// converge; uprights stay upright.
 camera { eye (4.5, 1.4, 6)  direction (-4, 0, -5.5)  d 2.2 }
 
 box Left   { center (-1.6, 0.75, 0)    size (0.9, 1.5, 2)  colors (chocolate, bisque, orange) }
@@ -110,14 +116,16 @@ box Left   { center (-1.6, 0.75, 0)    size (0.9, 1.5, 2)  colors (chocolate, bi
 box Middle { center (0.1, 0.75, -1.5)  size (0.9, 1.5, 2)  colors (darkcyan, paleturquoise, teal) }
 box Right  { center (2.2, 0.75, -0.5)  size (0.9, 1.5, 2)  colors (olivedrab, khaki, olive) }
 checkerboard {}
-`],["rolled",`// Figure 9.9's scene with the camera rolled by 30 degrees: its right side dips, so the picture turns counter-clockwise.
+`],["rolled",`// Figure 9.9's scene with the camera rolled by 30 degrees: its right side dips, so the picture
+// turns counter-clockwise.
 camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  roll 30deg  d 2.75 }
 
 sphere   { center (-1.6, 1, 0) }
 triangle { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1) }
 box      { center (2, 0.75, -0.5)  colors (chocolate, bisque, orange) }
 checkerboard {}
-`],["near_and_far",`// The near plane cuts the ball open, and one sees the core in it and the ball's far side; the far plane ends the floor.
+`],["near_and_far",`// The near plane cuts the ball open, and one sees the core in it and the ball's far side; the far
+// plane ends the floor.
 camera { eye (0, 1.6, 6)  lookat (0, 0.9, 0)  d 2.4  near 5.6  far 9 }
 
 sphere Ball { center (-1.2, 1, 0) }
@@ -125,36 +133,42 @@ sphere Core { center (-1.2, 1, 0)  radius 0.5  color gold }
 triangle    { centroid (0.3, 1, -0.6)  normal (0.1, 0, 1) }
 box         { center (1.6, 0.75, 0)  colors (chocolate, bisque, orange) }
 checkerboard {}
-`],["looking_down_the_y_axis",`// The worked case: from (0, 10, 0) straight down the y axis with the view plane at y = 5, a point of the floor is twice its point in the view plane.
-// Straight down, the default up vector is parallel to the view direction: the top of the picture is -z, the right is +x.
+`],["looking_down_the_y_axis",`// The worked case: from (0, 10, 0) straight down the y axis with the view plane at y = 5, a point
+// of the floor is twice its point in the view plane. Straight down, the default up vector is
+// parallel to the view direction: the top of the picture is -z, the right is +x.
 image  { width 800  height 800 }
 camera { eye (0, 10, 0)  lookat (0, 0, 0)  up (0, 0, -1)  d 5  view_height 5 }
 
-// The window is 5 m tall, so the picture shows the floor from -5 to 5; this mark lies at (2, -3), half of it, (1, -1.5), in the view plane.
+// The window is 5 m tall, so the picture shows the floor from -5 to 5; this mark lies at (2, -3),
+// half of it, (1, -1.5), in the view plane.
 sphere Mark { center (2, 0, -3)  radius 0.2  color crimson }
 checkerboard {}
-`],["straight_down",`// A singular view: straight down, against the up vector. The top of the picture is -z, as on a map with north at -z; a warning says so.
+`],["straight_down",`// A singular view: straight down, against the up vector. The top of the picture is -z, as on a map
+// with north at -z; a warning says so.
 camera { eye (0, 8, 0)  direction (0, -1, 0)  d 2 }
 
 sphere North { center (0, 1, -2)  color olive }
 box    East  { center (2.5, 0.75, 0) }
 triangle     { centroid (-2.5, 1, 0)  normal (0, 1, 0) }
 checkerboard {}
-`],["straight_up",`// A singular view: straight up, along the up vector. The top of the picture is +z, the right is +x; a warning says so.
+`],["straight_up",`// A singular view: straight up, along the up vector. The top of the picture is +z, the right is +x;
+// a warning says so.
 camera { eye (0, 0.5, 0)  direction (0, 1, 0)  d 1 }
 
 sphere North { center (0, 4, 2.5)  color olive }
 box    East  { center (2.5, 4, 0) }
 triangle     { centroid (-2.5, 4, 0)  normal (0, 1, 0) }
 checkerboard {}
-`],["in_the_floors_plane",`// The eye in the floor's own plane sees it edge-on: not at all. The objects stand on nothing, their bases in one line.
+`],["in_the_floors_plane",`// The eye in the floor's own plane sees it edge-on: not at all. The objects stand on nothing, their
+// bases in one line.
 camera { eye (0, 0, 8)  direction (0, 0, -1)  d 2.75 }
 
 sphere   { center (-1.6, 1, 0) }
 triangle { centroid (0.2, 0.65, 0.6)  normal (0.3, 0, 1) }
 box      { center (2, 0.75, -0.5) }
 checkerboard {}
-`],["in_a_faces_plane",`// Rays in the plane of a box's face: the eye lies in the plane of the top of one box and of the side of the other.
+`],["in_a_faces_plane",`// Rays in the plane of a box's face: the eye lies in the plane of the top of one box and of the
+// side of the other.
 image  { width 801  height 451 }
 camera { eye (1, 1.5, 6)  direction (0, 0, -1)  d 2 }
 
@@ -167,18 +181,21 @@ camera { eye (0, 0.6, 1.5)  lookat (0, 0.6, 0)  fov 80deg }
 sphere Dome  { center (0, 0, 0)  radius 3 }
 box    Crate { center (0.8, 0.75, -1) }
 checkerboard {}
-`],["on_the_surface",`// The eye exactly on a sphere: that surface is not seen at distance zero, but its far side is, where the ray goes inward.
+`],["on_the_surface",`// The eye exactly on a sphere: that surface is not seen at distance zero, but its far side is,
+// where the ray goes inward.
 camera { eye (0, 3, 0)  lookat (1, 2.6, -3)  fov 70deg }
 
 sphere Ground { center (0, 0, 0)  radius 3 }
 box    Crate  { center (1.2, 2.5, -4) }
-`],["normal_along_up",`// A singular triangle: with its normal along y there is no "up" in its plane; -z stands in, so its apex points to -z.
+`],["normal_along_up",`// A singular triangle: with its normal along y there is no "up" in its plane; -z stands in, so its
+// apex points to -z.
 camera { eye (0, 4, 5)  lookat (0, 0.5, 0)  d 2.4 }
 
 triangle Up   { centroid (-1.2, 0.5, 0)  normal (0, 1, 0) }
 triangle Down { centroid (1.2, 0.5, 0)   normal (0, -1, 0)  color crimson }
 checkerboard  {}
-`],["piercing",`// Surfaces that pierce each other, and surfaces that coincide: the second crate's top lies in the first one's, and file order decides there.
+`],["piercing",`// Surfaces that pierce each other, and surfaces that coincide: the second crate's top lies in the
+// first one's, and file order decides there.
 camera { eye (2.6, 2.4, 4.2)  lookat (0, 0.6, 0)  d 2.2 }
 
 sphere Ball  { center (-0.6, 0.7, 0.2)  radius 0.9 }
@@ -186,7 +203,8 @@ box    Crate { min (-0.4, 0, -0.8)   max (1.2, 1, 0.6)  colors (chocolate, bisqu
 box    Shelf { min (0.4, 0.7, -1.4)  max (1.8, 1, 0)    colors (sienna, tan, peru) }
 triangle     { centroid (-0.5, 1, 0.3)  normal (1, 0.4, 0.6)  sides (2.4, 2.4, 2.4)  spin 20deg }
 checkerboard { square 0.5 }
-`],["scatter",`// Sample points at random over the whole picture instead of in each pixel. Some pixels get none and stay black.
+`],["scatter",`// Sample points at random over the whole picture instead of in each pixel. Some pixels get none and
+// stay black.
 sampler { method scatter  total 500_000  seed 7 }
 camera  { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  d 2.75 }
 

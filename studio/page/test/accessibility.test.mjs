@@ -1,4 +1,5 @@
-// Accessibility: an audit of WCAG AA by axe in both themes, on a phone and a desktop, and the keyboard.
+// Accessibility: an audit of WCAG AA by axe in both themes, on a phone and a desktop, and the
+// keyboard.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

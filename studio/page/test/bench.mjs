@@ -1,7 +1,7 @@
-// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key and from a step
-// of a drag to the coarse and to the finished picture, as medians of 100; the coarse pictures per second
-// of a drag; and whether memory grows. `node test/bench.mjs [drags of 100 steps]`; with SITE, for the
-// static page in that folder.
+// Measures, in the page, how long pictures of figure 9.9 take at 1280 × 720: from a key and from a
+// step of a drag to the coarse and to the finished picture, as medians of 100; the coarse pictures
+// per second of a drag; and whether memory grows. `node test/bench.mjs [drags of 100 steps]`; with
+// SITE, for the static page in that folder.
 
 import { chromium } from "playwright-core";
 import { readFileSync } from "node:fs";
@@ -102,8 +102,8 @@ try {
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 
-  // A thousand spheres: the time from a drag to the coarse picture, and how many of the keys, one per
-  // 120 ms, have a picture before the next key.
+  // A thousand spheres: the time from a drag to the coarse picture, and how many of the keys, one
+  // per 120 ms, have a picture before the next key.
   if (process.env.SITE === undefined) {
     const spheres = Array.from({ length: 1000 }, (_, i) => `sphere { center (${(i % 40) - 20}, ${Math.floor(i / 40) - 12}, ${-(i % 7)})  radius 0.4 }\n`);
     writeFileSync(file, `image { width 1280  height 720 }\ncamera { eye (0, 2, 30)  lookat (0, 0, 0) }\nsphere Ball { center (0, 0, 3)  radius 2 }\n${spheres.join("")}`);

@@ -1,4 +1,5 @@
-// Drags by a real pointer, which is pressed, moved twelve times at the pace of a hand, and released.
+// Drags by a real pointer, which is pressed, moved twelve times at the pace of a hand, and
+// released.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

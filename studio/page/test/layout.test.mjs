@@ -1,4 +1,5 @@
-// First use of the page: scenes from the menu, new objects, the first problem, the projector window.
+// First use of the page: scenes from the menu, new objects, the first problem, the projector
+// window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";

@@ -1,5 +1,5 @@
-//! A picture by which grading is judged, told by its title: the scene, the size, how many samples a pixel has and where they lie, and the mistakes. 256 samples
-//! stand for the exact mean.
+//! A picture by which grading is judged, told by its title: the scene, the size, how many samples a
+//! pixel has and where they lie, and the mistakes. 256 samples stand for the exact mean.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -19,7 +19,8 @@ pub struct Case {
 }
 
 impl Case {
-    /// The one that has a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or `street 96x64 1 Random: right`.
+    /// The one that has a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or
+    /// `street 96x64 1 Random: right`.
     pub fn of(title: &str) -> Self {
         let (picture, names) = title.split_once(": ").unwrap();
         let [name, size, samples, sampling] = picture.split(' ').collect::<Vec<_>>()[..] else {

@@ -1,4 +1,5 @@
-//! The mistakes that a class makes, as changes of a right program, and the scenes that they are made in.
+//! The mistakes that a class makes, as changes of a right program, and the scenes that they are
+//! made in.
 
 use glam::{DVec3, dvec3};
 use image::imageops;
@@ -7,7 +8,8 @@ use super::textbook::{Axes, Behind, Encoding, Object, Program, Sampling, Shape, 
 
 /// A mistake.
 pub struct Mistake {
-    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its message behind it, or what it is to `--set`.
+    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its message
+    /// behind it, or what it is to `--set`.
     pub name: &'static str,
     /// Makes it.
     pub make: fn(&mut Program),

@@ -1,8 +1,9 @@
-//! A ray tracer as a class writes it, from the formulas of a textbook (Suffern 2007, "Ray Tracing from the Ground Up", chapters 3, 4, 9
-//! and 19), in plain `f64`. It shares nothing with Pinhole, so that its pictures can judge the grading of pictures.
+//! A ray tracer as a class writes it, from the formulas of a textbook (Suffern 2007, "Ray Tracing
+//! from the Ground Up", chapters 3, 4, 9 and 19), in plain `f64`. It shares nothing with Pinhole,
+//! so that its pictures can judge the grading of pictures.
 //!
-//! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes. What a program may do wrong are
-//! its fields; the mistakes that a class makes stand in `mistakes`.
+//! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes.
+//! What a program may do wrong are its fields; the mistakes that a class makes stand in `mistakes`.
 
 use std::array;
 
@@ -283,7 +284,8 @@ impl Program {
         }
     }
 
-    /// The light of a colour: flat colours come out as they were written, but where light is not encoded or encoded twice.
+    /// The light of a colour: flat colours come out as they were written, but where light is not
+    /// encoded or encoded twice.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),

@@ -43,7 +43,7 @@ impl InProcess {
     pub fn step(&mut self) -> bool {
         let is_busy = self.server.is_busy();
         let said = self.server.advance();
-        self.said.extend(said.iter().map(messages::written));
+        self.said.extend(said.iter().map(messages::to_text));
         is_busy
     }
 }
@@ -55,7 +55,7 @@ impl Transport for InProcess {
         match messages::read(text.as_bytes()) {
             Ok(message) => {
                 let said = self.server.handle(message);
-                self.said.extend(said.iter().map(messages::written));
+                self.said.extend(said.iter().map(messages::to_text));
             }
             Err(Malformed::Answered(response)) => self.said.push_back(response.to_string()),
             Err(Malformed::Unanswered(what)) => panic!("{what}"),

@@ -1,4 +1,4 @@
--- The language server, as Neovim 0.11 and newer find it by its name.
+-- The configuration of the language server, which Neovim 0.11 and newer find by its name.
 return {
   cmd = { "pinhole", "lsp" },
   filetypes = { "pinhole" },

@@ -1,4 +1,5 @@
--- Starts the language server for scenes. To start it in another way, set vim.g.pinhole_no_lsp before this is read.
+-- Starts the language server for scenes. To start it in another way, set vim.g.pinhole_no_lsp
+-- before this file is read.
 if vim.g.pinhole_no_lsp then
   return
 end

@@ -1,15 +1,16 @@
-// Where the program is.
+// Finds the program.
 
 const fs = require("node:fs");
 const os = require("node:os");
 const path = require("node:path");
 
 /**
- * The path of the program `pinhole`: the setting, if there is one, else the first on PATH, where
- * `cargo install` puts it, or the one that the extension was packaged with. Undefined if no file is
- * there.
+ * Returns the path of the program `pinhole`: the setting, if there is one, else the first on PATH,
+ * where `cargo install` puts it, or the one that the extension was packaged with; undefined if
+ * there is no such file.
  *
- * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at `folder`.
+ * @param {string} setting `pinhole.path`: `~/` is the home folder, and a relative path starts at
+ *   `folder`.
  * @param {string | undefined} folder The workspace's folder.
  * @param {string | undefined} extension The extension's folder.
  * @param {{ PATH?: string, CARGO_HOME?: string }} env
@@ -27,7 +28,9 @@ function findBinary(setting, folder, extension, env = process.env) {
   return [...folders, cargo, ...own].map(folder => existing(path.join(folder, "pinhole"))).find(Boolean);
 }
 
-/** The file of this name, which on Windows may leave out its ending. */
+/**
+ * Returns the file of this name, which may lack its ending on Windows; undefined if there is none.
+ */
 function existing(file) {
   const names = process.platform === "win32" && !file.toLowerCase().endsWith(".exe") ? [`${file}.exe`] : [file];
   return names.find(name => {

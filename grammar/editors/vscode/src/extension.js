@@ -1,4 +1,4 @@
-// The extension: it finds the program, keeps its language server running, and has the pictures drawn.
+// The extension: finds the program, keeps its language server running, and renders pictures.
 
 const { execFile } = require("node:child_process");
 const path = require("node:path");
@@ -6,13 +6,15 @@ const vscode = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 const { findBinary } = require("./binary");
 
-/** Where the extension is, whose folder `bin` may have the program. */
+/** Folder of the extension; its subfolder `bin` may contain the program. */
 let home;
 
-/** The server's client while it runs. */
+/** The client of the server, while it runs. */
 let client;
 
-/** Starts and stops follow each other, so that two quick changes of a setting do not leave two servers. */
+/**
+ * Serialises starts and stops, so that two quick changes of a setting do not leave two servers.
+ */
 let turn = Promise.resolve();
 
 function activate(context) {
@@ -48,7 +50,7 @@ async function start() {
     { command, args: ["lsp"] },
     { documentSelector: [{ language: "pinhole", scheme: "file" }, { language: "pinhole", scheme: "untitled" }] },
   );
-  // What goes wrong here the client has shown already.
+  // The client has shown errors already.
   await client.start().catch(() => {});
 }
 
@@ -63,7 +65,7 @@ async function restart() {
   await start();
 }
 
-/** The program, or undefined after a message that says what to do. */
+/** Returns the program, or undefined after a message that says what to do. */
 function binary() {
   const setting = vscode.workspace.getConfiguration("pinhole").get("path", "");
   const found = findBinary(setting, vscode.workspace.workspaceFolders?.[0]?.uri.fsPath, home);
@@ -72,27 +74,29 @@ function binary() {
     const message = `The program pinhole is ${where}. Without it, scenes are highlighted, and no more.`;
     vscode.window.showErrorMessage(message, "Choose File…", "How to Get It").then(answer => {
       if (answer === "Choose File…") return chooseBinary();
-      // The extension's own page has a section on it.
+      // The extension's own page explains how.
       if (answer === "How to Get It") return vscode.commands.executeCommand("extension.open", "pinhole.pinhole");
     });
   }
   return found;
 }
 
-/** Sets the program to a file that the user chooses; the change of the setting starts the server. */
+/**
+ * Sets the program to a file that the user chooses; the change of the setting starts the server.
+ */
 async function chooseBinary() {
   const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
   if (file === undefined) return;
   const configuration = vscode.workspace.getConfiguration("pinhole");
-  // A workspace's own setting would win.
+  // A setting of the workspace would override it.
   const { workspaceValue } = configuration.inspect?.("path") ?? {};
   const { Global, Workspace } = vscode.ConfigurationTarget;
   await configuration.update("path", file.fsPath, workspaceValue === undefined ? Global : Workspace);
 }
 
 /**
- * Makes the file that is open a scene where another extension has its ending, and offers that for
- * every such file. The server runs by then: the command activates the extension.
+ * Makes the open file a scene if another extension has claimed its ending, and offers this for
+ * every such file. The server runs already: the command activates the extension.
  */
 async function use() {
   const document = vscode.window.activeTextEditor?.document;
@@ -108,14 +112,14 @@ async function use() {
   await files.update("associations", associations, vscode.ConfigurationTarget.Global);
 }
 
-/** The file of the scene that is being edited, saved; or undefined after a message. */
+/** Saves the scene in the editor and returns its file, or undefined after a message. */
 async function savedScene() {
   const document = vscode.window.activeTextEditor?.document;
   if (document?.languageId !== "pinhole") {
     vscode.window.showInformationMessage("Open a scene to render it. If another extension has its ending, run “Pinhole: Use Pinhole for This File” first.");
     return undefined;
   }
-  // One that is not saved because it has no name yet, or by the user's choice, is not rendered.
+  // A scene without a file, or that the user chose not to save, is not rendered.
   if (document.uri.scheme !== "file" || (document.isDirty && !(await document.save()))) {
     vscode.window.showInformationMessage("Save the scene to render it: the picture is written beside it.");
     return undefined;
@@ -131,7 +135,7 @@ const openBeside = picture =>
     preserveFocus: true,
   });
 
-/** Renders the scene to the PNG beside it, and shows that. */
+/** Renders the scene to the PNG beside it, and shows the picture. */
 async function render() {
   const [command, scene] = [binary(), await savedScene()];
   if (command === undefined || scene === undefined) return;
@@ -142,7 +146,7 @@ async function render() {
   else if (problem !== "") vscode.window.showErrorMessage(problem);
 }
 
-/** Runs the program: undefined when all went well, "" when the user cancelled, or what it said. */
+/** Runs the program. Returns undefined on success, "" if the user cancelled, or its messages. */
 function run(command, args, cancellation) {
   return new Promise(resolve => {
     let cancelled = false;
@@ -157,13 +161,16 @@ function run(command, args, cancellation) {
   });
 }
 
-/** Of a report, the first line of each problem: where it is, the editor shows in the text. */
+/** Returns the first line of each problem in a report: the editor shows the places in the text. */
 function summary(said) {
   const heads = said.split("\n").filter(line => /^error\b/.test(line));
   return (heads.length > 0 ? heads : said.trim().split("\n")).map(line => line.replace(/^error(\[[\w:]+\])?: /, "")).join("\n");
 }
 
-/** Renders the scene now and on every save, in a terminal, and shows the picture, which the editor reads anew as it changes. */
+/**
+ * Renders the scene now and on every save, in a terminal, and shows the picture, which the editor
+ * reloads when it changes.
+ */
 async function watch() {
   const [command, scene] = [binary(), await savedScene()];
   if (command === undefined || scene === undefined) return;
@@ -176,7 +183,7 @@ async function watch() {
   await openBeside(picture);
 }
 
-/** Waits until the file is there, for some seconds at most. */
+/** Waits until the file exists, for a few seconds at most. */
 async function appears(file) {
   for (let tries = 0; tries < 50; tries++) {
     const isThere = await vscode.workspace.fs.stat(vscode.Uri.file(file)).then(() => true, () => false);

@@ -1,14 +1,16 @@
 // The TextMate grammar of scene files, from which `npm run grammar` writes pinhole.tmLanguage.json.
 //
-// It gives every word the scope that stands for the type of the language server's semantic token there (the table in `scopes`,
-// which package.json repeats for themes), so that a file looks the same before the server answers and after. A name means one
-// thing where a field starts and another within a value, and nothing but the words before tells which it is: `radius r - 1
-// color sun`. A TextMate rule that has ended cannot tell its parent what it was, so the rules do not end: the rest of a block
-// is read within the rule of the last value, and all of them end together at its brace.
+// Every word gets the scope that corresponds to the type of the language server's semantic token
+// there (the table in `scopes`, which package.json repeats for themes), so that a file looks the
+// same before and after the server answers. A name means one thing at the start of a field and
+// another within a value, and only the words before decide which it is: `radius r - 1 color sun`. A
+// TextMate rule that has ended cannot pass anything on to its parent, so the rules do not end: the
+// rest of a block is read within the rule of the last value, and all of them end together at the
+// closing brace.
 
 import { writeFileSync } from "node:fs";
 
-/** The scope that stands for each type of semantic token, or for a type with a modifier. */
+/** Scopes by type of semantic token, or type with modifier. */
 export const scopes = {
   keyword: "keyword.control.pinhole",
   property: "support.type.property-name.pinhole",
@@ -22,7 +24,7 @@ export const scopes = {
   comment: "comment.pinhole",
 };
 
-/** The colours that CSS names. */
+/** Names of colours in CSS. */
 export const colors = `
   aliceblue antiquewhite aqua aquamarine azure beige bisque black blanchedalmond blue blueviolet brown burlywood
   cadetblue chartreuse chocolate coral cornflowerblue cornsilk crimson cyan darkblue darkcyan darkgoldenrod darkgray
@@ -42,19 +44,19 @@ export const colors = `
 export const functions = "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" ");
 
 const NAME = "[A-Za-z_][A-Za-z0-9_]*";
-// A unit may stand apart, which is a slip.
+// A unit after a space is a mistake, but coloured as part of the number.
 const NUMBER =
   "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:[ \\t]*(?:deg|rad))?(?![A-Za-z0-9_.])";
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
 const COLOR_CODE = "#[A-Za-z0-9_]*";
 const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
-// `tan` is a colour as well.
+// `tan` is also a colour.
 const FUNCTION = `(?:${functions.map(name => (name === "tan" ? "tan(?=\\s*\\()" : name)).join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
-// With those that people try.
+// Includes operators that the language lacks, but people try.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
 
-// A line that starts with a block's head ends the block above, whose brace is missing.
+// A line that starts with a block's head ends the block above if its closing brace is missing.
 const NEXT_ITEM =
   `(?=\\blet\\b)|^(?=\\s*${NAME}\\s*(?:${NAME}\\s*)?\\{|\\s*${NAME}\\s+(?:${NAME}\\s+)?for\\s+${NAME}\\s*<)`;
 const VALUES_END = `(?=\\})|${NEXT_ITEM}`;
@@ -70,7 +72,7 @@ const rule = (begin, types, end, ...names) => ({
   patterns: includes(...names),
 });
 
-/** What stands in values, where no field can follow. */
+/** Rules for the words of values, where no field can follow. */
 const WORDS = [
   scoped(`(?<![A-Za-z0-9_.])${NUMBER}`, "number"),
   scoped(COLOR_CODE, "number"),
@@ -81,7 +83,7 @@ const WORDS = [
   scoped(OPERATOR, "operator"),
 ];
 
-/** The rules of values behind which the rules `next` follow: fields, or items. */
+/** Returns the rules of values that are followed by the rules `next`: fields, or items. */
 function values(prefix, ...next) {
   const [value, operation] = [`${prefix}-value`, `${prefix}-operation`];
   const goesOn = ["comment", "parentheses", operation, ...next];
@@ -125,7 +127,7 @@ export const grammar = {
         rule(
           `\\b(?!let\\b)(${NAME})(?:\\s+(${NAME}))?\\s*\\{`, ["keyword", "class"], `\\}|${NEXT_ITEM}`, "comment", "field",
         ),
-        // Its name or its brace stands on another line, or behind a comment.
+        // Here the name or the brace is on another line, or after a comment.
         rule(
           `\\b(?!let\\b)(${NAME})\\b`, ["keyword"], `(?<=\\})|(?=\\blet\\b)|^(?=\\s*${NAME}\\s+${NAME}\\s*\\{)`,
           "comment", "body", "repetition", "object-name",
@@ -155,7 +157,7 @@ export const grammar = {
     method: rule(`(${NAME})`, ["enumMember"], VALUES_END, "comment", "field"),
     ...values("field", "field"),
 
-    // Within parentheses a name is never a field, and nothing has to be remembered.
+    // Within parentheses a name is never a field, so the rule needs no state.
     inner: {
       begin: "(?<=\\()",
       end: `\\)|(?=[{}])|${NEXT_ITEM}`,
@@ -166,7 +168,7 @@ export const grammar = {
   },
 };
 
-/** The grammar's file. */
+/** File of the grammar. */
 export const file = new URL("pinhole.tmLanguage.json", import.meta.url);
 export const text = JSON.stringify(grammar, null, 2) + "\n";
 

@@ -1,4 +1,4 @@
-// The extension as it is packaged, in a stand-in for VS Code, with the real program.
+// Tests the packaged extension in a substitute for VS Code, with the real program.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -19,17 +19,17 @@ let folder;
 beforeEach(() => { folder = mkdtempSync(path.join(tmpdir(), "pinhole-extension-")); });
 afterEach(() => rmSync(folder, { recursive: true }));
 
-/** A document of the editor: a scene in the test's folder. */
+/** Makes a document of the editor: a scene in the test's folder. */
 function scene(text) {
   const file = path.join(folder, "a.scn");
   writeFileSync(file, text);
   return { uri: Uri.file(file), fileName: file, languageId: "pinhole", version: 1, isDirty: false, isClosed: false, getText: () => text, save: async () => true };
 }
 
-/** The whole path of the program. */
+/** Returns the absolute path of the program. */
 const whole = () => (program.includes("/") ? path.resolve(program) : findBinary("", undefined));
 
-/** The extension in an editor like this, until the test is over. */
+/** Starts the extension in an editor with these options, until the test is over. */
 async function started(t, options) {
   const { vscode, seen } = editor(options);
   const extension = load(vscode);
@@ -41,7 +41,7 @@ async function started(t, options) {
 
 const timeout = 20_000;
 
-/** What follows from the answer to a message, which nothing waits for. */
+/** Waits for the effects of the answer to a message, which the extension does not await. */
 const settled = () => new Promise(resolve => setTimeout(resolve, 50));
 
 test("a scene that is open gets its diagnostics and every answer has a provider", { timeout }, async t => {

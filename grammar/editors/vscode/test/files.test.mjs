@@ -1,4 +1,4 @@
-// The other editors' files, as far as they can be tried here: Neovim runs, the rest is parsed.
+// Tests the files of the other editors: Neovim's are run, the rest is parsed.
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
@@ -30,7 +30,9 @@ test("Helix's and Zed's files say how to start the server for scenes", () => {
 const neovim = process.env.NVIM ?? "nvim";
 const skip = spawnSync(neovim, ["--version"]).status === 0 ? false : "Neovim is not installed";
 
-/** What a script prints in a headless Neovim that has a file open, with the plugin and the program. */
+/**
+ * Returns what a script prints in a headless Neovim with an open file, the plugin and the program.
+ */
 function inNeovim(source, script) {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-neovim-"));
   try {

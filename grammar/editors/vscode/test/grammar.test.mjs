@@ -1,4 +1,4 @@
-// What the TextMate grammar makes of single lines, where it has to remember what came before.
+// Tests the TextMate grammar on single lines in which the words before matter.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { file, scopes, text } from "../syntaxes/grammar.mjs";
 import { scoped } from "./scoped.mjs";
 
-/** The words of a text, each with its type. */
+/** Returns the words of a text, each with its type. */
 const typed = source => scoped(source).map(({ text, type }) => `${text} ${type}`);
 
 test("pinhole.tmLanguage.json is what `npm run grammar` writes", () => {

@@ -1,4 +1,5 @@
-// The words of a scene with the types that the TextMate grammar gives them, by VS Code's own engine.
+// Splits a scene into words with the types that the TextMate grammar gives them, by VS Code's own
+// engine.
 
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -30,7 +31,10 @@ function typeOfScopes(names) {
   return typeOf.get(name);
 }
 
-/** The words of a text, in order: `{ line, start, text, type }`, with columns in UTF-16. What has no type is left out. */
+/**
+ * Returns the words of a text, in order: `{ line, start, text, type }`, with columns in UTF-16.
+ * Words without a type are left out.
+ */
 export function scoped(source) {
   const words = [];
   let state = textmate.INITIAL;
@@ -41,7 +45,7 @@ export function scoped(source) {
       const type = typeOfScopes(scopes);
       const word = { line, start, text: text.slice(start, end), type };
       const last = words.at(-1);
-      // A comment comes in pieces: what opens it, what it says, what closes it.
+      // A comment consists of pieces: its opening sign, its text, its closing sign.
       const goesOn = type === "comment" && last?.type === type && last.line === line && last.start + last.text.length === start;
       if (goesOn && !word.text.startsWith("/*") && !word.text.startsWith("//")) last.text += word.text;
       else if (type !== undefined && word.text.trim() !== "") words.push(word);

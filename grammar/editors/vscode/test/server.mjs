@@ -1,4 +1,4 @@
-// The language server, driven as an editor does.
+// Runs the language server as an editor does.
 
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -9,15 +9,15 @@ import path from "node:path";
 const require = createRequire(import.meta.url);
 const { createProtocolConnection, StreamMessageReader, StreamMessageWriter } = require("vscode-languageserver-protocol/node");
 
-/** The program: what PINHOLE names, or else the one on the path. */
+/** The program that PINHOLE names, or else the one on the path. */
 export const program = process.env.PINHOLE ?? "pinhole";
 
-// The servers that a test starts leave the user's caches alone.
+// The servers of tests do not touch the user's caches.
 const caches = mkdtempSync(path.join(tmpdir(), "pinhole-caches-"));
 process.env.XDG_CACHE_HOME = caches;
 process.on("exit", () => rmSync(caches, { recursive: true, force: true }));
 
-/** Starts a server: what it can do, how to ask it, and the diagnostics that it sends for a file. */
+/** Starts a server. Returns its capabilities, a function for requests, and others for a text. */
 export async function start() {
   const server = spawn(program, ["lsp"], { stdio: ["pipe", "pipe", "inherit"] });
   const exit = new Promise((resolve, reject) => server.on("error", reject).on("exit", resolve));
@@ -44,13 +44,13 @@ export async function start() {
   return {
     capabilities,
     ask,
-    /** Opens a text, and gives its diagnostics. */
+    /** Opens a text, and returns its diagnostics. */
     async open(uri, text) {
       const diagnostics = new Promise(resolve => waiting.set(uri, resolve));
       await connection.sendNotification("textDocument/didOpen", { textDocument: { uri, languageId: "pinhole", version: 1, text } });
       return diagnostics;
     },
-    /** Ends it; its exit status. */
+    /** Ends the server, and returns its exit status. */
     async stop() {
       await ask("shutdown");
       await connection.sendNotification("exit");
@@ -61,7 +61,9 @@ export async function start() {
   };
 }
 
-/** The words of a text that has been opened, with the types that the server gives them, in the form of `scoped`. */
+/**
+ * Returns the words of an open text with the server's types, in the form of `scoped`.
+ */
 export async function classified({ ask, capabilities }, uri, source) {
   const { tokenTypes, tokenModifiers } = capabilities.semanticTokensProvider.legend;
   const lines = source.split(/\r?\n/);

@@ -1,4 +1,4 @@
-// The highlighting and the extension's client library, held against the language server.
+// Compares the highlighting and the extension's client library with the language server.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
@@ -10,7 +10,7 @@ import { classified, start } from "./server.mjs";
 
 const root = new URL("../../../../", import.meta.url).pathname;
 
-/** Every scene without a slip: the examples, and the texts of the parser's tests. */
+/** All scenes without mistakes: the examples, and the texts of the parser's tests. */
 const scenes = ["examples", "tests"]
   .flatMap(folder => readdirSync(root + folder, { recursive: true }).map(file => `${folder}/${file}`))
   .filter(file => file.endsWith(".scn") && (file.startsWith("examples/") || file.includes("/ok/")));
@@ -39,7 +39,8 @@ test("the grammar knows the colours and functions that the language knows", { ti
   };
   const [FUNCTION, COLOR] = [3, 16];
   assert.deepEqual((await offered(15, COLOR)).sort(), colors);
-  // Those that give a colour are offered for colours, those that give a vector for vectors, and so on.
+  // Functions are offered by type: those of colours for colours, those of vectors for vectors, and
+  // so on.
   const found = new Set([...await offered(15, FUNCTION), ...await offered(23, FUNCTION)]);
   assert.deepEqual([...found].sort(), [...functions].sort());
 });

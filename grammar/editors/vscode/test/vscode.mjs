@@ -1,5 +1,5 @@
-// As much of VS Code as the extension and its client library ask for when they run without it. What the extension registers
-// and shows is kept, for the tests to look at.
+// A substitute for the parts of VS Code that the extension and its client library use. What the
+// extension registers and shows is recorded for the tests.
 
 import { createRequire } from "node:module";
 import { fileURLToPath, pathToFileURL } from "node:url";
@@ -33,7 +33,9 @@ class Diagnostic {
   constructor(range, message, severity) { Object.assign(this, { range, message, severity }); }
 }
 
-/** A namespace with these members, whose others are functions that answer with something to dispose of. */
+/**
+ * A namespace with these members; all others are functions that return something to dispose of.
+ */
 const partly = members => new Proxy(members, { get: (target, name) => (name in target ? target[name] : disposable) });
 
 class CodeActionKind {
@@ -48,12 +50,12 @@ class TabInputText {
   constructor(uri) { this.uri = uri; }
 }
 
-/** An enumeration or class of which only the existence matters. */
+/** An enumeration or class that only has to exist. */
 const anything = () => new Proxy(class {}, { get: (target, name) => (typeof name === "symbol" || name in target ? target[name] : 0) });
 
 /**
- * A fresh editor with these documents. `setting` is that of `pinhole.path`; `answers` are what the
- * user chooses where a message offers it, and `file` what he chooses in a dialog.
+ * Makes an editor with these documents. `setting` is the value of `pinhole.path`; `answers` are the
+ * user's choices in messages, and `file` the choice in a dialog.
  */
 export function editor({ documents = [], setting = "", answers = [], file } = {}) {
   const seen = { messages: [], executed: [], terminals: [], updates: [], languages: [], providers: {}, diagnostics: new Map(), commands: new Map() };
@@ -114,7 +116,7 @@ export function editor({ documents = [], setting = "", answers = [], file } = {}
   return { vscode, seen };
 }
 
-/** The built extension as this editor loads it. */
+/** Loads the built extension into this editor. */
 export function load(vscode) {
   const require = createRequire(import.meta.url);
   const Module = require("node:module");

@@ -1,4 +1,5 @@
-//! Tells Zed how to start Pinhole's language server. Zed builds this to WebAssembly when it installs the extension.
+//! Tells Zed how to start Pinhole's language server. Zed compiles this crate to WebAssembly when it
+//! installs the extension.
 
 use zed_extension_api::{
     register_extension, settings::LspSettings, Command, Extension, LanguageServerId, Result,
@@ -12,7 +13,8 @@ impl Extension for Pinhole {
         Self
     }
 
-    /// The program that the settings name (`lsp.pinhole.binary.path`), or else the one on the path.
+    /// Returns the program from the settings (`lsp.pinhole.binary.path`), or else the one on the
+    /// path.
     fn language_server_command(
         &mut self,
         id: &LanguageServerId,

@@ -1,50 +1,52 @@
-//! A unified diff, as `patch` reads it.
+//! A unified diff in the format that `patch` reads.
 //!
-//! In: a text before and after. Out: the lines that differ, with three others around them.
+//! In: a text before and after. Out: the lines that differ, with three lines of context.
 
 use std::ops::Range;
 
-/// Lines that are shown around a change.
+/// Number of unchanged lines around a change.
 const AROUND: usize = 3;
 
-/// Maximum number of lines passed over in both texts together until two are the same again.
+/// Maximum number of lines, of both texts together, that the search for the next equal lines passes
+/// over.
 const MOST_STEPS: usize = 1000;
 
-/// Lines of the old text, and the lines of the new one in their place.
-struct Change {
+/// Lines of the old text, and the lines of the new text that replace them.
+struct ReplacedLines {
     old: Range<usize>,
     new: Range<usize>,
 }
 
-/// The changes of a file; nothing if there are none.
+/// Returns the changes of a file; an empty text if there are none.
 pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     let lines = |text| str::split_inclusive(text, '\n').collect::<Vec<&str>>();
     let (old, new) = (lines(old), lines(new));
     let changes = changes(&old, &new);
     let mut text = String::new();
     let mut rest = changes.as_slice();
-    while let Some(first) = rest.first() {
-        // Changes whose surroundings touch stand together.
-        let near = |pair: &[Change]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
+    while !rest.is_empty() {
+        // Changes whose context touches share a hunk.
+        let near = |pair: &[ReplacedLines]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
         let together = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
         let (hunk, behind) = rest.split_at(together);
-        let last = hunk.last().unwrap_or(first);
         if text.is_empty() {
             text = format!("--- {name}\n+++ {name}\n");
         }
-        push_hunk(&mut text, hunk, &old, &new, last);
+        push_hunk(&mut text, hunk, &old, &new);
         rest = behind;
     }
     text
 }
 
-fn push_hunk(text: &mut String, hunk: &[Change], old: &[&str], new: &[&str], last: &Change) {
-    let Some(first) = hunk.first() else { return };
+fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&str]) {
+    let (Some(first), Some(last)) = (hunk.first(), hunk.last()) else {
+        return;
+    };
     let before = first.old.start.min(AROUND);
     let after = (old.len() - last.old.end).min(AROUND);
     let place = |start: usize, end: usize| {
         let (start, end) = (start - before, end + after);
-        // An empty range stands behind the line that it names.
+        // An empty range is after the line that it names.
         let first = if start == end { start } else { start + 1 };
         format!("{first},{}", end - start)
     };
@@ -71,10 +73,10 @@ fn push_hunk(text: &mut String, hunk: &[Change], old: &[&str], new: &[&str], las
     push(' ', &old[at..last.old.end + after]);
 }
 
-/// Walks both texts. Where they differ, they go on at the nearest place at which two lines, or the
-/// ends, are the same: changes are small, and far from the shortest list nothing is wrong but its
-/// length.
-fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
+/// Walks both texts. After a difference, the walk continues at the nearest place where two lines,
+/// or the ends, agree. Changes are small, so the list is short; where it is not the shortest one,
+/// it is still correct.
+fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {
         if a < old.len() && b < new.len() && old[a] == new[b] {
@@ -93,7 +95,7 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<Change> {
             .into_iter()
             .find(is_same)
             .unwrap_or((old_rest.len(), new_rest.len()));
-        changes.push(Change {
+        changes.push(ReplacedLines {
             old: a..a + i,
             new: b..b + j,
         });
@@ -114,7 +116,7 @@ mod tests {
 
     use super::*;
 
-    /// Texts of a few different lines, also of none, with and without a line feed at the end.
+    /// Texts of up to 14 lines out of few different ones, with and without a line feed at the end.
     fn text() -> impl Strategy<Value = String> {
         ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
     }
@@ -136,7 +138,7 @@ mod tests {
                 return Ok(());
             };
             prop_assert!(diff.is_empty() || output.status.success(), "{:?} {}", output, diff);
-            // An empty text may be no file.
+            // For an empty text, `patch` may remove the file.
             let made = fs::read_to_string(folder.path().join("old")).unwrap_or_default();
             prop_assert_eq!(made, new, "{}", diff);
         }

@@ -1,5 +1,4 @@
-//! A picture's file that threads of its own make, while the conversation goes on and tells how far
-//! it is.
+//! Renders a picture's file on threads, while the conversation goes on and sends the progress.
 
 use std::{
     error::Error,
@@ -16,33 +15,33 @@ use crate::{
     area::Area,
     files,
     film::{self, Film},
-    lsp::{Answer, Refusal, response, unharmed},
+    lsp::{Answer, Refusal, catch_panics, response},
     render::{self, Control, RenderError},
     scene::Scene,
     tracer::World,
 };
 
-/// A render that another thread looks at and can end.
+/// Progress and cancellation of a render, shared with another thread.
 #[derive(Debug, Default)]
 pub struct Watch {
     pub cancel: AtomicBool,
-    /// Numbers of samples, or of exact pixels.
+    /// Number of samples, or of exact pixels, that are done.
     done: AtomicU64,
     expected: AtomicU64,
 }
 
 impl Watch {
-    /// Which part is made, from 0 to 1.
+    /// Returns the share that is done, from 0 to 1.
     pub fn share(&self) -> f64 {
         let [done, expected] = [&self.done, &self.expected].map(|it| it.load(Ordering::Relaxed));
         (done as f64 / expected.max(1) as f64).min(1.0)
     }
 }
 
-/// The answer to such a request: the file of the picture that `pinhole render` makes of the text.
+/// Answers a request for a picture's file, with the same bytes as `pinhole render`.
 pub fn answer(request: Request, watch: &Watch) -> Message {
     let Request { id, method, params } = request;
-    response(id, unharmed(|| file(&method, &params, watch)))
+    response(id, catch_panics(|| file(&method, &params, watch)))
 }
 
 fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
@@ -51,9 +50,12 @@ fn file(method: &str, params: &Value, watch: &Watch) -> Answer {
         EXR => exr(&scene, watch),
         _ => png(&scene, text, watch),
     };
-    let file = made.map_err(|error| match watch.cancel.load(Ordering::SeqCst) {
-        true => Refusal::cancelled(),
-        false => Refusal::failed(error),
+    let file = made.map_err(|error| {
+        if watch.cancel.load(Ordering::SeqCst) {
+            Refusal::cancelled()
+        } else {
+            Refusal::failed(error)
+        }
     })?;
     let name = method.trim_start_matches("studio/");
     Ok(json!({ name: BASE64_STANDARD.encode(file) }))
@@ -83,9 +85,10 @@ fn rendered<P: film::Pixel>(scene: &Scene, watch: &Watch) -> Result<Film<P>, Ren
     let world = World::new_unless(scene, cancel)?;
     let sampling = sampling(scene);
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let expected = match sampling.is_exact() {
-        true => whole.pixels(),
-        false => sampling.total(),
+    let expected = if sampling.is_exact() {
+        whole.pixels()
+    } else {
+        sampling.total()
     };
     watch.expected.store(expected, Ordering::Relaxed);
     let control = Control {

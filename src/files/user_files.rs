@@ -1,4 +1,4 @@
-//! Small files that are kept of a user, for the user alone.
+//! Small files in the user's state folder that no other user can read.
 
 use std::{
     fs, io,
@@ -8,18 +8,19 @@ use std::{
 };
 
 use super::{
+    error_words::in_words,
     kind::folder,
     state::{self, digest, state_folder},
-    words::in_words,
     write::{Purpose, write},
 };
 
-/// Where the folder of this name is for what is kept, if the system has a place for it.
+/// Returns the path of a folder of this name in the state folder; `None` if the system has no state
+/// folder.
 pub fn kept_folder(name: &str) -> Option<PathBuf> {
     Some(state_folder()?.join(name))
 }
 
-/// Keeps a text in a file of such a folder. No other user can read it.
+/// Writes a text to a file in a folder from [`kept_folder`]. No other user can read it.
 pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     let folder = folder(path);
     state::make(folder).map_err(in_words)?;
@@ -29,12 +30,12 @@ pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     })
 }
 
-/// Removes a file that is kept. It is no matter if there is none.
+/// Removes a kept file, if it exists.
 pub fn forget(path: &Path) {
     let _ = fs::remove_file(path);
 }
 
-/// Removes the files in a folder that are older than this.
+/// Removes the files in a folder that were last changed longer ago than `age`.
 pub fn forget_older(folder: &Path, age: Duration) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let changed = entry.metadata().and_then(|found| found.modified());
@@ -44,7 +45,7 @@ pub fn forget_older(folder: &Path, age: Duration) {
     }
 }
 
-/// The name of the file that belongs to something that has a longer name.
+/// Returns a file name for a key of any length.
 pub fn name_of(long: &[u8]) -> String {
     digest(long) + ".json"
 }

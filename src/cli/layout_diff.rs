@@ -1,9 +1,8 @@
-//! A unified diff of a text and its layout, in time and memory that grow with their length and not
-//! with its square.
+//! A unified diff of a text and its layout, in time and memory linear in their length.
 //!
-//! No search for a shortest edit is needed: a layout changes blanks and line ends alone. What
-//! stands before a line, blanks left out, says where the line belongs in the other text, so one
-//! walk over both finds the lines that stay.
+//! No search for a shortest edit is needed: a layout changes only blanks and line ends. The number
+//! of other characters before a line says where the line belongs in the other text, so one walk
+//! over both texts finds the lines that stay.
 
 use std::{fmt::Write, ops::Range};
 
@@ -13,12 +12,12 @@ use crate::{
     source::Source,
 };
 
-/// Number of unchanged lines that are shown around a change, as everywhere.
+/// Number of unchanged lines around a change, as is usual in diffs.
 const CONTEXT: usize = 3;
 
-/// What would change, as a unified diff. Where lines end in different ways, carriage returns are
-/// shown: lines can differ in them alone.
-pub fn difference(source: &Source, formatted: &str) -> String {
+/// Returns what would change as a unified diff. In a text with both kinds of line ends, carriage
+/// returns are shown, as lines can differ in them alone.
+pub fn layout_diff(source: &Source, formatted: &str) -> String {
     let text = source.text();
     let printer = Printer {
         color: output::style().color,
@@ -26,9 +25,9 @@ pub fn difference(source: &Source, formatted: &str) -> String {
     };
     let name = visible_line(source.name());
     let mut out = format!("--- {name}\n+++ {name}, formatted\n");
-    let mut hunk: Vec<Change> = Vec::new();
-    for change in Changes::of(text, formatted) {
-        let is_near = |last: &Change| change.before.first - last.before.end() <= 2 * CONTEXT;
+    let mut hunk: Vec<LineChange> = Vec::new();
+    for change in LineChanges::of(text, formatted) {
+        let is_near = |last: &LineChange| change.before.first - last.before.end() <= 2 * CONTEXT;
         if !hunk.last().is_none_or(is_near) {
             printer.hunk(&mut out, &hunk, text, formatted);
             hunk.clear();
@@ -39,84 +38,84 @@ pub fn difference(source: &Source, formatted: &str) -> String {
     out
 }
 
-/// Lines of a text that follow each other: the number of the first, how many they are, and their
-/// bytes.
+/// Consecutive lines of a text: the index of the first, their count, and their bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Lines {
+struct LineSpan {
     first: usize,
     count: usize,
     bytes: Range<usize>,
 }
 
-impl Lines {
+impl LineSpan {
     fn end(&self) -> usize {
         self.first + self.count
     }
 }
 
-/// Lines that are replaced by others.
+/// Lines of the old text and the lines that replace them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Change {
-    before: Lines,
-    after: Lines,
+struct LineChange {
+    before: LineSpan,
+    after: LineSpan,
 }
 
-/// A text that is read line by line.
-struct Reader<'t> {
+/// A position in a text that is read line by line.
+struct LineCursor<'t> {
     text: &'t str,
-    /// The number of the next line, where it starts, and the number of characters before it that
-    /// are no blanks.
+    /// Index of the next line.
     next: usize,
+    /// Byte at which the next line starts.
     at: usize,
-    place: usize,
+    /// Number of characters before the next line that are not blanks.
+    solid_before: usize,
 }
 
-impl<'t> Reader<'t> {
+impl<'t> LineCursor<'t> {
     fn new(text: &'t str) -> Self {
         Self {
             text,
             next: 0,
             at: 0,
-            place: 0,
+            solid_before: 0,
         }
     }
 
-    /// The next line, with its line end.
+    /// Returns the next line with its line end.
     fn line(&self) -> Option<&'t str> {
         self.text[self.at..].split_inclusive('\n').next()
     }
 
-    /// Goes on behind a line.
+    /// Moves past a line.
     fn pass(&mut self, line: &str) {
         self.next += 1;
         self.at += line.len();
-        self.place += line.chars().filter(|c| !c.is_whitespace()).count();
+        self.solid_before += line.chars().filter(|c| !c.is_whitespace()).count();
     }
 }
 
-/// The changes that make one text of the other, in their order.
-struct Changes<'t> {
-    before: Reader<'t>,
-    after: Reader<'t>,
+/// Iterator over the changes from one text to the other.
+struct LineChanges<'t> {
+    before: LineCursor<'t>,
+    after: LineCursor<'t>,
 }
 
-impl<'t> Changes<'t> {
+impl<'t> LineChanges<'t> {
     fn of(before: &'t str, after: &'t str) -> Self {
-        let [before, after] = [before, after].map(Reader::new);
+        let [before, after] = [before, after].map(LineCursor::new);
         Self { before, after }
     }
 }
 
-impl Iterator for Changes<'_> {
-    type Item = Change;
+impl Iterator for LineChanges<'_> {
+    type Item = LineChange;
 
-    fn next(&mut self) -> Option<Change> {
+    fn next(&mut self) -> Option<LineChange> {
         let Self { before, after } = self;
-        let is_same = |before: &Reader<'_>, after: &Reader<'_>| match (before.line(), after.line())
-        {
-            (None, None) => true,
-            (old, new) => before.place == after.place && old == new,
-        };
+        let is_same =
+            |before: &LineCursor<'_>, after: &LineCursor<'_>| match (before.line(), after.line()) {
+                (None, None) => true,
+                (old, new) => before.solid_before == after.solid_before && old == new,
+            };
         while let Some(line) = before.line().filter(|_| is_same(before, after)) {
             before.pass(line);
             after.pass(line);
@@ -126,11 +125,12 @@ impl Iterator for Changes<'_> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line has no place of its own, so it goes before the other one.
+                // An empty line takes no space of its own, so it is passed before the line of the
+                // other text.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
-                    (before.place, !is_empty(old)),
-                    (after.place, !is_empty(new)),
+                    (before.solid_before, !is_empty(old)),
+                    (after.solid_before, !is_empty(new)),
                 ];
                 (is_removed, is_added) = (old <= new, new <= old);
             }
@@ -140,12 +140,12 @@ impl Iterator for Changes<'_> {
                 }
             }
         }
-        let lines = |(first, at): (usize, usize), reader: &Reader<'_>| Lines {
+        let lines = |(first, at): (usize, usize), reader: &LineCursor<'_>| LineSpan {
             first,
             count: reader.next - first,
             bytes: at..reader.at,
         };
-        let change = Change {
+        let change = LineChange {
             before: lines(start[0], before),
             after: lines(start[1], after),
         };
@@ -153,16 +153,16 @@ impl Iterator for Changes<'_> {
     }
 }
 
-/// How lines are printed.
+/// Options of printing lines.
 struct Printer {
     color: bool,
-    /// Whether lines end in different ways.
+    /// Whether the text has both kinds of line ends.
     is_mixed: bool,
 }
 
 impl Printer {
-    /// Prints changes that lie near each other.
-    fn hunk(&self, out: &mut String, changes: &[Change], before: &str, after: &str) {
+    /// Prints a hunk: changes that are close together.
+    fn hunk(&self, out: &mut String, changes: &[LineChange], before: &str, after: &str) {
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
             return;
         };
@@ -202,7 +202,7 @@ impl Printer {
     }
 }
 
-/// Where the line starts that is so many lines before one that starts at a byte.
+/// Returns the byte at which the line starts that is `lines` lines before the one at byte `start`.
 fn lines_back(text: &str, start: usize, lines: usize) -> usize {
     (0..lines).fold(start, |start, _| {
         let before = &text[..start];
@@ -211,8 +211,8 @@ fn lines_back(text: &str, start: usize, lines: usize) -> usize {
     })
 }
 
-/// Lines as diffs name them: the first one from 1, and how many there are unless it is one. An
-/// empty range has the line before it.
+/// Formats a range of lines as in a hunk's head: the first line, counted from 1, and the count
+/// unless it is 1. An empty range names the line before it.
 fn range(lines: Range<usize>) -> String {
     match lines.len() {
         0 => format!("{},0", lines.start),
@@ -227,7 +227,7 @@ mod tests {
 
     #[test]
     fn lines_that_stay_are_found_by_their_place() {
-        for (before, after, told) in [
+        for (before, after, expected) in [
             ("a\nb\n", "a\nb\n", ""),
             (
                 "a\n\n\n\nb\n",
@@ -246,7 +246,7 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // The same line elsewhere is not taken for it.
+            // An equal line at another position is not matched.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",
@@ -254,9 +254,9 @@ mod tests {
             ),
             ("\n", "", "@@ -1 +0,0 @@\n-\n"),
         ] {
-            let diff = difference(&Source::from_text("a", before), after);
+            let diff = layout_diff(&Source::from_text("a", before), after);
             let hunks = diff.strip_prefix("--- a\n+++ a, formatted\n").unwrap();
-            assert_eq!(hunks, told, "{before:?}");
+            assert_eq!(hunks, expected, "{before:?}");
         }
     }
 
@@ -265,7 +265,7 @@ mod tests {
         let text = |a: &str, b: &str, between| format!("{a}\n{}{b}\n", "x\n".repeat(between));
         for (between, hunks) in [(6, 1), (7, 2)] {
             let (before, after) = (text(" a", " b", between), text("a", "b", between));
-            let diff = difference(&Source::from_text("a", &before), &after);
+            let diff = layout_diff(&Source::from_text("a", &before), &after);
             assert_eq!(diff.matches("@@ -").count(), hunks, "{diff}");
         }
     }

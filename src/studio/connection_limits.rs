@@ -1,7 +1,7 @@
-//! Connections of whoever has not shown a token: they have little time, few bytes and few places.
+//! Limits on connections that have not shown a token: time, bytes, and number.
 //!
-//! Any program on this machine can connect, and keep a connection open without a word. Since the
-//! oldest such connection is closed when there are too many, those that wait keep nobody out.
+//! Any program on this machine can connect, and keep a connection open without sending anything.
+//! Since the oldest such connection is closed when there are too many, idle ones keep nobody out.
 
 use std::{
     collections::VecDeque,
@@ -27,24 +27,24 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of strangers' connections. A page has up to three while it loads, and one until
-/// it has shown its token.
+/// Maximum number of connections without a token. A page has up to three while it loads, and one
+/// until it has shown its token.
 const MOST: usize = 64;
 
-/// Lifetime of a stranger's connection: the head of a request, its response, or the handshake of a
-/// web socket and the token. On one machine that takes milliseconds.
+/// Lifetime of a connection without a token: enough for the head of a request and its response, or
+/// for the handshake of a web socket and the token. On one machine that takes milliseconds.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a stranger may send. A browser's head has about one KiB, unless
-/// other programs on this machine have set many cookies.
+/// Maximum number of bytes that a connection may send before the token. A browser's request has
+/// about one KiB, unless other programs on this machine have set many cookies.
 const LONGEST: usize = 32 << 10;
 
-/// Who has connected, as both the connection and those who answer it know it.
+/// A visitor, shared by the connection and its request handlers.
 #[derive(Clone, Debug, Default)]
-pub struct Visitor(Arc<State>);
+pub struct Visitor(Arc<VisitorState>);
 
 #[derive(Debug, Default)]
-struct State {
+struct VisitorState {
     is_admitted: AtomicBool,
     give_place: Notify,
 }
@@ -66,16 +66,16 @@ impl Connected<IncomingStream<'_, Door>> for Visitor {
     }
 }
 
-/// A listener whose connections are those of strangers at first.
+/// A listener that limits its connections until they have shown a token.
 #[derive(Debug)]
 pub struct Door {
     listener: TcpListener,
-    /// The strangers, the oldest first.
-    strangers: VecDeque<Weak<State>>,
+    /// Visitors without a token, the oldest first.
+    strangers: VecDeque<Weak<VisitorState>>,
 }
 
 impl Door {
-    /// Lets in whoever connects to this listener.
+    /// Makes a door of a listener.
     pub fn new(listener: TcpListener) -> Self {
         Self {
             listener,
@@ -84,7 +84,7 @@ impl Door {
     }
 
     fn make_place(&mut self) {
-        let is_stranger = |state: &Weak<State>| {
+        let is_stranger = |state: &Weak<VisitorState>| {
             let state = state.upgrade();
             state.is_some_and(|state| !state.is_admitted.load(Ordering::SeqCst))
         };
@@ -103,7 +103,7 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // Without it, small messages are only slower.
+        // If this fails, small messages are only slower.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();
@@ -116,13 +116,13 @@ impl Listener for Door {
     }
 }
 
-/// A connection that breaks as soon as a stranger has used up what strangers have.
+/// A connection that fails as soon as a visitor without a token exceeds a limit.
 pub struct Connection {
     stream: TcpStream,
     visitor: Visitor,
-    /// Bytes that a stranger may still send.
+    /// Number of bytes that may still be sent before the token.
     left: usize,
-    /// Ends with the time or the place of a stranger; none when it has ended.
+    /// Ready when the time is over or the place is needed; `None` after that.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 
@@ -140,7 +140,7 @@ impl Connection {
         }
     }
 
-    /// Fails if this is the connection of a stranger who has to go.
+    /// Fails if the visitor has not shown a token and has to leave.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         if self.visitor.is_admitted() {
             return Ok(());

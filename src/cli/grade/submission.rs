@@ -1,0 +1,144 @@
+//! Submissions: students and their files.
+
+use std::{path::PathBuf, sync::Arc};
+
+use super::{
+    archive::{Archive, UnpackBudget},
+    glob::Glob,
+};
+use crate::cli::{
+    args::LargeArgs,
+    input::{self, FileBytes, IfNotPicture},
+    judge,
+};
+
+/// Difference of times, in seconds, up to which they count as equal: zip files store even seconds,
+/// and checking out a repository takes a while.
+const SAME_TIME: i64 = 2;
+
+/// Maximum number of pictures of the same time that are compared.
+const MOST_PICTURES: usize = 12;
+
+/// A student's submission.
+#[derive(Debug)]
+pub struct Student {
+    /// The name in the submission system, or that of the folder or file.
+    pub name: String,
+    /// The number of the submission in Moodle.
+    pub number: Option<String>,
+    /// The folder or file, to be shown.
+    pub place: String,
+    pub files: Vec<SubmittedFile>,
+    /// Whether the submission is a clone of a repository, where the files' times mean nothing.
+    pub is_clone: bool,
+}
+
+/// A submitted file.
+#[derive(Debug)]
+pub struct SubmittedFile {
+    /// Path in the student's submission, with `/` between folders.
+    pub path: String,
+    /// Path from the argument on the command line, to be shown.
+    pub shown: String,
+    /// Time of change in seconds since 1970, if known.
+    pub time: Option<i64>,
+    /// Length according to the folder or the zip file, in bytes.
+    pub length: u64,
+    /// The CRC-32 that a zip file has for the file.
+    pub sum: Option<u32>,
+    pub content: ContentSource,
+    /// Whether the file itself is on the command line: it is a picture, whatever its name.
+    pub is_named: bool,
+}
+
+/// Source of a file's bytes.
+#[derive(Debug)]
+pub enum ContentSource {
+    /// A file on disk; `-` and `/dev/stdin` can be read only once.
+    File(PathBuf),
+    /// An entry of a zip file, by its index.
+    Entry(Arc<Archive>, usize),
+    /// The file is not read, for this reason.
+    Refused(String),
+}
+
+impl SubmittedFile {
+    /// Reads the file as a picture. The first bytes decide whether it is one, before the rest is
+    /// read.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read; the message says why.
+    pub fn picture(&self, large: &LargeArgs, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
+        match &self.content {
+            ContentSource::File(path) => {
+                match input::read_picture_or(path, large, IfNotPicture::ReadStart) {
+                    Ok(FileBytes::Picture(bytes) | FileBytes::Other(bytes)) => Ok(bytes),
+                    Err(error) => Err(error.to_string()),
+                }
+            }
+            ContentSource::Entry(archive, index) => archive.read(*index, budget),
+            ContentSource::Refused(why) => Err(why.clone()),
+        }
+    }
+
+    /// Whether the file may be a picture by its name, or matches the pattern of `--picture`.
+    pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
+        let is_read = !matches!(self.content, ContentSource::Refused(_));
+        self.is_named
+            || is_read
+                && match chosen {
+                    Some(glob) => glob.matches(&self.path),
+                    None => judge::is_named_as_picture(self.path.as_ref()),
+                }
+    }
+}
+
+/// The choice of a student's files that are compared.
+#[derive(Debug, Default)]
+pub struct PictureChoice<'s> {
+    pub pictures: Vec<&'s SubmittedFile>,
+    /// The other files, with the reasons why they are not compared.
+    pub others: Vec<String>,
+}
+
+impl Student {
+    /// Returns the newest of the pictures, or several if the times do not tell which one is the
+    /// newest.
+    pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
+        let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);
+        let (mut pictures, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_picture);
+        let mut others: Vec<String> = others
+            .into_iter()
+            .map(|file| match &file.content {
+                ContentSource::Refused(why) => format!("{} ({why})", file.path),
+                _ => file.path.clone(),
+            })
+            .collect();
+        let newest = pictures.iter().filter_map(|file| file.time).max();
+        let is_newest = |file: &&SubmittedFile| {
+            let times = (file.time, newest);
+            self.is_clone
+                || matches!(times, (Some(time), Some(newest)) if newest - time <= SAME_TIME)
+                || newest.is_none()
+        };
+        let (newest, older): (Vec<_>, Vec<_>) = pictures.into_iter().partition(is_newest);
+        others.extend(
+            older
+                .iter()
+                .map(|file| format!("{} (an older picture)", file.path)),
+        );
+        pictures = newest;
+        if pictures.len() > MOST_PICTURES {
+            let more = pictures.split_off(MOST_PICTURES);
+            let listed = |file: &&SubmittedFile| {
+                format!(
+                    "{} (one of more than {MOST_PICTURES} of the same time: --picture chooses)",
+                    file.path
+                )
+            };
+            others.extend(more.iter().map(listed));
+        }
+        PictureChoice { pictures, others }
+    }
+}
