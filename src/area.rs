@@ -2,12 +2,12 @@
 
 use std::{fmt, str::FromStr};
 
-/// A rectangle of pixels, counted from the picture's top left corner.
+/// A rectangle of pixels; its origin is the picture's top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
-    /// Its leftmost column.
+    /// Leftmost column.
     pub x: u32,
-    /// Its topmost row.
+    /// Topmost row.
     pub y: u32,
     /// How many columns it has.
     pub width: u32,
@@ -16,7 +16,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// A whole picture of this size.
+    /// Returns the area of a whole picture.
     pub fn whole(width: u32, height: u32) -> Self {
         Self {
             x: 0,
@@ -26,27 +26,23 @@ impl Area {
         }
     }
 
-    /// A single pixel.
+    /// Returns the area of a single pixel.
     pub fn pixel(x: u32, y: u32) -> Self {
-        Self {
-            x,
-            y,
-            width: 1,
-            height: 1,
-        }
+        let area = Self::whole(1, 1);
+        Self { x, y, ..area }
     }
 
-    /// How many pixels it has.
+    /// Returns the number of pixels.
     pub fn pixels(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Whether it lies within another one.
+    /// Returns whether the area lies within another one.
     pub fn lies_in(self, other: Self) -> bool {
         self.common(other) == self
     }
 
-    /// Whether the two have a pixel in common.
+    /// Returns whether the two areas have a pixel in common.
     pub fn meets(self, other: Self) -> bool {
         self.columns().start < other.columns().end
             && other.columns().start < self.columns().end
@@ -54,7 +50,7 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
-    /// The smallest one with both.
+    /// Returns the smallest area that contains both.
     pub fn with(self, other: Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         Self {
@@ -65,19 +61,19 @@ impl Area {
         }
     }
 
-    /// Its pixels' columns and rows in the picture, row by row.
+    /// Returns the columns and rows of the pixels in the picture, row by row.
     pub fn iter(self) -> impl Iterator<Item = (u32, u32)> {
         (0..self.height)
             .flat_map(move |row| (0..self.width).map(move |column| (self.x + column, self.y + row)))
     }
 
-    /// The place of one of its pixels in that order.
+    /// Returns the index of a pixel of the area, counted row by row.
     pub fn index(self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Its parts: squares of this side from the top left corner on, cut off where it ends; row by
-    /// row.
+    /// Returns the tiles of the area: squares of this side from its top left corner on, cut off at
+    /// its edges; row by row.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -90,23 +86,18 @@ impl Area {
         })
     }
 
-    /// The squares of this side, counted from the picture's top left corner, that it meets; row by
-    /// row.
+    /// Returns the squares of this side that meet the area, in a grid from the picture's top left
+    /// corner; row by row.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)
         };
-        let square = move |x: u32, y: u32| Self {
-            x,
-            y,
-            width: side,
-            height: side,
-        };
+        let square = Self::whole(side, side);
         starts(self.y, self.height)
-            .flat_map(move |y| starts(self.x, self.width).map(move |x| square(x, y)))
+            .flat_map(move |y| starts(self.x, self.width).map(move |x| Self { x, y, ..square }))
     }
 
-    /// What two areas have in common: no pixels if they do not meet.
+    /// Returns the intersection of two areas; it has no pixels if they do not meet.
     pub fn common(self, other: Self) -> Self {
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
         let length = |end: u64, other_end: u64, start: u32| {
@@ -120,7 +111,7 @@ impl Area {
         }
     }
 
-    /// The same area, counted from the corner of one that it lies in.
+    /// Returns the area relative to the corner of one that contains it.
     pub fn within(self, outer: Self) -> Self {
         Self {
             x: self.x - outer.x,
@@ -129,8 +120,8 @@ impl Area {
         }
     }
 
-    /// Its four parts of nearly the same size; two, if it has but one row or column, and itself, if
-    /// it is a pixel.
+    /// Returns four parts of nearly equal size; two, if the area has only one row or column, and
+    /// the area itself if it is a pixel.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
         let halves = |length: u32| [(0, length / 2), (length / 2, length - length / 2)];
         let (columns, rows) = (halves(self.width), halves(self.height));
@@ -145,12 +136,12 @@ impl Area {
         quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
     }
 
-    /// The pixel in its middle, or the one after that.
+    /// Returns the pixel in the middle; of an even number, the second of the two.
     pub fn middle(self) -> Self {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // As u64, so that an area that a user made up cannot overflow.
+    // As u64, so that an area from a user cannot overflow.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }
@@ -163,17 +154,11 @@ impl Area {
 /// `X,Y,W,H`
 impl fmt::Display for Area {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            x,
-            y,
-            width,
-            height,
-        } = self;
-        write!(f, "{x},{y},{width},{height}")
+        write!(f, "{},{},{},{}", self.x, self.y, self.width, self.height)
     }
 }
 
-/// `X,Y,W,H`, four whole numbers; W and H are not 0.
+/// Parses `X,Y,W,H`, four whole numbers. Returns an error if W or H is 0.
 impl FromStr for Area {
     type Err = String;
 
@@ -203,11 +188,11 @@ mod tests {
 
     #[test]
     fn tiles_cover_every_pixel_once() {
+        let whole = Area::whole(10, 7);
         let area = Area {
             x: 3,
             y: 5,
-            width: 10,
-            height: 7,
+            ..whole
         };
         let mut hits = vec![0; area.pixels() as usize];
         for tile in area.tiles(4) {

@@ -1,31 +1,32 @@
-//! Work that is given up when nobody wants its result any more.
+//! Cancellation of work whose result is no longer wanted.
 //!
-//! A flag says so, which stays set until the work has ended. What takes long looks at it in between
-//! and, once it is set, leaves out the rest; what was made then is of no use, and whoever was asked
-//! for it says [`Cancelled`] in its place.
+//! A flag requests it and stays set until the work has ended. Long work checks the flag regularly
+//! and, once it is set, skips the rest; the partial result is useless, and [`Cancelled`] is
+//! returned instead of it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
 
-/// There is no result: it was not wanted any more.
+/// Error of cancelled work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("interrupted")]
 pub struct Cancelled;
 
-/// The flag of work that is done in any case.
+/// Flag of work that is never cancelled.
 pub(crate) static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// Whether the result is wanted no more.
+/// Returns whether the work is cancelled.
 #[inline]
 pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
     cancel.load(Ordering::Relaxed)
 }
 
-/// What was made, if it was wanted to the end.
+/// Returns a result, or an error if the work was cancelled.
 pub fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
-    match is_set(cancel) {
-        false => Ok(made),
-        true => Err(Cancelled),
+    if is_set(cancel) {
+        Err(Cancelled)
+    } else {
+        Ok(made)
     }
 }

@@ -1,4 +1,4 @@
-//! Colours: sRGB as the language writes them, linear light as the film averages them.
+//! Colours: sRGB, as the language has them, and linear light, as the film averages it.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use dashu_int::UBig;
 
 use crate::math::{Double, Real};
 
-/// An sRGB colour; each channel is a number from 0 to 255, fractions allowed.
+/// An sRGB colour; each channel is a number from 0 to 255, and may have a fraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
     /// Red, green and blue, encoded, 0 to 255.
@@ -17,30 +17,33 @@ impl Color {
     /// Black.
     pub const BLACK: Self = Self::from_bytes([0, 0, 0]);
 
-    /// A colour from three bytes.
+    /// Makes a colour of three bytes.
     pub const fn from_bytes([r, g, b]: [u8; 3]) -> Self {
         Self {
             srgb: [r as f64, g as f64, b as f64],
         }
     }
 
-    /// The nearest colour of three bytes.
+    /// Returns the nearest bytes.
     pub fn to_bytes(self) -> [u8; 3] {
         // A channel lies in 0..=255, so the conversion only rounds.
         self.srgb.map(|channel| channel.round() as u8)
     }
 
-    /// The channels in linear light, 0 to 1 (IEC 61966-2-1).
+    /// Returns the channels in linear light, from 0 to 1 (IEC 61966-2-1).
     pub fn to_linear(self) -> [f64; 3] {
-        self.srgb.map(|channel| match channel.fract() == 0.5 {
-            // A tie stays one, which is rounded up.
-            true => half_byte(channel as u8),
-            false => srgb_to_linear(channel / 255.0),
+        self.srgb.map(|channel| {
+            if channel.fract() == 0.5 {
+                // A tie must stay a tie, which is rounded up.
+                half_byte(channel as u8)
+            } else {
+                srgb_to_linear(channel / 255.0)
+            }
         })
     }
 }
 
-/// The nearest hex code, `#rrggbb` in lower case.
+/// Formats the nearest hex code, `#rrggbb` in lower case.
 impl fmt::Display for Color {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [r, g, b] = self.to_bytes();
@@ -48,7 +51,7 @@ impl fmt::Display for Color {
     }
 }
 
-/// Decodes one sRGB channel, 0 to 1, to linear light, 0 to 1 (IEC 61966-2-1).
+/// Decodes one sRGB channel, from 0 to 1, to linear light, from 0 to 1 (IEC 61966-2-1).
 pub fn srgb_to_linear(encoded: f64) -> f64 {
     if encoded <= 0.04045 {
         encoded / 12.92
@@ -57,11 +60,11 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// The light from which on k + 1 is the nearest byte: the least `f64` that is not below the light
-/// of k + 1/2, for k below 255.
+/// Returns the linear light from which on the nearest byte is k + 1: the least `f64` that is not
+/// below the light of k + 1/2, for k below 255.
 ///
-/// The powers of the curve are rational, so whole numbers can decide: L = x^2.4 has the same sign
-/// of its difference as L^5 = x^12.
+/// The powers of the curve are rational, so integers can decide: L − x^2.4 has the same sign as L^5
+/// − x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -73,11 +76,11 @@ pub fn half_byte(k: u8) -> f64 {
     light
 }
 
-/// Whether light, more than 0 and no subnormal number, is darker than that of k + 1/2.
+/// Returns whether linear light, greater than 0 and not subnormal, is darker than that of k + 1/2.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // In double-double first: whole numbers take half the time of a small picture. In units of its
-    // roundings the powers on the left are off by 4 and 11, their product by one more and the right
-    // by 11, and so is the difference by one: less than 32.
+    // Double-double first: integers would take half the time of a small picture. In units of its
+    // rounding, the relative errors are at most 4 and 11 for the powers on the left, 1 for their
+    // product, 11 for the right side and 1 for the difference: less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -88,21 +91,22 @@ fn is_below_half(light: f64, k: u8) -> bool {
         .times(&power_12(scale));
     let right = power_12(x);
     let difference = left.minus(&right).hi;
-    match halves > 20.0 && difference.abs() > ERROR * right.hi {
-        true => difference < 0.0,
-        false => is_below_half_exactly(light.hi, k),
+    if halves > 20.0 && difference.abs() > ERROR * right.hi {
+        difference < 0.0
+    } else {
+        is_below_half_exactly(light.hi, k)
     }
 }
 
-/// Whether light is darker than that of k + 1/2, in whole numbers.
+/// Returns whether linear light is darker than that of k + 1/2, decided with integers.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // light = significand / 2^shift
     let shift = 1075 - exponent;
-    // Half steps, of which 510 are white.
+    // Number of half steps; white has 510.
     let halves = 2 * u32::from(k) + 1;
-    // 0.04045 is a little more than 20 of them.
+    // 0.04045 is slightly more than 20 half steps.
     if halves <= 20 {
         // L < c/12.92 with c = halves/510
         significand * 65_892u32 < UBig::from(10 * halves) << shift
@@ -113,8 +117,8 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     }
 }
 
-/// Encodes one channel of linear light, 0 to 1, as sRGB, 0 to 1: the inverse of [`srgb_to_linear`].
-/// Negative light goes on with the straight piece and light above 1 with the curve.
+/// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1: the inverse of
+/// [`srgb_to_linear`]. Below 0 the straight piece is continued, and above 1 the curve.
 pub fn linear_to_srgb(light: f64) -> f64 {
     if light <= 0.04045 / 12.92 {
         12.92 * light
@@ -123,12 +127,12 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// The part from 0 to 255 that stands for one from 0 to 1.
+/// Converts a channel from 0 to 1 to one from 0 to 255.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// The parts of a colour from 0 to 255, of what may be written from 0 to 1.
+/// Converts the channels of a colour to 0 to 255 if they may be written from 0 to 1.
 pub fn whole_parts(written: &str) -> String {
     if !are_shares(&[written]) {
         return written.to_owned();
@@ -141,8 +145,8 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Whether the parts of a colour, as they are written, may go from 0 to 1, so that they would be
-/// another colour from 0 to 255.
+/// Returns whether the channels of a colour, as they are written, may range from 0 to 1; from 0 to
+/// 255 they would be another colour.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -1,8 +1,8 @@
 //! The list of problems, and its two forms: for people and for programs.
 //!
 //! In: [`Diagnostic`]s, which the stages make where a problem arises, with the edits that may help.
-//! Out: the same in the order of the text, as a terminal shows them or as lines of JSON. Where to
-//! print them, and in which style, is the caller's decision.
+//! Out: the same in the order of the text, as a terminal shows them or as lines of JSON. The caller
+//! decides where to print them, and in which style.
 
 mod fix;
 mod problems;
@@ -22,17 +22,17 @@ use serde_json::{Value, json};
 
 use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
 
-/// Whether a problem keeps the scene from being read.
+/// Whether a problem prevents the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Severity {
-    /// There is no scene.
+    /// The scene cannot be read.
     Error,
-    /// There is one, perhaps not the one that was meant.
+    /// The scene can be read, but is perhaps not the one that was meant.
     Warning,
 }
 
 impl Severity {
-    /// The word that stands before the message: `error` or `warning`.
+    /// Returns the word that stands before the message: `error` or `warning`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -44,43 +44,41 @@ impl Severity {
 /// A problem of a scene: what is wrong, where, and a way out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How grave it is.
+    /// Its severity.
     pub severity: Severity,
-    /// What kind of problem it is, such as `pinhole::unknown_field`.
+    /// The code of the kind of problem, such as `pinhole::unknown_field`.
     pub code: String,
-    /// What is wrong, in the scene's own words; it stands alone.
+    /// What is wrong, in the scene's own words; a sentence that stands alone.
     pub message: String,
-    /// What to do.
+    /// What to do about it.
     pub help: Option<String>,
-    /// The places that explain it; the first one is the place to jump to.
+    /// The places that explain the problem; the first one is the place to jump to.
     pub labels: Vec<Label>,
-    /// The ways out that are edits, the likeliest first.
+    /// The fixes, the likeliest first.
     pub fixes: Vec<Fix>,
-    /// Whether what stands at the place to jump to could be left out without any change of
-    /// meaning.
+    /// Whether the text at the place to jump to can be left out without any change of meaning.
     pub is_needless: bool,
-    /// Whether the text cannot be taken apart, whatever its names mean.
+    /// Whether the problem is one of syntax, whatever the names mean.
     pub is_of_syntax: bool,
 }
 
-/// A place with a few words.
+/// A place with a short explanation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// The words.
+    /// The explanation.
     pub message: String,
 }
 
 impl Diagnostic {
-    /// Whether it is an error.
+    /// Returns whether the severity is an error.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
 }
 
-/// Puts diagnostics in the order of the text by the place to jump to, the file's before the
-/// arguments'.
+/// Sorts diagnostics by the place to jump to: those of the file come before those of the arguments.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();
@@ -91,15 +89,13 @@ pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     });
 }
 
-/// Every diagnostic as a line of JSON, as the command line's contract says.
+/// Returns every diagnostic as a line of JSON, as the command line's contract says.
 pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
-    let lines = diagnostics
-        .iter()
-        .map(|diagnostic| to_json(diagnostic, sources));
+    let lines = diagnostics.iter().map(|it| to_json(it, sources));
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// A diagnostic as a JSON value.
+/// Returns a diagnostic as a JSON value.
 pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     let labels = diagnostic.labels.iter().map(|label| {
         let source = sources.get(label.span.source);
@@ -137,7 +133,7 @@ pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     })
 }
 
-/// A place in the text; of an argument, with its name.
+/// Returns a place in the text as JSON; for an argument, with its name.
 fn place(span: Span, source: &Source) -> Value {
     let (offset, length) = (span.start, span.end - span.start);
     match span.source {
@@ -146,15 +142,15 @@ fn place(span: Span, source: &Source) -> Value {
     }
 }
 
-/// A span that lies in its source, between characters: whatever a stage says, no printer reaches
-/// past the text.
+/// Clamps a span to its source and to character boundaries, so that no printer reaches past the
+/// text.
 fn clamp(span: Span, source: &Source) -> Span {
     let start = source.floor_char_boundary(span.start);
     let end = source.floor_char_boundary(span.end.max(start));
     Span::new(span.source, start, end)
 }
 
-/// How many errors and warnings there are, such as `2 errors, 1 warning`.
+/// Returns the number of errors and warnings, such as `2 errors, 1 warning`.
 pub fn summary(diagnostics: &[Diagnostic]) -> String {
     let cut = usize::from(diagnostics.iter().any(|d| d.message == problems::LEFT_OUT));
     let errors = diagnostics.iter().filter(|d| d.is_error()).count() - cut;

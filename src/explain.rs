@@ -1,19 +1,19 @@
-//! What every diagnostic code means: a page for each, with a wrong scene, the right one, and why
-//! the language has the rule.
+//! Explanations of the diagnostic codes: a page for each, with a wrong scene, the right one, and
+//! the reason for the rule.
 //!
-//! The pages are the files in `grammar/codes`, in Markdown of a fixed form: a title, what the
-//! mistake is, and the sections *Wrong*, *Right* and *Why*. The tests hold the codes of the stages
-//! and the pages together, and read the scenes: a wrong one has that mistake and no other, a right
-//! one none. How a page is shown (terminal, editor) is for others to say.
+//! The pages are the files in `grammar/codes`, Markdown of a fixed form: a title, a description of
+//! the mistake, and the sections *Wrong*, *Right* and *Why*. The tests compare the codes of the
+//! stages with the pages, and read the scenes: a wrong one must have that mistake and no other, a
+//! right one none. The caller decides how a page is shown (terminal, editor).
 
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
-/// What to do with a scene of a program whose z points away from the viewer, or up.
+/// Conversion of a scene of a program whose z points away from the viewer, or up.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// What others call things, with the heading of the reference or the word of the language where
-/// they are explained; behind a colon, the item or paragraph there starts so.
+/// Names that other programs use, with the heading of the reference or the word of the language
+/// that explains them. Text behind a colon is the start of an item or paragraph there.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
@@ -106,7 +106,7 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("ball.x", "limits: A part of a vector"),
 ];
 
-/// A section of the reference by its heading, whatever its case, with all that is below it.
+/// Returns the section of the reference with a heading, whatever its case.
 pub fn section(heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
@@ -127,8 +127,8 @@ pub fn section(heading: &str) -> Option<&'static str> {
     start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
 }
 
-/// The item or paragraph of a section that starts with some words, under the section's heading, and
-/// where the rest is.
+/// Returns the item or paragraph of a section that starts with some words, with the section's
+/// heading and a reference to the rest. Returns `None` if there is none.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();
@@ -146,18 +146,18 @@ pub fn part(heading: &str, words: &str) -> Option<String> {
     ))
 }
 
-/// The headings of the reference's sections.
+/// Returns the headings of the reference's sections.
 pub fn headings() -> impl Iterator<Item = &'static str> {
     let lines = LANGUAGE.lines();
     lines.filter_map(|line| line.strip_prefix("## "))
 }
 
-/// Pages on one subject.
+/// Pages about one subject.
 #[derive(Debug)]
 pub struct Group {
     /// The subject.
     pub name: &'static str,
-    /// Its pages, in the order in which one would teach them.
+    /// The pages, in the order in which one would teach them.
     pub pages: &'static [Page],
 }
 
@@ -170,19 +170,18 @@ pub struct Page {
     pub text: &'static str,
 }
 
-/// The page of a code, which may be written as a report does, or without what stands around it
-/// there.
+/// Returns the page of a code, in any form that [`short`] accepts.
 pub fn page(code: &str) -> Option<&'static Page> {
     let code = short(code);
     pages().find(|page| page.code == code)
 }
 
-/// All pages.
+/// Returns all pages.
 pub fn pages() -> impl Iterator<Item = &'static Page> {
     GROUPS.iter().flat_map(|group| group.pages)
 }
 
-/// The code without what stands around it in a report: `error[pinhole::bare_angle]` is
+/// Returns the bare code of a code as a report shows it: `error[pinhole::bare_angle]` is
 /// `bare_angle`.
 pub fn short(code: &str) -> &str {
     let inner = code.trim().trim_end_matches(':').strip_suffix(']');
@@ -195,17 +194,17 @@ pub fn short(code: &str) -> &str {
 }
 
 impl Page {
-    /// The sentence at the top of the page.
+    /// Returns the sentence at the top of the page.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.strip_prefix("# ").unwrap_or(first)
     }
 }
 
-/// A line for each subject, with the codes of its pages.
+/// Defines `GROUPS`: each line has a subject and the codes of its pages.
 macro_rules! groups {
     ($($name:literal: $($code:ident)*;)*) => {
-        /// Every page, by subject.
+        /// All pages, by subject.
         pub const GROUPS: &[Group] = &[$(Group {
             name: $name,
             pages: &[$(Page {

@@ -1,8 +1,9 @@
-//! Numbers as people read them.
+//! Formats numbers for people.
 
 use glam::DVec3;
 
-/// A number with six significant digits at most: what a person wants to see of a computed one.
+/// Formats a number with at most six significant digits, which is what people want to see of a
+/// computed number.
 pub fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
@@ -29,13 +30,13 @@ pub fn short(x: f64) -> String {
     trimmed(&format!("{x:.decimals$}")).to_owned()
 }
 
-/// A number rounded to so many significant digits.
+/// Rounds a number to `digits` significant digits.
 pub fn significant(x: f64, digits: usize) -> f64 {
     let after = digits.saturating_sub(1);
     format!("{x:.after$e}").parse().unwrap_or(x)
 }
 
-/// A bound with two significant digits that is no less.
+/// Formats a bound, rounded up to two significant digits.
 pub fn at_most(bound: f64) -> String {
     if bound == 0.0 {
         return "0".to_owned();
@@ -43,8 +44,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // One more in the last digit: a sum of two numbers of a digit after the point rounds to
-        // what it is.
+        // Adds one unit of the last digit: the sum of two numbers with one decimal rounds to the
+        // right one.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
@@ -54,7 +55,7 @@ pub fn at_most(bound: f64) -> String {
     }
 }
 
-/// A number that is compared with others: short, unless the digits that are left out decide.
+/// Formats a number that is compared with others: short, unless that would change a comparison.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
@@ -66,17 +67,17 @@ pub fn beside(x: f64, others: &[f64]) -> String {
     }
 }
 
-/// A number with as few decimals as do where it may be off by so much.
+/// Rounds a number to the decimals that are meaningful for an error.
 pub fn rounded(x: f64, error: f64) -> f64 {
     if !(error > 0.0 && error.is_finite()) {
         return x;
     }
     let decimals = (-libm::log10(error).floor()).clamp(0.0, 12.0) as usize;
-    // Without −0.
+    // Adding 0 turns −0 into 0.
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }
 
-/// Decimals without the zeros at their end.
+/// Removes the zeros at the end of decimals.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
         digits.trim_end_matches('0').trim_end_matches('.')
@@ -85,12 +86,12 @@ fn trimmed(digits: &str) -> &str {
     }
 }
 
-/// A vector or point in the language's notation, with [`short`] numbers.
+/// Formats a vector or point in the language's notation, with [`short`] numbers.
 pub fn short_vector(v: DVec3) -> String {
     format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
 }
 
-/// A count with its digits in groups of three.
+/// Formats a count with its digits in groups of three.
 pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();

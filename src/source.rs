@@ -1,15 +1,15 @@
 //! Texts and places in them.
 //!
-//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene comes from
-//! one file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
-//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed here, when
-//! something is printed.
+//! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene has one
+//! file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
+//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed when something
+//! is printed.
 
 use std::{ops::Range, sync::OnceLock};
 
 use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 
-/// Which text a span points into. The file comes before the arguments, and they come in their
+/// The text that a span points into. The file is ordered before the arguments, which keep their
 /// order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
@@ -22,7 +22,7 @@ pub enum SourceId {
 /// A half-open range of bytes in one source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
-    /// The text it lies in.
+    /// The text that contains the span.
     pub source: SourceId,
     /// First byte.
     pub start: usize,
@@ -31,17 +31,17 @@ pub struct Span {
 }
 
 impl Span {
-    /// The bytes from `start` to `end` of `source`.
+    /// Returns the bytes from `start` to `end` of `source`.
     pub fn new(source: SourceId, start: usize, end: usize) -> Self {
         Self { source, start, end }
     }
 
-    /// The byte range without its source.
+    /// Returns the byte range without its source.
     pub fn range(self) -> Range<usize> {
         self.start..self.end
     }
 
-    /// The smallest span that holds both; they lie in one source.
+    /// Returns the smallest span that holds both; they lie in one source.
     pub fn to(self, other: Self) -> Self {
         debug_assert_eq!(self.source, other.source);
         Self::new(
@@ -52,9 +52,9 @@ impl Span {
     }
 }
 
-/// Puts a list in the order of the text, by the spans of what is in it.
+/// Sorts a list by the spans of its elements.
 ///
-/// One sort of numbers serves lists of all types: a sort for each would be a fiftieth of the
+/// One sort of numbers serves lists of all types: a sort for each type would take a fiftieth of the
 /// engine's code that a browser loads.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
@@ -62,14 +62,14 @@ pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     list.extend(order.into_iter().filter_map(|at| taken[at].take()));
 }
 
-/// The indices of spans, in the order of the text; of equal ones, in that of the list.
+/// Returns the indices of spans, sorted by span; equal spans keep their order.
 fn order(spans: &[Span]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..spans.len()).collect();
     order.sort_by_key(|&at| spans[at]);
     order
 }
 
-/// The texts that a scene is made from.
+/// The texts of a scene.
 #[derive(Clone, Debug)]
 pub struct Sources {
     /// The scene file.
@@ -79,7 +79,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// A file without overrides.
+    /// Makes the sources of a file without arguments.
     pub fn new(file: Source) -> Self {
         Self {
             file,
@@ -87,13 +87,13 @@ impl Sources {
         }
     }
 
-    /// Adds one `--set` argument; it is named `--set #1`, `--set #2` and so on, as it comes.
+    /// Adds a `--set` argument; the arguments are named `--set #1`, `--set #2` and so on.
     pub fn push_set(&mut self, argument: &str) {
         let name = format!("--set #{}", self.sets.len() + 1);
         self.sets.push(Source::from_text(name, argument));
     }
 
-    /// The same with these `--set` arguments at the end.
+    /// Adds `--set` arguments at the end.
     pub fn with_sets<S: AsRef<str>>(mut self, arguments: impl IntoIterator<Item = S>) -> Self {
         for argument in arguments {
             self.push_set(argument.as_ref());
@@ -101,13 +101,13 @@ impl Sources {
         self
     }
 
-    /// The `--set` arguments, and what spans call them.
+    /// Returns the `--set` arguments with their identifiers.
     pub fn sets(&self) -> impl Iterator<Item = (SourceId, &Source)> {
         let sets = (0..).zip(&self.sets);
         sets.map(|(index, set)| (SourceId::Set(index), set))
     }
 
-    /// The text that a span points into; the file for an argument that does not exist.
+    /// Returns the text of a source; the file's if there is no such argument.
     pub fn get(&self, id: SourceId) -> &Source {
         let set = match id {
             SourceId::File => None,
@@ -116,7 +116,7 @@ impl Sources {
         set.unwrap_or(&self.file)
     }
 
-    /// The text under a span.
+    /// Returns the text under a span.
     pub fn text(&self, span: Span) -> &str {
         self.get(span.source).slice(span.range())
     }
@@ -124,7 +124,7 @@ impl Sources {
 
 /// A line and a column, both counted from 1; columns count characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct LineColumn {
     /// The line.
     pub line: usize,
     /// The column.
@@ -141,8 +141,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// A text from a file's bytes, offset for offset: a byte that is not UTF-8 becomes a `_`, and
-    /// is remembered in [`Source::invalid_utf8`].
+    /// Makes a source of a file's bytes, and keeps their offsets: a byte that is not UTF-8 becomes
+    /// a `_`, and [`Source::invalid_utf8`] has its offset.
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let (text, invalid) = match String::from_utf8(bytes) {
             Ok(text) => (text, Vec::new()),
@@ -156,33 +156,34 @@ impl Source {
         }
     }
 
-    /// A text that is known to be one.
+    /// Makes a source of a text.
     pub fn from_text(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self::from_bytes(name, text.into().into_bytes())
     }
 
-    /// What reports call it: the file's path as it was given, `-` for standard input, `--set #1`.
+    /// Returns the name in reports: the file's path as it was given, `-` for standard input, or
+    /// `--set #1`.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The text between two offsets; nothing where they are no places between characters.
+    /// Returns the text between two offsets; an empty text if they are not at character boundaries.
     pub fn slice(&self, range: Range<usize>) -> &str {
         self.text.get(range).unwrap_or_default()
     }
 
-    /// The offsets of the bytes that are not UTF-8, in ascending order.
+    /// Returns the offsets of the bytes that are not UTF-8, in ascending order.
     pub fn invalid_utf8(&self) -> &[usize] {
         &self.invalid
     }
 
-    /// Whether the file is UTF-16, with its mark or without: what people write is mostly ASCII, of
-    /// which every second byte is zero, and no other one.
+    /// Returns whether the file is UTF-16, with or without a byte order mark: most scenes are
+    /// ASCII, where every second byte of UTF-16 is zero, and no other one.
     pub fn is_utf16(&self) -> bool {
         const LOOKED_AT: usize = 256;
         let bytes = self.text.as_bytes();
@@ -198,25 +199,22 @@ impl Source {
         start.len() >= 4 && even.min(odd) == 0 && even.max(odd) > start.len() / 4
     }
 
-    /// The bytes that a byte order mark takes at the start of the text: 3 or 0.
+    /// Returns the length of the byte order mark at the start of the text, in bytes: 3 or 0.
     pub fn bom_len(&self) -> usize {
-        if self.text.starts_with(BOM) {
-            BOM.len_utf8()
-        } else {
-            0
-        }
+        usize::from(self.text.starts_with(BOM)) * BOM.len_utf8()
     }
 
-    /// What ends the text's lines: CRLF if it ends the first of them, or else LF.
+    /// Returns the line end of the text: CRLF if its first line ends with one, or else LF.
     pub fn line_end(&self) -> &'static str {
         let rest = self.text.get(self.line_range(1).end..);
-        match rest.is_some_and(|rest| rest.starts_with("\r\n")) {
-            true => "\r\n",
-            false => "\n",
+        if rest.is_some_and(|rest| rest.starts_with("\r\n")) {
+            "\r\n"
+        } else {
+            "\n"
         }
     }
 
-    /// The bytes of a line, counted from 1, without the LF or CRLF at its end.
+    /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end.
     pub fn line_range(&self, line: usize) -> Range<usize> {
         let index = u32::try_from(line.saturating_sub(1)).ok();
         let Some(range) = index.and_then(|index| self.lines().line(index)) else {
@@ -229,29 +227,26 @@ impl Source {
         start..start + line.len()
     }
 
-    /// The line that an offset lies in, counted from 1.
+    /// Returns the line that contains an offset, counted from 1.
     pub fn line(&self, offset: usize) -> usize {
         self.line_col(offset).line as usize + 1
     }
 
-    /// Line and column of an offset. A byte order mark has no column. An offset past the end counts
-    /// as the end, one inside a character as the start of that character.
-    pub fn place(&self, offset: usize) -> Place {
+    /// Returns line and column of an offset. A byte order mark has no column. An offset past the
+    /// end counts as the end, and one inside a character as the start of that character.
+    pub fn place(&self, offset: usize) -> LineColumn {
         let place = self.line_col(offset);
         let characters = self.lines().to_wide(WideEncoding::Utf32, place);
         let before = characters.map_or(place.col, |place| place.col) as usize;
-        let mark = match place.line {
-            0 if self.bom_len() > 0 => 1,
-            _ => 0,
-        };
-        Place {
+        let mark = usize::from(place.line == 0 && self.bom_len() > 0);
+        LineColumn {
             line: place.line as usize + 1,
             column: before.saturating_sub(mark) + 1,
         }
     }
 
-    /// Line and column of an offset, both counted from 0, the column in bytes; of offsets that are
-    /// none as [`Self::place`] has it.
+    /// Returns line and column of an offset, both counted from 0, and the column in bytes. Offsets
+    /// outside the text or inside a character are treated as by [`Self::place`].
     pub fn line_col(&self, offset: usize) -> LineCol {
         let offset = self.floor_char_boundary(offset);
         let offset = u32::try_from(offset).ok().map(TextSize::from);
@@ -259,12 +254,12 @@ impl Source {
         place.unwrap_or(LineCol { line: 0, col: 0 })
     }
 
-    /// Where lines begin, and which characters in them take more than a byte.
+    /// Returns the index of the line starts and of the characters that take more than a byte.
     pub fn lines(&self) -> &LineIndex {
         self.lines.get_or_init(|| LineIndex::new(&self.text))
     }
 
-    /// The greatest place between characters that is not past an offset.
+    /// Returns the greatest character boundary that is not past an offset.
     pub fn floor_char_boundary(&self, offset: usize) -> usize {
         let mut offset = offset.min(self.text.len());
         while !self.text.is_char_boundary(offset) {

@@ -1,25 +1,25 @@
 //! The nearest name.
 //!
-//! In: what was written and what could stand there. Out: the one that was probably meant, if any is
-//! near.
+//! In: what was written and what could stand there. Out: the name that was probably meant, if one
+//! is near.
 
 use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// How many names may still be compared: a text with as many mistakes as names would take the time
-/// of all pairs.
+/// Number of comparisons that are left. Without a limit, a text with as many mistakes as names
+/// would take time for all pairs.
 #[derive(Debug)]
-pub struct Budget(Cell<usize>);
+pub struct ComparisonBudget(Cell<usize>);
 
-impl Default for Budget {
+impl Default for ComparisonBudget {
     fn default() -> Self {
         Self(Cell::new(500_000))
     }
 }
 
-impl Budget {
-    /// Whether so many names may be compared; if so, they count as compared.
+impl ComparisonBudget {
+    /// Reserves comparisons with a number of names. Returns whether as many are left.
     pub fn spend(&self, names: usize) -> bool {
         let left = self.0.get().checked_sub(names);
         self.0.set(left.unwrap_or(self.0.get()));
@@ -27,8 +27,8 @@ impl Budget {
     }
 }
 
-/// The nearest of the candidates, if it is near: the same but for upper and lower case, or about
-/// one slip for every three letters. Of equally near ones the first.
+/// Returns the nearest of the candidates, if it is near: equal except for case, or about one slip
+/// for every three letters. Of equally near ones, returns the first.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -36,8 +36,8 @@ pub fn nearest<'c>(
     nearest_of(written, &mut candidates.into_iter())
 }
 
-/// The same of names of values and functions. One or two letters are seldom a slip, so that such a
-/// name becomes none of other letters.
+/// Returns the nearest name of a value or a function, as [`nearest`] does. A name of one or two
+/// letters is seldom a slip, so only its case may differ.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -49,9 +49,9 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Whether no other candidate is as near to what was written as this one, which is the nearest. A
-/// name of other digits is another name, and words that stand apart are one only if they have its
-/// letters.
+/// Returns whether `near`, the nearest of the candidates, is nearer to what was written than every
+/// other. Returns false if the digits differ, as that is another name, or if separate words do not
+/// have the letters of the name.
 pub fn is_only_near<'c>(
     written: &str,
     near: &str,
@@ -63,7 +63,7 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    // What stands behind it may be its value, without a space between.
+    // The rest may be the value, without a space before it.
     let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
     if is_longer
         || digits(&written) != digits(near)
@@ -75,9 +75,10 @@ pub fn is_only_near<'c>(
     least == 0 || candidates.all(|other| other == near || slips(other) > least)
 }
 
-/// Apart from what is generic, so that it is compiled once.
+/// Finds the nearest candidate. A function that is not generic, so that it is compiled once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
-    // A name that nobody would mistype so: comparing it would only take long.
+    // Maximum length of a name, in characters: a longer one is no slip, and would take long to
+    // compare.
     const LONGEST: usize = 64;
     let length = written.chars().take(LONGEST + 1).count();
     if length == 0 || length > LONGEST {
@@ -100,7 +101,8 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     best.map(|(_, candidate)| candidate)
 }
 
-/// Whether it is one of some words, but for capitals and `_`: `lookAt` and `look_at` are one word.
+/// Returns whether a name is one of some words, except for case and `_`: `lookAt` and `look_at` are
+/// one word.
 pub fn is_among(written: &str, words: &str) -> bool {
     fn letters(word: &str) -> impl Iterator<Item = u8> {
         let letters = word.bytes().filter(|byte| *byte != b'_');
@@ -110,7 +112,7 @@ pub fn is_among(written: &str, words: &str) -> bool {
     words.any(|word| letters(word).eq(letters(written)))
 }
 
-/// The words that a name is made of: `near_clip` and `nearClip` are near and clip.
+/// Returns the words of a name: `near_clip` and `nearClip` both consist of near and clip.
 pub fn words(name: &str) -> Vec<&str> {
     let mut words = Vec::new();
     for part in name.split('_') {
@@ -128,12 +130,12 @@ pub fn words(name: &str) -> Vec<&str> {
     words
 }
 
-/// Names in a sentence: `a`, `a and b`, `a, b and c`.
+/// Returns names as part of a sentence: `a`, `a and b`, `a, b and c`.
 pub fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     join(names.into_iter().collect(), "and")
 }
 
-/// Names to choose from in a sentence: `a`, `a or b`, `a, b or c`.
+/// Returns alternatives as part of a sentence: `a`, `a or b`, `a, b or c`.
 pub fn choice<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     join(names.into_iter().collect(), "or")
 }

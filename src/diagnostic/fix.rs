@@ -1,27 +1,25 @@
-//! Ways out of a problem that a program can take: edits of the text.
+//! Fixes: edits of the text that solve a problem.
 
 use crate::source::{SourceId, Sources, Span, sort_by_span};
 
-/// What a fix does to what the author wrote, and so who may apply it. The later ones include what
-/// the earlier ones may do.
+/// What a fix does to the author's text, and so who may apply it. A later variant permits
+/// everything that an earlier one does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
-    /// All that was written stays, and there is one plausible meaning: it can be applied without
-    /// being asked.
+    /// Everything that was written stays, and there is one plausible meaning: the fix can be
+    /// applied without asking.
     Safe,
-    /// One of several meanings is chosen, or something that was written is removed or changed.
+    /// One of several meanings is chosen, or something that was written is removed or changed: the
+    /// author decides.
     Unsafe,
-    /// A value is made up, which the author is to replace.
+    /// The fix contains an example value, which the author must replace.
     Placeholder,
 }
 
 impl Applicability {
-    /// Safe or not.
+    /// Returns [`Self::Safe`] or [`Self::Unsafe`].
     pub const fn safe_if(is_safe: bool) -> Self {
-        match is_safe {
-            true => Self::Safe,
-            false => Self::Unsafe,
-        }
+        if is_safe { Self::Safe } else { Self::Unsafe }
     }
 
     /// Its word in JSON.
@@ -34,36 +32,36 @@ impl Applicability {
     }
 }
 
-/// One way out.
+/// A way to solve a problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
-    /// What it does, as a request: "write `30deg`".
+    /// What the fix does, as a request: "write `30deg`".
     pub title: String,
-    /// Who may apply it.
+    /// Who may apply the fix.
     pub applicability: Applicability,
-    /// What has to be changed; the places do not overlap.
+    /// The changes; their places do not overlap.
     pub edits: Vec<Edit>,
 }
 
-/// A change of a text. As spans do, it says which: the file, or a `--set` argument.
+/// A change of a text: of the file or a `--set` argument, as its span says.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Edit {
-    /// What is replaced; an empty span is a place to insert at.
+    /// The place to replace; an empty span is a place to insert at.
     pub span: Span,
-    /// What stands there afterwards.
+    /// The new text.
     pub text: String,
 }
 
 impl Fix {
-    /// A way out that takes these edits. It is unsafe unless whoever makes it says otherwise.
+    /// Makes a fix of edits. It is unsafe unless the caller changes its applicability.
     pub fn new(title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Self {
         Self::sorted(title.into(), edits.into_iter().collect())
     }
 
-    /// Apart from what is generic, so that sorting is compiled once.
+    /// Sorts the edits. A function that is not generic, so that it is compiled once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // Removals take the space beside them along; two neighbours take it once.
+        // Removals include the space beside them; of two neighbours only the first one does.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;
@@ -79,27 +77,27 @@ impl Fix {
         }
     }
 
-    /// The same with another applicability.
-    pub fn being(self, applicability: Applicability) -> Self {
+    /// Changes the applicability.
+    pub fn with_applicability(self, applicability: Applicability) -> Self {
         Self {
             applicability,
             ..self
         }
     }
 
-    /// The same, which keeps all that was written and has one meaning.
+    /// Marks the fix as safe: it keeps everything that was written and has one meaning.
     pub fn safe(self) -> Self {
-        self.being(Applicability::Safe)
+        self.with_applicability(Applicability::Safe)
     }
 
-    /// The same, whose value is made up.
+    /// Marks the fix as one with an example value.
     pub fn placeholder(self) -> Self {
-        self.being(Applicability::Placeholder)
+        self.with_applicability(Applicability::Placeholder)
     }
 
-    /// Makes it unsafe if it takes a comment of the text away with something else, or joins two
-    /// words.
-    pub fn mind(&mut self, sources: &Sources) {
+    /// Marks the fix as unsafe if it removes a comment of the text together with something else, or
+    /// joins two words.
+    pub fn make_careful(&mut self, sources: &Sources) {
         let mut edits = self.edits.iter();
         if self.is_safe()
             && edits.any(|edit| edit.is_careless(sources.get(edit.span.source).text()))
@@ -108,35 +106,36 @@ impl Fix {
         }
     }
 
-    /// Whether it can be applied without being asked.
+    /// Returns whether the fix can be applied without asking.
     pub fn is_safe(&self) -> bool {
         self.applicability == Applicability::Safe
     }
 
-    /// Writes something else in a place; the title is what is written.
+    /// Makes the fix that replaces a place, with a title that says so.
     pub fn write(span: Span, text: impl Into<String>) -> Self {
         let text = text.into();
         Self::new(format!("write `{text}`"), [Edit::new(span, text)])
     }
 
-    /// Takes away what stands in a place.
+    /// Makes the fix that removes a place.
     pub fn remove(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         Self::new(title, [Edit::remove(span, sources)])
     }
 
-    /// Takes away a field or an item as a whole: with the comments on its lines where nothing else
-    /// stands on them, as they speak of it.
+    /// Makes the fix that removes a whole field or item. Comments on its lines, if nothing else
+    /// stands there, are removed, too, as they are about it.
     pub fn remove_whole(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         let whole = with_comments(span, sources);
-        let title = match whole == span {
-            true => title.into(),
-            false => title.into() + ", with its comment",
+        let title = if whole == span {
+            title.into()
+        } else {
+            title.into() + ", with its comment"
         };
         Self::remove(title, whole, sources)
     }
 }
 
-/// A place with the comments behind it, if there is nothing else on its lines.
+/// Extends a place to the comments behind it, if nothing else stands on its lines.
 fn with_comments(span: Span, sources: &Sources) -> Span {
     let text = sources.get(span.source).text();
     let after = text.get(span.end..).unwrap_or_default();
@@ -150,18 +149,18 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Whether nothing stands in a line before what follows this text.
+/// Returns whether the line up to the end of this text is blank.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
 }
 
-/// Whether nothing stands in a line before this rest of the text.
+/// Returns whether the text starts with the end of a line.
 fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// What follows the comments and blanks at the start of a text, up to the end of their line.
+/// Skips the comments and blanks at the start of a text, up to the end of their line.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {
@@ -181,19 +180,19 @@ fn past_comments(text: &str) -> &str {
 }
 
 impl Edit {
-    /// Replaces what stands in a place.
+    /// Makes the edit that replaces a place.
     pub fn new(span: Span, text: impl Into<String>) -> Self {
         let text = text.into();
         Self { span, text }
     }
 
-    /// Inserts before a byte of the text.
+    /// Makes the edit that inserts a text before a byte.
     pub fn insert(source: SourceId, at: usize, text: impl Into<String>) -> Self {
         Self::new(Span::new(source, at, at), text)
     }
 
-    /// Adds fields at the end of a block that stands in the file: on its line, or on lines of their
-    /// own.
+    /// Makes the edit that adds fields at the end of a block: on its line, or on lines of their
+    /// own. Returns `None` if the block is not in the file or not closed.
     pub fn add_fields(block: Span, sources: &Sources, fields: &[String]) -> Option<Self> {
         if block.source != SourceId::File {
             return None;
@@ -206,14 +205,13 @@ impl Edit {
         let (end, added) = match gap.rsplit_once('\n') {
             Some((_, indent)) => {
                 let last = tight.lines().next_back()?;
-                // On the line that the block starts on, a comment or a field may stand behind the
-                // `{`.
-                let deeper = match last.ends_with('{') || !tight.contains('\n') {
-                    true => format!("{indent}  "),
-                    false => last.chars().take_while(|c| c.is_whitespace()).collect(),
+                // In the first line of the block, a comment or a field may stand behind the `{`.
+                let deeper = if last.ends_with('{') || !tight.contains('\n') {
+                    format!("{indent}  ")
+                } else {
+                    last.chars().take_while(|c| c.is_whitespace()).collect()
                 };
-                let lines = fields.iter();
-                let lines = lines.map(|field| format!("{line_end}{deeper}{field}"));
+                let lines = fields.iter().map(|it| format!("{line_end}{deeper}{it}"));
                 (at, lines.collect())
             }
             None if tight.ends_with('{') => (at + gap.len(), format!(" {} ", fields.join("  "))),
@@ -222,23 +220,19 @@ impl Edit {
         Some(Self::new(Span::new(SourceId::File, at, end), added))
     }
 
-    /// Takes away what stands in a place: the whole line if nothing else stands on it, or else the
-    /// blanks on one side too. What stood on both sides of it stays apart.
+    /// Makes the edit that removes a place: the whole line if nothing else stands on it, or else
+    /// with the blanks on one side. The words on both sides stay apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {
         Self::remove_in(span, sources.get(span.source).text())
     }
 
-    /// The same in a text.
+    /// Makes the edit that removes a place, as [`Self::remove`] does, in a text.
     pub fn remove_in(span: Span, text: &str) -> Self {
         let Span { source, start, end } = span;
-        let (before, after) = (
-            text.get(..start).unwrap_or_default(),
-            text.get(end..).unwrap_or_default(),
-        );
-        let (outer, rest) = (
-            before.trim_end_matches(BLANK),
-            after.trim_start_matches(BLANK),
-        );
+        let before = text.get(..start).unwrap_or_default();
+        let after = text.get(end..).unwrap_or_default();
+        let outer = before.trim_end_matches(BLANK);
+        let rest = after.trim_start_matches(BLANK);
         let (line_starts, line_ends) = (starts_line(before), ends_line(rest));
         if line_starts && line_ends {
             let line_end = rest.find('\n').map_or(rest.len(), |at| at + 1);
@@ -253,16 +247,15 @@ impl Edit {
         let joins = outer.ends_with(is_word) && after.starts_with(is_begin);
         let length = text.len();
         let text = if joins { " " } else { "" };
-        let end = match rest.starts_with([')', ']', ',']) {
-            true => length - rest.len(),
-            false => end,
+        let end = if rest.starts_with([')', ']', ',']) {
+            length - rest.len()
+        } else {
+            end
         };
         Self::new(Span::new(source, outer.len(), end), text)
     }
-}
 
-impl Edit {
-    /// Whether it takes a comment away with something else, or joins two words.
+    /// Returns whether the edit removes a comment together with something else, or joins two words.
     fn is_careless(&self, text: &str) -> bool {
         let is_comment = |sign: &str| {
             let rest = |text: &str| text.find(sign).map(|at| text.len() - at - sign.len());
@@ -273,12 +266,15 @@ impl Edit {
         let before = text.get(..self.span.start).unwrap_or_default();
         let after = text.get(self.span.end..).unwrap_or_default();
         let taken = text.get(self.span.range()).unwrap_or_default();
-        let joins = |middle: &str| match middle.is_empty() {
-            true => [before.ends_with(is_word) && after.starts_with(is_word); 2],
-            false => [
-                before.ends_with(is_word) && middle.starts_with(is_word),
-                middle.ends_with(is_word) && after.starts_with(is_word),
-            ],
+        let joins = |middle: &str| {
+            if middle.is_empty() {
+                [before.ends_with(is_word) && after.starts_with(is_word); 2]
+            } else {
+                [
+                    before.ends_with(is_word) && middle.starts_with(is_word),
+                    middle.ends_with(is_word) && after.starts_with(is_word),
+                ]
+            }
         };
         let (old, new) = (joins(taken), joins(&self.text));
         ["//", "/*", "# ", "--"].into_iter().any(is_comment)
@@ -286,7 +282,7 @@ impl Edit {
     }
 }
 
-/// A text with the edits of a fix that are for it.
+/// Applies those edits of a fix that belong to a source to its text.
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

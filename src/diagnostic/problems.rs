@@ -1,7 +1,7 @@
-//! The problems that a stage has found so far, of which it keeps a limited number.
+//! A stage's problems, limited in number.
 //!
-//! A megabyte of signs may hold a million mistakes, and what is said of one takes a thousand times
-//! its text in memory; nobody reads the hundredth.
+//! A megabyte of signs may contain a million mistakes, and the report of one takes a thousand times
+//! the memory of its text; nobody reads the hundredth.
 
 use std::ops::{Deref, DerefMut};
 
@@ -11,19 +11,19 @@ use crate::source::Span;
 /// Maximum number of problems that a stage reports, and of places that one fix changes.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// What is said in place of the others; it is none of the mistakes itself.
+/// Message in place of the problems that are left out; it is not a mistake itself.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
-/// The problems that a stage has found, as far as there is room.
+/// A stage's problems, at most [`MOST_PROBLEMS`].
 #[derive(Debug, Default)]
 pub struct Problems {
     kept: Vec<Diagnostic>,
-    /// Where the first one is that was left out.
+    /// The place of the first problem that was left out.
     left_out: Option<Span>,
 }
 
 impl Problems {
-    /// Adds one, if there is room, and none was left out before it.
+    /// Adds a problem, unless the limit is reached or one was left out before it.
     pub fn push(&mut self, problem: Diagnostic) {
         if self.is_full() {
             return;
@@ -35,29 +35,29 @@ impl Problems {
         }
     }
 
-    /// Adds one, if there is room, that was found before another was left out.
+    /// Adds a problem that was found before another one was left out, unless the limit is reached.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
         }
     }
 
-    /// Says that there is another one at a place, which is left out.
+    /// Records that a problem at a place is left out.
     pub fn leave_out(&mut self, span: Span) {
         self.left_out.get_or_insert(span);
     }
 
-    /// Whether one was left out, so that there is no use in looking for others.
+    /// Returns whether a problem was left out, so that looking for others is of no use.
     pub fn is_full(&self) -> bool {
         self.left_out.is_some()
     }
 
-    /// Forgets all but so many.
+    /// Removes the problems from index `length` on.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Takes away all but so many, which makes room again.
+    /// Removes and returns the problems from index `length` on, which makes room again.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;
@@ -66,7 +66,7 @@ impl Problems {
     }
 }
 
-/// All that are kept, and last that others are left out.
+/// Returns the problems; if others were left out, the last one says so.
 impl From<Problems> for Vec<Diagnostic> {
     fn from(Problems { mut kept, left_out }: Problems) -> Self {
         kept.extend(left_out.map(|span| Diagnostic {

@@ -1,7 +1,7 @@
 //! Reports for people.
 //!
-//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette,
-//! or narrated. Only the labelled lines are handed to miette, cut to what can be shown.
+//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette or
+//! narrated. miette receives only the labelled lines, cut to what can be shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write, ops::Range};
 
@@ -19,26 +19,26 @@ use crate::{
     source::{Source, SourceId, Sources, Span},
 };
 
-/// How reports for people are drawn.
+/// Style of the reports for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
-    /// Lines and corners, or words.
+    /// What the report is drawn with.
     pub drawing: Drawing,
     /// Whether the terminal shows colours.
     pub color: bool,
     /// The terminal's width in columns; help is wrapped to it.
     pub width: usize,
-    /// A terminal's columns for an excerpt: its lines are cut to them, and its labels and the
-    /// title are wrapped. Without a terminal only very long lines are cut.
+    /// Width of a terminal in columns, to which the lines of an excerpt are cut and its labels and
+    /// the title are wrapped. `None` without a terminal: only very long lines are cut.
     pub excerpt: Option<usize>,
 }
 
-/// What a report is drawn with.
+/// Characters that a report is drawn with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
-    /// ASCII only, as far as the scene itself is.
+    /// ASCII only, unless the scene has other characters.
     Ascii,
     /// No drawing: every label is a sentence, for screen readers.
     Narrated,
@@ -55,14 +55,14 @@ impl Default for Style {
     }
 }
 
-/// Draws diagnostics for people.
+/// Printer of diagnostics for people.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'s> {
     sources: &'s Sources,
     style: Style,
 }
 
-/// How many diagnostics there are of each kind, the most frequent kind first.
+/// Returns the number of diagnostics of each kind, the most frequent kind first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for diagnostic in diagnostics
@@ -80,18 +80,18 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl<'s> Report<'s> {
-    /// Of more reports than this, a terminal shows the first few, and how many there are of each
-    /// kind; JSON has them all.
+    /// Maximum number of reports that a terminal shows. Of more, it shows the first few and the
+    /// number of each kind; JSON has all of them.
     pub const MOST_SHOWN: usize = 100;
-    /// As many are shown then.
+    /// Number of reports that are shown if there are more than [`Self::MOST_SHOWN`].
     pub const FIRST_SHOWN: usize = 20;
 
-    /// Reports on these sources in this style.
+    /// Makes a printer for diagnostics of these sources.
     pub fn new(sources: &'s Sources, style: Style) -> Self {
         Self { sources, style }
     }
 
-    /// All reports, an empty line between, and how many there are.
+    /// Returns all reports, separated by empty lines, and their number.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();
@@ -129,7 +129,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// One report.
+    /// Returns the report of one diagnostic.
     pub fn one(&self, diagnostic: &Diagnostic) -> String {
         match self.style.drawing {
             Drawing::Narrated => self.narrated(diagnostic),
@@ -147,7 +147,7 @@ impl<'s> Report<'s> {
         let code = &diagnostic.code;
         let message = visible_line(&diagnostic.message);
         let title = format!("{on}{word}[{code}]:{off} {message}");
-        let columns = self.style.excerpt.map(|columns| columns.max(LEAST));
+        let columns = self.style.excerpt.map(|columns| columns.max(MIN_COLUMNS));
         let mut text = match columns {
             Some(columns) => {
                 let columns = textwrap::Options::new(columns).subsequent_indent("  ");
@@ -155,7 +155,7 @@ impl<'s> Report<'s> {
             }
             None => title + "\n",
         };
-        let excerpts = excerpts(diagnostic, self.sources, columns.unwrap_or(LONG_LINE));
+        let excerpts = excerpts(diagnostic, self.sources, columns.unwrap_or(LONG_LINE_BYTES));
         if excerpts.is_empty()
             && let Some(help) = &diagnostic.help
         {
@@ -173,7 +173,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// The lines of one source with their labels, drawn by miette.
+    /// Returns the labelled lines of one source, drawn by miette.
     fn snippet(&self, excerpt: Excerpt<'_>, help: Option<String>) -> String {
         let theme = match (self.style.drawing, self.style.color) {
             (Drawing::Unicode, true) => GraphicalTheme::unicode(),
@@ -234,7 +234,7 @@ impl<'s> Report<'s> {
     }
 }
 
-/// An excerpt as miette takes it.
+/// An excerpt in the form that miette takes.
 #[derive(Debug)]
 struct Snippet<'s> {
     excerpt: Excerpt<'s>,
@@ -265,8 +265,9 @@ impl miette::Diagnostic for Snippet<'_> {
 
 /// The labelled lines of one source, with long lines cut to the parts around the labels.
 ///
-/// miette reads it instead of the text: a line of ten megabytes is neither printed nor walked, and
-/// every label lies within it (miette leaves out a label at the end of a text, and panics past it).
+/// miette reads the excerpt instead of the text: a line of ten megabytes is neither printed nor
+/// scanned, and every label lies within it (miette omits a label at the end of a text, and panics
+/// at one past it).
 #[derive(Debug)]
 struct Excerpt<'s> {
     source: &'s Source,
@@ -277,29 +278,28 @@ struct Excerpt<'s> {
 
 #[derive(Debug)]
 struct ExcerptLine {
-    /// Its line in the source, from 1.
+    /// Line number in the source, from 1.
     number: usize,
-    /// Where it starts in the excerpt.
+    /// Start in the excerpt, in bytes.
     start: usize,
-    /// Where it ends in the excerpt, without its line feed.
+    /// End in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Where the characters that it shows stand, in the source and in the excerpt, and where they
-    /// end.
+    /// Offsets of each shown character in the source and in the excerpt, and those of the end.
     shown: Vec<(usize, usize)>,
 }
 
-/// Where no terminal says how wide it is, a line up to this length is shown whole.
-const LONG_LINE: usize = 160;
+/// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
+const LONG_LINE_BYTES: usize = 160;
 /// Minimum number of columns, however narrow the terminal is.
-const LEAST: usize = 30;
+const MIN_COLUMNS: usize = 30;
 /// Columns between a label and its message.
-const HOOK: usize = 4;
-/// A message has at least so many columns, wherever its label stands.
-const LEAST_MESSAGE: usize = 16;
-/// A label over more lines than this is drawn under its first line only.
-const MOST_LINES: usize = 6;
+const HOOK_COLUMNS: usize = 4;
+/// Minimum number of columns for a message, wherever its label stands.
+const MIN_MESSAGE_COLUMNS: usize = 16;
+/// Maximum number of lines of a label; a longer one is drawn under its first line only.
+const MAX_LABEL_LINES: usize = 6;
 
-/// An excerpt for every source that the labels lie in, in the order of the labels.
+/// Returns an excerpt of every source that has labels, in the order of the labels.
 fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -> Vec<Excerpt<'s>> {
     let mut ids: Vec<SourceId> = Vec::new();
     for label in &diagnostic.labels {
@@ -315,7 +315,7 @@ fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -
 }
 
 impl<'s> Excerpt<'s> {
-    /// With lines of at most so many columns, as bytes count them.
+    /// Makes the excerpt, with lines of at most `columns` bytes.
     fn new<'l>(
         source: &'s Source,
         labels: impl Iterator<Item = &'l Label>,
@@ -344,9 +344,9 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // The hook hangs at the label's middle.
-            let left = start.midpoint(end) - line + HOOK;
-            let room = columns.saturating_sub(left).max(LEAST_MESSAGE);
+            // miette draws the hook at the label's middle.
+            let left = start.midpoint(end) - line + HOOK_COLUMNS;
+            let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
             // miette shows line and column of the primary label.
             excerpt.labels.push(match index {
@@ -376,7 +376,7 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // A control character takes more than its own bytes.
+                // An escaped control character is longer than its own bytes.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));
@@ -384,7 +384,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line needs something to stand under.
+        // A label at the end of the line needs a character to stand under.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,
@@ -395,7 +395,7 @@ impl<'s> Excerpt<'s> {
         self.text.push('\n');
     }
 
-    /// Where an offset of the source stands in the excerpt.
+    /// Returns the place of a source's offset in the excerpt.
     fn offset_of(&self, offset: usize) -> usize {
         let number = self.source.line(offset);
         let line = self.lines.iter().find(|line| line.number == number);
@@ -447,12 +447,12 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// The part of a label that is drawn.
+/// Returns the part of a label that is drawn.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = clamp(span, source);
     let first = source.line(span.start);
     let line = source.line_range(first);
-    if source.line(span.end) - first >= MOST_LINES {
+    if source.line(span.end) - first >= MAX_LABEL_LINES {
         span.end = line.end.max(span.start);
     }
     if source.line(span.end) == first && line.len() > columns {
@@ -462,8 +462,8 @@ fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     span
 }
 
-/// The parts of a line that are shown: all of a short one, and of a long one, or where there is no
-/// room for what a label says, a quarter of the columns to the left and right of its labels.
+/// Returns the parts of a line that are shown: all of a short line; of a long one, or one without
+/// room for a label's message, a quarter of the columns to the left and right of each label.
 fn shown_pieces(
     source: &Source,
     line: Range<usize>,
@@ -476,7 +476,7 @@ fn shown_pieces(
         .filter(|&end| line.start <= end && end <= line.end)
         .collect();
     ends.sort_unstable();
-    let with_message = ends.last().unwrap_or(&line.start) + HOOK + LEAST_MESSAGE;
+    let with_message = ends.last().unwrap_or(&line.start) + HOOK_COLUMNS + MIN_MESSAGE_COLUMNS;
     if line.end.max(with_message) - line.start <= columns {
         return vec![line];
     }
@@ -486,7 +486,7 @@ fn shown_pieces(
         let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
         let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            // An ellipsis in the place of a letter or two would help nobody.
+            // An ellipsis in place of one or two letters would help nobody.
             Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }

@@ -1,13 +1,13 @@
 //! Text that a terminal may show.
 //!
-//! In: text from a scene, a file's name, a picture or an argument. Out: the same with everything
-//! made visible by which it could act on a terminal, or be shown in another order than it is
-//! written, or which is not seen at all: control characters, and those that Unicode says to show
-//! nothing of.
+//! In: text from a scene, a file's name, a picture or an argument. Out: the same with all
+//! characters escaped that could act on a terminal, change the order of what is shown, or show
+//! nothing: control characters, and those that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 
-/// The text with such characters as `\u{1b}`; line feeds and tabs stay as they are.
+/// Returns the text with invisible characters escaped, as in `\u{1b}`; line feeds and tabs stay as
+/// they are.
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_invisible) {
         return Cow::Borrowed(text);
@@ -19,8 +19,9 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// A name, a message, or whatever else is to stand within one line: line feeds and tabs are made
-/// visible too, so that it can forge neither a second line nor a cell of a table.
+/// Returns a text that stands within one line, such as a name or a message, with invisible
+/// characters, line feeds and tabs escaped, so that it can forge neither a second line nor a cell
+/// of a table.
 pub fn visible_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| matches!(character, '\n' | '\t' | '\u{2028}' | '\u{2029}');
     let shown = visible(text);
@@ -29,15 +30,16 @@ pub fn visible_line(text: &str) -> Cow<'_, str> {
     }
     let mut line = String::with_capacity(shown.len());
     for character in shown.chars() {
-        match breaks(character) {
-            true => line.extend(character.escape_unicode()),
-            false => line.push(character),
+        if breaks(character) {
+            line.extend(character.escape_unicode())
+        } else {
+            line.push(character)
         }
     }
     Cow::Owned(line)
 }
 
-/// The visible text of a line as it stands in HTML and XML, in an attribute too.
+/// Returns the text of [`visible_line`] escaped for HTML and XML, including attributes.
 pub fn escaped(text: &str) -> String {
     visible_line(text)
         .replace('&', "&amp;")
@@ -48,20 +50,19 @@ pub fn escaped(text: &str) -> String {
 
 /// Adds a character as [`visible`] shows it.
 pub fn push_visible(text: &mut String, character: char) {
-    match is_invisible(character) {
+    if is_invisible(character) {
         // Writing to a string does not fail.
-        true => {
-            let _ = write!(text, "{}", character.escape_unicode());
-        }
-        false => text.push(character),
+        let _ = write!(text, "{}", character.escape_unicode());
+    } else {
+        text.push(character)
     }
 }
 
-/// Whether a character is shown as its code: control characters, what the Unicode Character
-/// Database (DerivedCoreProperties) gives the property `Default_Ignorable_Code_Point`, which
+/// Returns whether a character is escaped: control characters, characters with the property
+/// `Default_Ignorable_Code_Point` of the Unicode Character Database (DerivedCoreProperties), which
 /// includes the controls of bidirectional text, and the marks of annotations.
 fn is_invisible(character: char) -> bool {
-    // Nearly all characters are among these.
+    // Most characters are ASCII.
     if character.is_ascii() {
         return character.is_ascii_control() && !matches!(character, '\n' | '\t');
     }

@@ -1,141 +1,138 @@
-//! What stands under what.
+//! Alignment.
 //!
-//! In a group (lines without a blank one between) these are aligned: the `=` of definitions, the
-//! names and braces of objects that stand on one line each, the values of a block's fields, and the
-//! fields of equal objects as far as their names are the same. Objects on both sides of a line of
-//! comments are no group. The braces of `image`, `camera` and `sampler` are aligned wherever they
-//! stand, as they are one group by their meaning. Lines that would have to be filled with many
-//! blanks do not share a column.
+//! In a group (lines without a blank one between them) these are aligned: the `=` of definitions,
+//! the names and braces of objects that each stand on one line, the values of a block's fields, and
+//! the fields of objects of one kind as far as they have the same names. A line of comments
+//! separates groups of objects. The braces of `image`, `camera` and `sampler` are aligned wherever
+//! these blocks stand, as they belong together by their meaning. Lines that would need many blanks
+//! do not share a column.
 
 use super::{
-    entries::{Block, Entry, What},
+    entries::{BlockEntry, Entry, EntryKind},
     token_stream::{has_line_end, width},
 };
 use crate::schema;
 
-/// Parts that differ in their widths by more than this do not share a column.
-const SLACK: usize = 20;
+/// Maximum difference in width, in characters, between parts that share a column.
+const MAX_WIDTH_DIFFERENCE: usize = 20;
 
-/// So many blocks of one kind are a table.
-const LEAST_ROWS: usize = 3;
+/// Minimum number of blocks of one kind that form a table.
+const MIN_TABLE_ROWS: usize = 3;
 
-/// Decides the columns of a file's entries.
+/// Sets the columns of a file's entries.
 pub fn align(entries: &mut [Entry<'_>]) {
     keep_rows(entries);
     settings(entries);
-    for run in runs(entries, class_in_file) {
-        if class_in_file(&entries[run[0]]) == Class::Definition {
+    for run in runs(entries, alignment_in_file) {
+        if alignment_in_file(&entries[run[0]]) == Alignment::Definition {
             starts(entries, &run);
         }
     }
-    for run in runs(entries, class_of_objects) {
-        if class_in_file(&entries[run[0]]) == Class::Object {
+    for run in runs(entries, alignment_of_objects) {
+        if alignment_in_file(&entries[run[0]]) == Alignment::Object {
             objects(entries, &run);
         }
     }
     for entry in entries {
-        if let What::Block(block) = &mut entry.what
+        if let EntryKind::Block(block) = &mut entry.what
             && !block.on_one_line
         {
-            for run in runs(&block.entries, class_in_block) {
+            for run in runs(&block.entries, alignment_in_block) {
                 starts(&mut block.entries, &run);
             }
         }
     }
 }
 
-/// Neighbours of one kind that are written on a line each stay so, even if some of them are a
-/// little too wide: a table of them is read at a glance.
+/// Keeps neighbouring blocks of one kind on a line each if they were written so, even if some are
+/// slightly too wide: such a table is readable at a glance.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
-        if rows.len() < LEAST_ROWS {
+        if rows.len() < MIN_TABLE_ROWS {
             continue;
         }
         for entry in rows {
-            if let What::Block(block) = &mut entry.what {
+            if let EntryKind::Block(block) = &mut entry.what {
                 block.on_one_line = true;
             }
         }
     }
 }
 
-/// Whether both are blocks of one kind, each written on one line.
+/// Returns whether both entries are blocks of one kind, each written on one line.
 fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
-    let is_row = |block: &Block<'_>| block.on_one_line || block.is_nearly_one_line;
+    let is_row = |block: &BlockEntry<'_>| block.on_one_line || block.is_nearly_one_line;
     match (block(a), block(b)) {
         (Some(a), Some(b)) => a.kind == b.kind && is_row(a) && is_row(b),
         _ => false,
     }
 }
 
-/// What is aligned with what.
+/// What an entry is aligned with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Class {
+enum Alignment {
     Definition,
     Object,
     Field,
-    /// Not aligned, but what stands on both sides of it may be.
-    Odd,
+    /// Not aligned, but its neighbours may be aligned with each other.
+    Unaligned,
     /// Ends a group.
     End,
 }
 
-fn class_in_file(entry: &Entry<'_>) -> Class {
+fn alignment_in_file(entry: &Entry<'_>) -> Alignment {
     match &entry.what {
-        What::Definition(head, rest) => {
-            let odd = has_line_end(head) || rest.first().is_some_and(|w| has_line_end(&[*w]));
-            match odd || !entry.leading.is_empty() {
-                true => Class::Odd,
-                false => Class::Definition,
-            }
+        EntryKind::Block(block) if is_setting(block) || !block.on_one_line => Alignment::End,
+        EntryKind::Block(block) if is_plain(entry, block) => Alignment::Object,
+        EntryKind::Definition(head, rest)
+            if entry.leading.is_empty()
+                && !has_line_end(head)
+                && !has_line_end(&rest[..rest.len().min(1)]) =>
+        {
+            Alignment::Definition
         }
-        What::Block(block) if is_setting(block) || !block.on_one_line => Class::End,
-        What::Block(block) => match is_plain(entry, block) {
-            true => Class::Object,
-            false => Class::Odd,
-        },
-        What::Comments | What::Field(..) => Class::Odd,
+        _ => Alignment::Unaligned,
     }
 }
 
-/// Objects on both sides of a line of comments, or of an object of another layout, are too far
-/// apart to pad each other.
-fn class_of_objects(entry: &Entry<'_>) -> Class {
-    match class_in_file(entry) {
-        Class::Odd => Class::End,
+/// Classifies an entry for the alignment of objects. Objects that a line of comments or an object
+/// of another layout separates are too far apart to be aligned.
+fn alignment_of_objects(entry: &Entry<'_>) -> Alignment {
+    match alignment_in_file(entry) {
+        Alignment::Unaligned => Alignment::End,
         class => class,
     }
 }
 
-fn class_in_block(entry: &Entry<'_>) -> Class {
+fn alignment_in_block(entry: &Entry<'_>) -> Alignment {
     match entry.what {
-        What::Field(..) if entry.leading.is_empty() => Class::Field,
-        _ => Class::Odd,
+        EntryKind::Field(..) if entry.leading.is_empty() => Alignment::Field,
+        _ => Alignment::Unaligned,
     }
 }
 
-fn is_setting(block: &Block<'_>) -> bool {
+fn is_setting(block: &BlockEntry<'_>) -> bool {
     schema::block(block.kind).is_some_and(|block| !block.is_object)
 }
 
-/// Whether nothing but kind and name stands before a block's `{`.
-fn is_plain(entry: &Entry<'_>, block: &Block<'_>) -> bool {
+/// Returns whether a block has only its kind and name before its `{`.
+fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     let words = 1 + usize::from(block.name.is_some());
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Groups of entries of one class, by their indices.
-fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Class) -> Vec<Vec<usize>> {
+/// Returns groups of entries of one class, as indices.
+fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // The class of the run that can go on.
-    let mut open = Class::End;
+    // The class of the run that can be extended.
+    let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {
-            open = Class::End;
+            open = Alignment::End;
         }
         match class(entry) {
-            Class::Odd => {}
-            Class::End => open = Class::End,
+            Alignment::Unaligned => {}
+            Alignment::End => open = Alignment::End,
             this => {
                 if open != this {
                     runs.push(Vec::new());
@@ -150,14 +147,14 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Class) -> Vec<Vec<usize>
     runs
 }
 
-/// The longest parts of a list whose widths differ by no more than the slack. What has no width
-/// belongs to any.
+/// Splits a list into the longest parts whose widths differ by at most [`MAX_WIDTH_DIFFERENCE`],
+/// each with its greatest width. Elements without a width fit any part.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
     for (index, &item) in list.iter().enumerate() {
         let Some(width) = width(item) else { continue };
-        if width.max(most) - width.min(least) > SLACK {
+        if width.max(most) - width.min(least) > MAX_WIDTH_DIFFERENCE {
             parts.push((&list[from..index], most));
             (from, least, most) = (index, width, width);
         }
@@ -167,13 +164,13 @@ pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[
     parts
 }
 
-/// Aligns what follows the first part of each entry.
+/// Aligns the second parts of entries.
 fn starts(entries: &mut [Entry<'_>], run: &[usize]) {
     let width = |entry: &Entry<'_>| match &entry.what {
-        What::Definition(head, _) => width(head),
-        What::Field(name, _) => name.len(),
-        What::Block(block) => width(&block.head),
-        What::Comments => 0,
+        EntryKind::Definition(head, _) => width(head),
+        EntryKind::Field(name, _) => name.len(),
+        EntryKind::Block(block) => width(&block.head),
+        EntryKind::Comments => 0,
     };
     for (part, most) in shared(run, |index| Some(width(&entries[index]))) {
         for &index in part {
@@ -191,14 +188,14 @@ fn settings(entries: &mut [Entry<'_>]) {
     starts(entries, &aligned);
 }
 
-fn block<'e, 's>(entry: &'e Entry<'s>) -> Option<&'e Block<'s>> {
+fn block<'e, 's>(entry: &'e Entry<'s>) -> Option<&'e BlockEntry<'s>> {
     match &entry.what {
-        What::Block(block) => Some(block),
+        EntryKind::Block(block) => Some(block),
         _ => None,
     }
 }
 
-/// Aligns the names and braces of objects, and the fields of those that are alike.
+/// Aligns the names and braces of objects, and the fields of similar ones.
 fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     let filled = |index: usize| block(&entries[index]).filter(|block| !block.is_empty());
     let parts = shared(run, |index| Some(width(&filled(index)?.head)));
@@ -206,7 +203,7 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
         let blocks = part.iter().filter_map(|&index| block(&entries[index]));
         let named = blocks.clone().filter(|block| block.name.is_some());
         let name_column = named.map(|block| block.kind.len() + 1).max().unwrap_or(0);
-        let head = |block: &Block<'_>| match block.name {
+        let head = |block: &BlockEntry<'_>| match block.name {
             Some(name) => name_column + name.len(),
             None => block.kind.len(),
         };
@@ -214,7 +211,7 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
         let column = filled.map(|block| head(block) + 1).max().unwrap_or(0);
         for &index in part {
             entries[index].column = column;
-            if let What::Block(block) = &mut entries[index].what {
+            if let EntryKind::Block(block) = &mut entries[index].what {
                 block.name_column = name_column;
             }
         }
@@ -222,8 +219,8 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the field behind the one with an index in objects of which the fields up to that one are
-/// aligned, as far as the objects are of one kind and the fields have one name.
+/// Aligns the field after the one with index `field` in objects whose earlier fields are aligned,
+/// as far as the objects are of one kind and the fields have one name.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));
@@ -237,7 +234,7 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
         }
         for (part, most) in shared(&group, width) {
             for &index in part {
-                if let What::Block(block) = &mut entries[index].what {
+                if let EntryKind::Block(block) = &mut entries[index].what {
                     block.entries[field].next = most + 2;
                 }
             }
@@ -246,12 +243,13 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     }
 }
 
-/// The kind of an object, and name and width of a field of it, if another field follows.
+/// Returns the kind of an object, and the name and width of one of its fields; `None` if that is
+/// the last field.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;
     let field = block.entries.get(field)?;
-    let What::Field(name, _) = field.what else {
+    let EntryKind::Field(name, _) = field.what else {
         return None;
     };
     Some((block.kind, name, field.width_in_line()))

@@ -1,118 +1,118 @@
-//! What stands on a line by itself: definitions, blocks, fields and comments.
+//! Entries, which start lines of their own: definitions, blocks, fields and comments.
 //!
-//! It is decided here which line a comment belongs to, and which blocks stay on one line.
+//! Here it is decided to which line a comment belongs, and which blocks stay on one line.
 
 use std::borrow::Borrow;
 
-use super::token_stream::{Before, Gap, Reader, WIDTH, Word, width};
+use super::token_stream::{Before, Gap, TokenReader, WIDTH, Word, width};
 use crate::{
     source::{Source, Span},
     syntax::tree::{self, Item},
 };
 
-/// A line, or several, of a file or of a block.
+/// An entry of a file or a block: one line or several.
 #[derive(Debug)]
 pub struct Entry<'s> {
-    /// Whether a blank line stands before it.
+    /// Whether a blank line precedes the entry.
     pub blank: bool,
-    /// The comments at its start; for a line of comments, all of it.
+    /// The comments at the start; all of an entry of comments.
     pub leading: Vec<&'s str>,
-    /// What it is.
-    pub what: What<'s>,
-    /// The comments at its end.
+    /// Its kind.
+    pub what: EntryKind<'s>,
+    /// The comments at the end.
     pub trailing: Vec<&'s str>,
-    /// The column that the second part is aligned to, counted from the entry's start: the `=`, the
-    /// `{`, the value. 0 where it follows right behind the first.
+    /// Column that the second part (`=`, `{` or value) is aligned to, counted from the entry's
+    /// start; 0 if it directly follows the first part.
     pub column: usize,
-    /// Of a field on its block's line, the column of the field behind it, counted from its own
-    /// start; or 0.
+    /// Column of the next field on the same line, counted from this field's start; 0 if it is not
+    /// aligned.
     pub next: usize,
 }
 
-/// What an entry is.
+/// Kind of an entry.
 #[derive(Debug)]
-pub enum What<'s> {
-    /// Comments alone.
+pub enum EntryKind<'s> {
+    /// Only comments.
     Comments,
     /// `let NAME`, and `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
     /// A field's name, and its value.
     Field(&'s str, Vec<Word<'s>>),
     /// A block.
-    Block(Block<'s>),
+    Block(BlockEntry<'s>),
 }
 
 /// A block.
 #[derive(Debug)]
-pub struct Block<'s> {
-    /// What stands before its `{`.
+pub struct BlockEntry<'s> {
+    /// The words before the `{`.
     pub head: Vec<Word<'s>>,
     /// Its kind.
     pub kind: &'s str,
     /// Its name.
     pub name: Option<&'s str>,
-    /// The column that its name is aligned to.
+    /// Column that the name is aligned to.
     pub name_column: usize,
-    /// Whether its `{` has to stand on a new line, behind a comment to the end of the line.
+    /// Whether the `{` must stand on a new line, as a comment to the end of the line precedes it.
     pub open_on_new_line: bool,
-    /// Comments behind the `{`.
+    /// The comments behind the `{`.
     pub after_open: Vec<&'s str>,
     /// Its fields.
     pub entries: Vec<Entry<'s>>,
-    /// Whether it stands on one line.
+    /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether it was written on one line, which is just too wide.
+    /// Whether the block was written on one line that is only slightly too wide.
     pub is_nearly_one_line: bool,
 }
 
-impl Block<'_> {
-    /// Whether it is `{}`.
+impl BlockEntry<'_> {
+    /// Returns whether the block is `{}`.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.after_open.is_empty()
     }
 }
 
 impl Entry<'_> {
-    /// How wide it is as a part of its block's line.
+    /// Returns the width as a part of its block's line, in characters.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();
         match &self.what {
-            What::Field(name, value) => comments + name.len() + width(value),
+            EntryKind::Field(name, value) => comments + name.len() + width(value),
             _ => comments.saturating_sub(1),
         }
     }
 }
 
-/// The entries of a file. Items that are handed over are gone as soon as their entries are made:
-/// trees take much memory.
+/// Returns the entries of a file. Each item is dropped as soon as its entry is made, because trees
+/// take much memory.
 pub fn of_file<'s, 't>(
     source: &'s Source,
     comments: &[Span],
     items: impl IntoIterator<Item = impl Borrow<Item<'t>>>,
 ) -> Vec<Entry<'s>> {
-    let mut reader = Reader::new(source, comments);
+    let mut reader = TokenReader::new(source, comments);
     let end = source.text().len();
-    let (entries, _) = reader.entries(items, In::File, end, Item::span, Reader::item);
+    let (entries, _) = reader.entries(items, Container::File, end, Item::span, TokenReader::item);
     entries
 }
 
-/// Where entries stand.
+/// What contains the entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum In {
+enum Container {
     File,
     Block,
 }
 
-impl<'s> Reader<'_, 's> {
-    /// The entries up to an offset, and the comments behind the `{` before them.
+impl<'s> TokenReader<'_, 's> {
+    /// Returns the entries up to an offset, and the comments behind the `{` before them.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
-        place: In,
+        container: Container,
         end: usize,
         span: fn(&N) -> Span,
-        what: fn(&mut Self, &N) -> Option<What<'s>>,
+        what: fn(&mut Self, &N) -> Option<EntryKind<'s>>,
     ) -> (Vec<Entry<'s>>, Vec<&'s str>) {
         let nodes = nodes.into_iter();
         let mut entries = Vec::with_capacity(nodes.size_hint().0);
@@ -121,7 +121,7 @@ impl<'s> Reader<'_, 's> {
             let node = node.borrow();
             let gap = self.gap(span(node).start);
             let breaks = gap.breaks;
-            let lines = comments(gap, place, &mut entries, &mut after_open);
+            let lines = comments(gap, container, &mut entries, &mut after_open);
             let (blank, leading) = match lines {
                 Some(line) if breaks == 0 => line,
                 line => {
@@ -138,12 +138,12 @@ impl<'s> Reader<'_, 's> {
             }
         }
         let gap = self.gap(end);
-        let line = comments(gap, place, &mut entries, &mut after_open);
+        let line = comments(gap, container, &mut entries, &mut after_open);
         push_comments(line, &mut entries);
         (entries, after_open)
     }
 
-    fn item(&mut self, item: &Item<'_>) -> Option<What<'s>> {
+    fn item(&mut self, item: &Item<'_>) -> Option<EntryKind<'s>> {
         match item {
             Item::Definition(definition) => self.definition(definition),
             Item::Block(block) => self.block(block),
@@ -151,7 +151,7 @@ impl<'s> Reader<'_, 's> {
         }
     }
 
-    fn definition(&mut self, definition: &tree::Definition<'_>) -> Option<What<'s>> {
+    fn definition(&mut self, definition: &tree::Definition<'_>) -> Option<EntryKind<'s>> {
         let (mut head, mut rest) = (Vec::new(), Vec::new());
         self.token(definition.keyword, Before::Nothing, &mut head);
         self.token(definition.name?.span, Before::Space, &mut head);
@@ -159,10 +159,10 @@ impl<'s> Reader<'_, 's> {
         let before = self.comments(equals.start, Before::Space, &mut head);
         self.token(equals, before, &mut rest);
         self.value(&definition.value, Before::Space, 0, &mut rest);
-        Some(What::Definition(head, rest))
+        Some(EntryKind::Definition(head, rest))
     }
 
-    fn block(&mut self, block: &tree::Block<'_>) -> Option<What<'s>> {
+    fn block(&mut self, block: &tree::Block<'_>) -> Option<EntryKind<'s>> {
         let (open, close) = (block.open?, block.close?);
         let mut head = Vec::new();
         self.token(block.kind?.span, Before::Nothing, &mut head);
@@ -188,18 +188,18 @@ impl<'s> Reader<'_, 's> {
         let is_on_one_line = !self.has_line_end(open.end, close.start);
         let (entries, after_open) = self.entries(
             &block.fields,
-            In::Block,
+            Container::Block,
             close.start,
             |f| f.span,
             Self::field,
         );
         self.skip(close);
-        // ` { `, ` }`, and two blanks between two fields.
+        // Widths of ` { `, ` }`, and of the two blanks between fields.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;
         let on_one_line = is_empty || (is_on_one_line && width <= WIDTH);
-        Some(What::Block(Block {
+        Some(EntryKind::Block(BlockEntry {
             head,
             kind,
             name,
@@ -212,15 +212,15 @@ impl<'s> Reader<'_, 's> {
         }))
     }
 
-    fn field(&mut self, field: &tree::Field<'_>) -> Option<What<'s>> {
+    fn field(&mut self, field: &tree::Field<'_>) -> Option<EntryKind<'s>> {
         let (mut name, mut value) = (Vec::new(), Vec::new());
         self.token(field.name.span, Before::Nothing, &mut name);
         self.value(&field.value, Before::Space, 0, &mut value);
-        Some(What::Field(name.last()?.text, value))
+        Some(EntryKind::Field(name.last()?.text, value))
     }
 }
 
-fn entry(what: What<'_>) -> Entry<'_> {
+fn entry(what: EntryKind<'_>) -> Entry<'_> {
     Entry {
         blank: false,
         leading: Vec::new(),
@@ -231,34 +231,34 @@ fn entry(what: What<'_>) -> Entry<'_> {
     }
 }
 
-/// Comments of one line, and whether a blank line stands before them.
-type Line<'s> = (bool, Vec<&'s str>);
+/// Comments of one line, and whether a blank line precedes them.
+type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Gives the comments of a gap to the lines that they stand on: those on the line of what came
-/// before to its end, the others lines of their own. The last of these is left, as it may be the
-/// start of what follows.
+/// Assigns the comments of a gap to lines: those on the line of the previous entry to its end, the
+/// others to lines of their own. Returns the last of these lines, as it may start with the next
+/// entry.
 fn comments<'s>(
     gap: Gap<'s>,
-    place: In,
+    container: Container,
     entries: &mut Vec<Entry<'s>>,
     after_open: &mut Vec<&'s str>,
-) -> Option<Line<'s>> {
+) -> Option<CommentLine<'s>> {
     let joined = gap.comments.iter().take_while(|c| c.breaks == 0).count();
-    let joined = match (entries.last_mut(), place) {
+    let joined = match (entries.last_mut(), container) {
         (Some(last), _) => {
             let texts = gap.comments.iter().take(joined);
             last.trailing.extend(texts.map(|comment| comment.text));
             joined
         }
-        // Between a `{` and what stands on its line, they are the start of that.
-        (None, In::Block) if joined < gap.comments.len() || gap.breaks > 0 => {
+        // Between a `{` and an entry on its line, comments belong to the start of the entry.
+        (None, Container::Block) if joined < gap.comments.len() || gap.breaks > 0 => {
             let texts = gap.comments.iter().take(joined);
             after_open.extend(texts.map(|comment| comment.text));
             joined
         }
         (None, _) => 0,
     };
-    let mut line: Option<Line<'s>> = None;
+    let mut line: Option<CommentLine<'s>> = None;
     for comment in gap.comments.iter().skip(joined) {
         match &mut line {
             Some((_, texts)) if comment.breaks == 0 => texts.push(comment.text),
@@ -272,12 +272,12 @@ fn comments<'s>(
     line
 }
 
-fn push_comments<'s>(line: Option<Line<'s>>, entries: &mut Vec<Entry<'s>>) {
+fn push_comments<'s>(line: Option<CommentLine<'s>>, entries: &mut Vec<Entry<'s>>) {
     if let Some((blank, leading)) = line {
         entries.push(Entry {
             blank,
             leading,
-            ..entry(What::Comments)
+            ..entry(EntryKind::Comments)
         });
     }
 }

@@ -1,14 +1,14 @@
-//! The one canonical layout of a scene's text.
+//! The canonical layout of a scene's text.
 //!
 //! In: a text without mistakes of syntax. Out: the same tokens and comments in the same order, with
-//! the white space between them that `grammar/language.md` describes under "Layout". What the names
-//! mean does not matter, so that a scene with other mistakes can be laid out.
+//! the white space between them that `grammar/language.md` describes under "Layout". The meaning of
+//! the names does not matter, so a scene with other mistakes can be formatted.
 //!
-//! Of the white space that was there, only the ends of lines tell something: whether a block stands
-//! on one line, where blank lines separate groups, and which line a comment belongs to. Blanks tell
-//! nothing, so that two texts that differ in them alone are laid out alike. On the way,
-//! `token_stream` reads tokens and comments from tree and text, `entries` makes lines of
-//! them, `columns` decides what stands under what, and `page` writes it all.
+//! Of the original white space, only line ends have a meaning: whether a block stands on one line,
+//! where blank lines separate groups, and to which line a comment belongs. Blanks have none, so two
+//! texts that differ only in them get the same layout. `token_stream` reads tokens and comments
+//! from tree and text, `entries` makes lines of them, `columns` aligns them, and `writer` writes
+//! them.
 
 mod columns;
 mod entries;
@@ -27,7 +27,7 @@ use crate::{
     },
 };
 
-/// The canonical layout of a scene's text; or, if it has mistakes of syntax, these.
+/// Returns the canonical layout of a scene's text, or its mistakes of syntax.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let parsed = syntax::parse(source, SourceId::File);
     if !is_right(source, &parsed) {
@@ -39,7 +39,7 @@ pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
         is_doubtful,
         ..
     } = parsed;
-    let formatted = laid_out(source, entries::of_file(source, &comments, tree.items));
+    let formatted = layout(source, entries::of_file(source, &comments, tree.items));
     if is_doubtful && !is_right_text(&formatted) {
         let mistakes = mistakes(source);
         if !mistakes.is_empty() {
@@ -49,40 +49,45 @@ pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     Ok(formatted)
 }
 
-/// The canonical layout of a text that is parsed already; none if it has mistakes of syntax.
+/// Returns the canonical layout of a text that is parsed already; `None` if it has mistakes of
+/// syntax.
 pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     if !is_right(source, parsed) {
         return None;
     }
     let entries = entries::of_file(source, &parsed.comments, &parsed.tree.items);
-    let formatted = laid_out(source, entries);
+    let formatted = layout(source, entries);
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Whether a text that was laid out can be laid out again: line ends tell what was hardly meant.
+/// Returns whether a formatted text can be formatted again: its new line ends may show that
+/// something else was meant.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
 }
 
-/// Whether a text has no mistakes of syntax.
+/// Returns whether a text has no mistakes of syntax.
 fn is_right(source: &Source, parsed: &Parsed<'_>) -> bool {
     parsed.problems.is_empty() && source.invalid_utf8().is_empty() && is_whole(&parsed.tree)
 }
 
-/// The text of what stands on lines by itself.
-fn laid_out(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
+/// Returns the canonical layout of a file's entries.
+fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     columns::align(&mut entries);
     let written = writer::written(&entries);
     drop(entries);
     let text = source.text();
     let formatted = with_line_ends(&written, text, source.bom_len());
-    debug_assert!(ink(text).eq(ink(&formatted)), "only white space changes");
+    debug_assert!(
+        visible_bytes(text).eq(visible_bytes(&formatted)),
+        "only white space changes"
+    );
     formatted
 }
 
-/// Whether every item was understood, and every field has a value: where it is missing, nothing was
-/// reported yet.
+/// Returns whether every item was understood and every field has a value: parsing does not report a
+/// missing value.
 fn is_whole(tree: &Tree<'_>) -> bool {
     tree.items.iter().all(|item| match item {
         Item::Definition(_) => true,
@@ -94,8 +99,9 @@ fn is_whole(tree: &Tree<'_>) -> bool {
     })
 }
 
-/// What keeps a text from being laid out, as `check` reports it: only reading the scene tells what
-/// a field without a value is called. What else is wrong with the scene is left out.
+/// Returns the mistakes that prevent a text from being formatted, as `check` reports them. Other
+/// problems of the scene are left out. The scene is analyzed because only its names decide how a
+/// missing value is reported.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -104,8 +110,7 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // A field that its block does not know is mistake enough for `check`, however its value is
-    // written.
+    // `check` reports only the unknown field or kind, however its value is written.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);
@@ -115,8 +120,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// What was written with the byte order mark and the line ends of the text: CRLF if all of them
-/// are, or else LF. No line ends with blanks, in comments neither.
+/// Returns a text with the byte order mark and the line ends of the original: CRLF if all of those
+/// are, or else LF. Blanks at the ends of lines are removed, in comments, too.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();
@@ -131,7 +136,7 @@ fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     formatted
 }
 
-/// All of a text but its white space.
-fn ink(text: &str) -> impl Iterator<Item = u8> {
+/// Returns the bytes of a text without white space.
+fn visible_bytes(text: &str) -> impl Iterator<Item = u8> {
     text.bytes().filter(|byte| !byte.is_ascii_whitespace())
 }

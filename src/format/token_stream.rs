@@ -1,6 +1,6 @@
-//! Tokens and comments in their order, with what may stand before each.
+//! Tokens and comments in order, with the white space that may precede each.
 //!
-//! The tree says what a token is, the text says where lines end.
+//! The tree has the kinds of the tokens, and the text has the line ends.
 
 use crate::{
     source::{Source, Span},
@@ -12,61 +12,62 @@ use crate::{
 pub struct Word<'s> {
     /// Its text.
     pub text: &'s str,
-    /// What stands before it.
+    /// The white space before it.
     pub before: Before,
 }
 
-/// What stands before a word.
+/// White space before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
     /// Nothing.
     Nothing,
     /// A blank.
     Space,
-    /// A blank, or a line's end if the line would be too long; the lowest number breaks first. It
-    /// grows with the parentheses around the word, and with the tightness of the operator.
+    /// A blank, or a line end if the line would be too long; a line is broken at the lowest number
+    /// first, which grows with the parentheses around the word and with the precedence of the
+    /// operator.
     Fold(usize),
-    /// The end of a line, which goes on here.
+    /// A line end within the entry.
     Line,
 }
 
-/// A comment before a token or an end.
+/// A comment before a token or at the end.
 #[derive(Clone, Copy, Debug)]
 pub struct Comment<'s> {
     /// Its text.
     pub text: &'s str,
-    /// The line ends before it; more than two count as two.
+    /// Number of line ends before it, at most 2.
     pub breaks: usize,
 }
 
-/// Whether a line ends behind a token or a comment.
+/// Returns whether a line must end behind a token or a comment.
 pub fn ends_line(text: &str) -> bool {
     text.starts_with("//")
 }
 
-/// Whether this is a comment.
+/// Returns whether a text is a comment.
 pub fn is_comment(text: &str) -> bool {
     text.starts_with("//") || text.starts_with("/*")
 }
 
-/// What stands between two tokens.
+/// Comments and line ends between two tokens.
 #[derive(Debug)]
 pub struct Gap<'s> {
     /// The comments.
     pub comments: Vec<Comment<'s>>,
-    /// The line ends behind the last of them.
+    /// Number of line ends behind the last comment, at most 2.
     pub breaks: usize,
 }
 
-/// Walks through a text from token to token.
-pub struct Reader<'a, 's> {
+/// Reader of a text's tokens and the comments between them.
+pub struct TokenReader<'a, 's> {
     text: &'s str,
     comments: std::slice::Iter<'a, Span>,
     at: usize,
 }
 
-impl<'a, 's> Reader<'a, 's> {
-    /// Starts at the beginning of a text with these comments.
+impl<'a, 's> TokenReader<'a, 's> {
+    /// Starts at the beginning of a text with its comments.
     pub fn new(source: &'s Source, comments: &'a [Span]) -> Self {
         Self {
             text: source.text(),
@@ -75,7 +76,7 @@ impl<'a, 's> Reader<'a, 's> {
         }
     }
 
-    /// Goes on to an offset, over white space and comments.
+    /// Continues to an offset, and returns the comments and line ends before it.
     pub fn gap(&mut self, to: usize) -> Gap<'s> {
         let mut comments = Vec::new();
         while let Some(comment) = self.comments.as_slice().first()
@@ -93,12 +94,12 @@ impl<'a, 's> Reader<'a, 's> {
         Gap { comments, breaks }
     }
 
-    /// Goes on over a token.
+    /// Skips a token.
     pub fn skip(&mut self, token: Span) {
         self.at = token.end;
     }
 
-    /// Whether a line ends between two offsets.
+    /// Returns whether there is a line end between two offsets.
     pub fn has_line_end(&self, from: usize, to: usize) -> bool {
         self.text.get(from..to).unwrap_or_default().contains('\n')
     }
@@ -116,8 +117,8 @@ impl<'a, 's> Reader<'a, 's> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// Adds the comments before a token; a comment that started a line does so still. Answers what
-    /// has to stand before the token.
+    /// Adds the comments before a token; one that started a line still does. Returns the white
+    /// space that must precede the token.
     pub fn comments(&mut self, to: usize, before: Before, words: &mut Vec<Word<'s>>) -> Before {
         let gap = self.gap(to);
         for comment in &gap.comments {
@@ -139,7 +140,7 @@ impl<'a, 's> Reader<'a, 's> {
         }
     }
 
-    /// Adds a token and the comments before it.
+    /// Adds a token, and the comments before it.
     pub fn token(&mut self, span: Span, before: Before, words: &mut Vec<Word<'s>>) {
         let text = self.under(span);
         let mut behind = self.comments(span.start, before, words);
@@ -153,7 +154,7 @@ impl<'a, 's> Reader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds a value with so many parentheses around it.
+    /// Adds a value inside `depth` parentheses.
     pub fn value(
         &mut self,
         value: &Value<'_>,
@@ -182,7 +183,7 @@ impl<'a, 's> Reader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // A sum is broken before a product.
+                    // Sums are broken before products.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);
@@ -214,11 +215,12 @@ impl<'a, 's> Reader<'a, 's> {
     }
 }
 
-/// A line gets no longer than this, as far as there are places to break it. What stands in columns
-/// is measured before it is aligned, and comments at the end of a line do not count.
+/// Maximum width of a line, in characters, if there are places to break it. The width is measured
+/// before alignment, and comments at the end of a line do not count.
 pub const WIDTH: usize = 100;
 
-/// How wide words are on one line; of a comment with several lines, the last one counts.
+/// Returns the width of words on one line; of a comment with several lines, only the last one
+/// counts.
 pub fn width(words: &[Word<'_>]) -> usize {
     words.iter().fold(0, |width, word| {
         let blank = usize::from(word.before != Before::Nothing);
@@ -226,7 +228,7 @@ pub fn width(words: &[Word<'_>]) -> usize {
     })
 }
 
-/// Where a line stands after a text that starts in a column.
+/// Returns the column after a text that starts in a column.
 pub fn column_after(column: usize, text: &str) -> usize {
     match text.rsplit_once('\n') {
         Some((_, last)) => last.chars().count(),
@@ -234,7 +236,7 @@ pub fn column_after(column: usize, text: &str) -> usize {
     }
 }
 
-/// Whether words take more than one line.
+/// Returns whether words take more than one line.
 pub fn has_line_end(words: &[Word<'_>]) -> bool {
     let ends = |word: &Word<'_>| word.before == Before::Line || word.text.contains('\n');
     words.iter().any(ends)

@@ -1,18 +1,17 @@
-//! Writes entries with their columns.
+//! Writes entries, aligned to their columns.
 
 use super::{
     columns::shared,
-    entries::{Block, Entry, What},
+    entries::{BlockEntry, Entry, EntryKind},
     token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
-/// By how much a block's fields stand further to the right than itself, and the other lines of a
-/// value than its first.
+/// Indentation, in blanks, of a block's fields, and of the further lines of a value.
 const INDENT: usize = 2;
 
-/// The text of a file.
+/// Returns the text of a file.
 pub fn written(entries: &[Entry<'_>]) -> String {
-    let mut writer = Writer::default();
+    let mut writer = LayoutWriter::default();
     for entry in entries {
         writer.entry(entry, 0);
     }
@@ -21,13 +20,13 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 }
 
 #[derive(Default)]
-struct Writer {
+struct LayoutWriter {
     text: String,
-    /// Lines with comments at their ends, which are not aligned yet.
+    /// Lines with comments at their ends, which are aligned when the group is complete.
     waiting: Vec<(String, String)>,
 }
 
-impl Writer {
+impl LayoutWriter {
     fn entry(&mut self, entry: &Entry<'_>, indent: usize) {
         if entry.blank {
             self.flush();
@@ -35,28 +34,28 @@ impl Writer {
         }
         let mut line = " ".repeat(indent);
         push_joined(&mut line, &entry.leading);
-        if !entry.leading.is_empty() && !matches!(entry.what, What::Comments) {
+        if !entry.leading.is_empty() && !matches!(entry.what, EntryKind::Comments) {
             line.push(' ');
         }
         let start = column_after(0, &line);
         let margin = indent + INDENT;
         match &entry.what {
-            What::Comments => {}
-            What::Definition(head, rest) => {
+            EntryKind::Comments => {}
+            EntryKind::Definition(head, rest) => {
                 self.words(&mut line, head, margin);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
                 self.words(&mut line, rest, margin);
             }
-            What::Field(name, value) => {
+            EntryKind::Field(name, value) => {
                 line.push_str(name);
                 if entry.column > 0 {
                     pad(&mut line, start + entry.column - 1);
                 }
                 self.words(&mut line, value, margin);
             }
-            What::Block(block) => {
+            EntryKind::Block(block) => {
                 self.head(&mut line, block, entry.column);
                 if block.is_empty() {
                     line.push_str("{}");
@@ -94,14 +93,14 @@ impl Writer {
         self.waiting.push((line, comments));
     }
 
-    /// Writes words, with new lines where they have to be and where the line would be too long; the
-    /// last one goes on.
+    /// Writes words, broken into lines where it is necessary or the line would be too long; the
+    /// last line remains open.
     fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
         let last = self.lines(line, words, margin);
         push_flat(line, last);
     }
 
-    /// Writes all lines of the words but the last one, and answers the words of that.
+    /// Writes all lines of the words except the last one, and returns the words of that one.
     fn lines<'w, 's>(
         &mut self,
         line: &mut String,
@@ -119,14 +118,14 @@ impl Writer {
         rest
     }
 
-    /// Writes the last words of a line; comments at its end stand in a column.
+    /// Writes the last words of a line; comments at its end are aligned in a column.
     fn end_line(&mut self, mut line: String, words: &[Word<'_>]) {
         let is_behind = |word: &&Word<'_>| word.before == Before::Space && is_comment(word.text);
         let behind = words.iter().rev().take_while(is_behind).count();
         let (words, behind) = words.split_at(words.len() - behind);
         let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
         push_flat(&mut line, words);
-        // Beside a comment that has the line for itself they belong to that.
+        // Further comments stay beside a comment that has a line of its own.
         if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
             for comment in &behind {
                 line.push(' ');
@@ -138,8 +137,8 @@ impl Writer {
         }
     }
 
-    /// Writes what stands before a block's `{`, and the blank there or the end of the line.
-    fn head(&mut self, line: &mut String, block: &Block<'_>, column: usize) {
+    /// Writes the head of a block, and the blank or line end before its `{`.
+    fn head(&mut self, line: &mut String, block: &BlockEntry<'_>, column: usize) {
         match (block.name, block.name_column) {
             (Some(name), 1..) => {
                 line.push_str(block.kind);
@@ -159,7 +158,7 @@ impl Writer {
         }
     }
 
-    /// Writes the lines that wait, their comments in columns.
+    /// Writes the waiting lines, with their comments in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         let lines: Vec<usize> = (0..waiting.len()).collect();
@@ -186,20 +185,20 @@ fn push_joined(line: &mut String, texts: &[&str]) {
     }
 }
 
-/// Fills a line up to a column.
+/// Fills a line with blanks up to a column.
 fn pad(line: &mut String, column: usize) {
     let blanks = column.saturating_sub(column_after(0, line));
     line.extend(std::iter::repeat_n(' ', blanks));
 }
 
-/// A block's fields on its line, between braces.
+/// Appends a block's fields on its line, between braces.
 fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str("{ ");
     for (index, entry) in entries.iter().enumerate() {
         let start = column_after(0, line);
         let mut texts = entry.leading.clone();
         let mut field = String::new();
-        if let What::Field(name, value) = &entry.what {
+        if let EntryKind::Field(name, value) = &entry.what {
             field.push_str(name);
             push_flat(&mut field, value);
             texts.push(&field);
@@ -216,7 +215,7 @@ fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str(" }");
 }
 
-/// The words of one line.
+/// Appends the words of one line.
 fn push_flat(line: &mut String, words: &[Word<'_>]) {
     let is_start = line.trim_start().is_empty();
     for (index, word) in words.iter().enumerate() {
@@ -228,8 +227,8 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
     }
 }
 
-/// The words that start a line, by their indices. A line that is too long is broken where it is
-/// least nested, and there as late as may be.
+/// Returns the indices of the words that start new lines. A line that is too long is broken where
+/// it is least nested, and there as late as possible.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

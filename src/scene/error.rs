@@ -62,7 +62,7 @@ impl Diagnostic {
         texts: impl IntoIterator<Item = S>,
     ) -> Self {
         let texts = texts.into_iter();
-        self.fixes(texts.map(|text| Fix::write(span, text).being(applicability)))
+        self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
     }
 
     /// Whether it has this code.

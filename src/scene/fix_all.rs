@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::lower::read;
 use crate::{
     diagnostic::{Applicability, Diagnostic, Edit, Fix, apply},
-    source::{Place, Source, SourceId, Sources},
+    source::{LineColumn, Source, SourceId, Sources},
 };
 
 /// A text after its errors were fixed.
@@ -29,7 +29,7 @@ pub struct Fixed {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
     /// Where the problem was, in the text as it was then.
-    pub place: Place,
+    pub place: LineColumn,
     /// What the fix does.
     pub title: String,
 }

@@ -11,7 +11,7 @@ use crate::{
     diagnostic::{Applicability, Diagnostic, Problems},
     schema,
     source::{SourceId, Sources, Span},
-    suggest::{self, Budget},
+    suggest::{self, ComparisonBudget},
     syntax::{
         self, shorten,
         tree::{Block, Field, Item, Name, Value},
@@ -127,7 +127,7 @@ pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
     sources: &'s Sources,
-    budget: &Budget,
+    budget: &ComparisonBudget,
 ) -> Problems {
     let mut problems = Problems::default();
     for it in overrides {
@@ -188,7 +188,7 @@ impl<'s> Override<'s> {
         place: Result<&schema::Field, &str>,
         items: &[Item<'s>],
         sources: &'s Sources,
-        budget: &Budget,
+        budget: &ComparisonBudget,
     ) -> bool {
         if !budget.spend(items.len()) {
             return false;
@@ -287,7 +287,7 @@ fn no_such_block<'s>(
     block: &Name<'s>,
     items: &[Item<'s>],
     sources: &'s Sources,
-    budget: &Budget,
+    budget: &ComparisonBudget,
 ) -> Diagnostic {
     let objects = objects(items);
     let blocks = schema::BLOCKS.iter().filter(|block| !block.is_object);
@@ -325,7 +325,7 @@ fn no_such_let<'s>(
     it: &Override<'s>,
     items: &[Item<'s>],
     sources: &'s Sources,
-    budget: &Budget,
+    budget: &ComparisonBudget,
 ) -> Diagnostic {
     let name = &it.name;
     let lets = items.iter().filter_map(|item| match item {

@@ -1,9 +1,9 @@
 //! Text → tree.
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest
-//! reads the items that are right (`parser`); an item that is not is read token by token (`tokens`,
-//! `recovery`), which makes one problem of each slip and nodes of what can be understood. Names are
-//! looked up only to choose between explanations of a mistake.
+//! reads the items that follow the grammar (`parser`); any other item is read token by token
+//! (`tokens`, `recovery`), which reports one problem for each slip and makes nodes of what can be
+//! understood. Names are looked up only to choose between explanations of a mistake.
 
 #![cfg_attr(
     not(test),
@@ -30,26 +30,26 @@ mod vocabulary;
 pub use messages::{FOREIGN_FILE, INVALID_UTF8, UTF16};
 pub use parser::{parse, parse_unless, parse_value};
 pub use parts::parse_in_parts;
-pub use problem::{shorten, times};
+pub use problem::{further_places, shorten};
 pub use tree::Tree;
 
 use crate::{diagnostic::Diagnostic, source::Span};
 
-/// Parentheses, signs and calls nest at most this deep.
+/// Maximum depth of nested parentheses, signs and calls in a value.
 pub const NESTING_LIMIT: usize = 256;
 
-/// What parsing yields.
+/// Result of parsing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Parsed<'s> {
     /// The tree of the whole text.
     pub tree: Tree<'s>,
-    /// The comments in their order.
+    /// The comments, in the order of the text.
     pub comments: Vec<Span>,
-    /// What is wrong with the text.
+    /// Problems of syntax.
     pub problems: Vec<Diagnostic>,
-    /// Whether a mistake took the rest of the text, so that nothing is reported to be missing.
+    /// Whether a mistake took the rest of the text, so that nothing may be reported as missing.
     pub is_cut: bool,
-    /// Whether something follows the grammar and was hardly meant so, such as fields that their
-    /// block does not know: with other line ends it may be a mistake of syntax.
+    /// Whether something follows the grammar but was hardly meant so, such as fields that their
+    /// block does not have. With other line ends the text may be a mistake of syntax.
     pub is_doubtful: bool,
 }

@@ -1,12 +1,12 @@
 //! The parser: from a text to the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest reads every item that is right, a few
-//! kilobytes at a time, and the functions here make nodes of its pairs; they carry the names of the
-//! grammar's rules. Where pest stops, or where words show that something else was meant (a field
-//! that its block does not know), `recovery` reads that one item.
+//! In: a source. Out: its tree, comments and problems. pest reads every item that follows the
+//! grammar, a few kilobytes at a time, and the functions here make nodes of its pairs; they carry
+//! the names of the grammar's rules. Where pest stops, or where words show that something else was
+//! meant (a field that its block does not have), `recovery` reads that one item.
 //!
-//! A block ends at its `}`, a definition starts with `let`, and both stand nowhere else: there a
-//! right text can be taken apart.
+//! A block ends at its `}` and a definition starts with `let`, and a text without mistakes has both
+//! nowhere else: at these places it can be split.
 
 use std::{
     ops::Range,
@@ -37,12 +37,12 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// pest's parser for the rules of the grammar.
+/// pest's parser of the grammar's rules.
 #[derive(pest_derive::Parser)]
 #[grammar = "grammar/scn.pest"]
 struct Grammar;
 
-/// The operators, the loosest first.
+/// Precedence of the operators, the loosest first.
 static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
     PrattParser::new()
         .op(Op::infix(Rule::sum, Assoc::Left))
@@ -50,78 +50,78 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// The stack that pest and recovery get: without optimization they take tens of kilobytes for each
-/// of 256 levels of nesting.
-pub const STACK: usize = 64 << 20;
+/// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery take
+/// tens of kilobytes for each of the 256 levels of nesting.
+pub const STACK_BYTES: usize = 64 << 20;
 
-/// A value of fewer bytes is read on the caller's stack, as each level of nesting takes a byte:
-/// most values are short, and there is one for each default.
-const SHALLOW: usize = 32;
+/// Length, in bytes, below which a value is read on the caller's stack. Each level of nesting takes
+/// at least a byte. Most values are short, and every default of a field is such a value.
+const SHORT_VALUE_BYTES: usize = 32;
 
-/// pest reads so many bytes at a time, up to the next place where the text can be taken apart; its
-/// pairs of a whole file would take much memory.
-pub const CHUNK: usize = 4096;
+/// Minimum number of bytes that pest reads at a time, up to the next place where the text can be
+/// split. The pairs of a whole file would take much memory.
+pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
 pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
     parse_unless(source, id, &cancel::NEVER)
 }
 
-/// The same, or, cancelled, as much of the file as was read until then.
+/// Parses a file; if cancelled, returns what was read until then.
 pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
     with_stack(|| {
         let text = source.text();
         let scan = Scan::of(text, id, source.bom_len(), cancel);
         let words = Vocabulary::new(text);
         let mut recovery = Recovery::new(source, id, &words);
-        let mut right = TreeBuilder::new(text, id, &words);
+        let mut builder = TreeBuilder::new(text, id, &words);
         let mut at = source.bom_len();
         while at < text.len() && !cancel::is_set(cancel) {
-            let end = first_from(&scan.ends, at + CHUNK).unwrap_or(text.len());
+            let end = first_from(&scan.split_points, at + CHUNK_BYTES).unwrap_or(text.len());
             let deep = first_from(&scan.deep, at).filter(|&place| place <= end);
             let end = deep.unwrap_or(end);
-            let (next, is_right) = right.items(at..end, &mut recovery);
-            if !is_right {
-                at = next;
-                continue;
-            }
-            let next_token = Lexer::new(text, next).seen_token();
-            if next_token.start >= end && deep.is_none() {
-                at = next_token.start;
-                continue;
-            }
-            if next_token.kind == TokenKind::End {
-                break;
-            }
-            // What cannot start an item goes on with the definition before it.
-            let mut start = next_token.start;
-            if let Some(Item::Definition(last)) = recovery.items.last()
-                && last.span.start >= recovery.read_to
-                && goes_on(text, last.span.end, start)
-            {
-                start = last.span.start;
-                recovery.items.pop();
-            }
-            at = recovery.item(start);
+            let (next, is_stop) = builder.items(at..end, &mut recovery);
+            let token = Lexer::new(text, next).seen_token();
+            let is_read = token.kind == TokenKind::End || (token.start >= end && deep.is_none());
+            at = if !is_stop {
+                next
+            } else if is_read {
+                token.start
+            } else {
+                recover_item(&mut recovery, text, token.start)
+            };
         }
         recovery.finish(scan)
     })
 }
 
-/// The first of these places, which are in order, that is no earlier than an offset.
+/// Reads an item that does not follow the grammar, and returns its end. Text that cannot start an
+/// item belongs to the definition before it, which is read again.
+fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
+    if let Some(Item::Definition(last)) = recovery.items.last()
+        && last.span.start >= recovery.read_to
+        && goes_on(text, last.span.end, at)
+    {
+        at = last.span.start;
+        recovery.items.pop();
+    }
+    recovery.item(at)
+}
+
+/// Returns the first of some ascending places that is not before an offset.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()
 }
 
-/// Whether what stands at an offset may belong to a definition that ends before it.
+/// Returns whether the text at an offset may belong to a definition that ends before it.
 fn goes_on(text: &str, end: usize, at: usize) -> bool {
     let line = text.get(end..at).unwrap_or_default();
     let rest = text.get(at..).unwrap_or_default();
     !line.contains('\n') || rest.starts_with(['+', '-', '*', '/', '^', ')'])
 }
 
-/// Parses the part of a text from an offset on as one value: a `--set` argument's.
+/// Parses the text from an offset on as one value, such as that of a `--set` argument.
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
     let text = source.text();
     let read = || {
@@ -131,41 +131,42 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
         let value = recovery.whole_value(start);
         (value, recovery.finish(scan).problems)
     };
-    match text.len() - start < SHALLOW {
-        true => read(),
-        false => with_stack(read),
+    if text.len() - start < SHORT_VALUE_BYTES {
+        read()
+    } else {
+        with_stack(read)
     }
 }
 
-/// Runs on a thread with a stack of known size, so that the nesting limit holds in every build and
-/// on every thread.
+/// Runs on a thread whose stack has a known size, so that the nesting limit holds in every build
+/// and on every thread.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
-        let builder = thread::Builder::new().stack_size(STACK);
+        let builder = thread::Builder::new().stack_size(STACK_BYTES);
         let handle = builder.spawn_scoped(scope, &work);
         match handle.map(|handle| handle.join()) {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            // No thread to be had: the caller's stack holds the limit in an optimized build.
+            // Without a thread: in an optimized build the caller's stack suffices for the limit.
             Err(_) => work(),
         }
     })
 }
 
-/// Makes nodes of what pest read.
+/// Builder of nodes from the pairs that pest read.
 pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Where the slice that pest reads starts: its offsets count from there.
+    /// Start of the slice that pest reads; its offsets count from there.
     base: usize,
-    /// Whether the item follows the grammar, but holds a field or a function that is not known, so
-    /// that recovery should try it.
+    /// Whether the item follows the grammar, but has an unknown field or function, so that recovery
+    /// should try it.
     doubtful: bool,
 }
 
 impl<'w, 's> TreeBuilder<'w, 's> {
-    /// For a text.
+    /// Makes a builder for a text.
     pub fn new(text: &'s str, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         Self {
             text,
@@ -176,8 +177,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items as far as they are right. Answers where they end, and whether that is where pest
-    /// stopped.
+    /// Reads items until one does not follow the grammar. Returns where reading ended, and whether
+    /// pest stopped there; otherwise recovery read an item in another way, up to another place.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -190,8 +191,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // `let a = 2 pi`, and `sphere {` behind it: the kind is the rest of something else, and
-            // the name the kind.
+            // `let a = 2 pi`, followed by `sphere {`: the kind is the rest of the value, and the
+            // name is the kind.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
@@ -202,7 +203,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
             end = item.span().end;
             // Two minuses may be a comment of another language.
             let written = self.written(item.span());
-            if self.doubtful || (written.len() < CHUNK && written.contains("--")) {
+            if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
                     Some(read_to) if read_to == end => continue,
                     Some(read_to) => return (read_to, false),
@@ -233,7 +234,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
         let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
-        // All parts but the kind and the two braces, as a rule.
+        // As a rule, all parts except the kind and the two braces are fields.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
         for part in parts {
             match part.as_rule() {
@@ -295,7 +296,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // Both make nodes of pairs, one at a time.
+        // All three closures make nodes of pairs, one at a time.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))
@@ -335,7 +336,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
         let parts = pair.into_inner();
-        // A comma between two values.
+        // Every other part is a comma.
         let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         for part in parts {
             if part.as_rule() != Rule::comma {

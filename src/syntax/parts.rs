@@ -1,6 +1,6 @@
-//! A large file part by part, parsed on all processors.
+//! A large file, parsed part by part on all processors.
 //!
-//! In: a source. Out: the items of each part in their order, if all of the file is right.
+//! In: a source. Out: the items of each part in order, if the whole file follows the grammar.
 
 use std::{
     ops::Range,
@@ -9,7 +9,7 @@ use std::{
 };
 
 use super::{
-    parser::{CHUNK, STACK, TreeBuilder, first_from},
+    parser::{CHUNK_BYTES, STACK_BYTES, TreeBuilder, first_from},
     recovery::Recovery,
     scan::Scan,
     tokens::Lexer,
@@ -22,14 +22,14 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse: one thread lowers what they parse, and more would wait for
-/// it.
+/// Maximum number of threads that parse. One thread lowers the items of all, and more parsers would
+/// wait for it.
 const MOST_THREADS: usize = 4;
 
-/// Parses a file in parts of at least so many bytes, and hands over the items of each in their
-/// order, so that there is never a tree of the whole. Answers whether all went well; otherwise the
-/// file has mistakes, is short, `each` wanted no more, or it was cancelled, and what was handed
-/// over does not count.
+/// Parses a file in parts of at least `bytes` bytes, and passes the items of each part to `each` in
+/// order, so that there is never a tree of the whole. Returns whether all parts were passed.
+/// Otherwise the file has mistakes, is short, `each` returned `false`, or parsing was cancelled,
+/// and the items that were passed must be discarded.
 pub fn parse_in_parts<'s>(
     source: &'s Source,
     id: SourceId,
@@ -47,13 +47,13 @@ pub fn parse_in_parts<'s>(
     }
     let parts = ranges(source, bytes, &scan);
     let words = Vocabulary::new(text);
-    // The items of a part, if all of it is right and no item goes on behind it.
+    // The items of a part, if all of it follows the grammar and no item goes on behind it.
     let read = |part: &Range<usize>| {
         let mut recovery = Recovery::new(source, id, &words);
         let mut right = TreeBuilder::new(text, id, &words);
         let mut from = part.start;
         while from < part.end {
-            let to = first_from(&scan.ends, from + CHUNK).unwrap_or(part.end);
+            let to = first_from(&scan.split_points, from + CHUNK_BYTES).unwrap_or(part.end);
             let to = to.min(part.end);
             let (next, is_right) = right.items(from..to, &mut recovery);
             let is_read = is_right && Lexer::new(text, next).seen_token().start >= to;
@@ -66,7 +66,7 @@ pub fn parse_in_parts<'s>(
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
-        // Thread i parses the parts i, i + count, …, each a few parts ahead of what is asked of it.
+        // Thread i parses the parts i, i + count, …, and is a few parts ahead of the consumer.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
@@ -80,9 +80,9 @@ pub fn parse_in_parts<'s>(
                         }
                     }
                 };
-                // Without the thread nothing is received from it, and the file is parsed as a
-                // whole.
-                let builder = thread::Builder::new().stack_size(STACK);
+                // If the thread does not start, nothing is received from it, and the caller parses
+                // the file as a whole.
+                let builder = thread::Builder::new().stack_size(STACK_BYTES);
                 let _ = builder.spawn_scoped(scope, work);
                 results
             })
@@ -95,10 +95,10 @@ pub fn parse_in_parts<'s>(
     })
 }
 
-/// The parts of a text, each of which ends behind a block.
+/// Returns the parts of a text, each of which ends behind a block.
 fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
-    while let Some(to) = first_from(&scan.ends, from + bytes.max(1)) {
+    while let Some(to) = first_from(&scan.split_points, from + bytes.max(1)) {
         parts.push(from..to);
         from = to;
     }

@@ -1,4 +1,4 @@
-//! How a problem of syntax is made of what `messages` says.
+//! Makes problems of syntax of the texts in `messages`.
 
 use std::collections::BTreeMap;
 
@@ -7,17 +7,16 @@ use crate::{
     source::Span,
 };
 
-/// What is said of a slip.
+/// Text of a problem, and whether its fix is safe.
 #[derive(Clone, Copy)]
 pub struct Message {
-    /// Its code without `pinhole::`, what is wrong, what is said at the place, and what to do
-    /// where there is no fix.
+    /// The code without `pinhole::`, the message, the label, and the help if there is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }
 
 impl Message {
-    /// What has an unsafe fix, if any: its code, what is wrong, what is said at the place, and
+    /// Makes a message, whose fix is unsafe if it has one, of a code, a message, a label and a
     /// help.
     pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
@@ -26,24 +25,24 @@ impl Message {
         }
     }
 
-    /// The same, whose fix keeps all that was written and has one meaning.
+    /// Marks the fix as safe: it keeps all that was written and has one meaning.
     pub const fn safe(self) -> Self {
         self.safe_if(true)
     }
 
-    /// The same, whose fix does so in some places.
+    /// Marks the fix as safe or unsafe.
     pub const fn safe_if(mut self, is_safe: bool) -> Self {
         self.applicability = Applicability::safe_if(is_safe);
         self
     }
 
-    /// Whether it is about something that is only too much.
+    /// Returns whether the problem is something superfluous.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }
 
-    /// The problem at a place; the words go where the message names something. A fix says what to
-    /// do.
+    /// Returns the problem at a place, with `words` in the places of `{0}`, `{1}` and so on. The
+    /// title of a fix replaces the help.
     pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
         let filled = |text: &str| {
             let mut parts = text.split('{');
@@ -58,7 +57,9 @@ impl Message {
             filled
         };
         let [code, message, label, help] = self.texts;
-        let fix = fix.into().map(|fix| fix.being(self.applicability));
+        let fix = fix
+            .into()
+            .map(|fix| fix.with_applicability(self.applicability));
         let title = fix.as_ref().map(|fix| fix.title.clone());
         Diagnostic {
             severity: Severity::Error,
@@ -76,15 +77,15 @@ impl Message {
     }
 }
 
-/// Writes a text in a place.
+/// Returns the fix that replaces the text of a place.
 pub fn replace(span: Span, text: impl Into<String>) -> Fix {
     let text = text.into();
     let title = format!("write `{}`", shorten(&text));
     Fix::new(title, [Edit::new(span, text)])
 }
 
-/// That a slip was made so many times more.
-pub fn times(more: usize) -> String {
+/// Returns the words for further places of the same problem.
+pub fn further_places(more: usize) -> String {
     match more {
         0 => String::new(),
         1 => ", and at one more place".to_owned(),
@@ -92,10 +93,9 @@ pub fn times(more: usize) -> String {
     }
 }
 
-/// Makes one report, at the first place, of all that say the same of a sign, such as each `−` of
-/// a text.
-pub fn tell_signs_once(problems: &mut Vec<Diagnostic>) {
-    // Where the report of a sign is, and how many more there were.
+/// Merges reports about the same sign, such as each `−` of a text, into one at the first place.
+pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
+    // Index of a sign's first report, and the number of further ones.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(problems.len());
     for mut found in std::mem::take(problems) {
@@ -116,13 +116,13 @@ pub fn tell_signs_once(problems: &mut Vec<Diagnostic>) {
     }
     for (first, more) in firsts.into_values() {
         if let Some(found) = kept.get_mut(first) {
-            found.message += &times(more);
+            found.message += &further_places(more);
         }
     }
     *problems = kept;
 }
 
-/// What stands at some place, in a message: on one line, and not too long.
+/// Shortens a text for a message: to one line of at most 40 characters.
 pub fn shorten(written: &str) -> String {
     const LONGEST: usize = 40;
     let mut short = String::new();

@@ -1,13 +1,13 @@
-//! What must be known of a text before it is parsed.
+//! A first walk over the text, before it is parsed.
 //!
-//! In: a text. Out: its comments, where it can be taken apart, the characters that cannot be seen,
-//! and where it may nest too deep for pest. One walk of the lexer, without recursion.
+//! In: a text. Out: its comments, the places where it can be split, its invisible characters, and
+//! the places where it may nest too deep for pest. One walk of the lexer, without recursion.
 
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
 use super::{
     NESTING_LIMIT, Parsed, messages as say,
-    problem::times,
+    problem::further_places,
     tokens::{Lexer, TokenKind},
 };
 use crate::{
@@ -16,35 +16,36 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Of the places where a text can be taken apart, those are kept that are so many bytes apart: a
-/// small part of what is parsed at a time.
-const SPACING: usize = 256;
+/// Minimum distance, in bytes, between two places in [`Scan::split_points`]: a small part of what
+/// is parsed at a time.
+const SPLIT_SPACING_BYTES: usize = 256;
 
-/// What the walk finds.
+/// Result of the walk.
 #[derive(Debug, Default)]
 pub struct Scan {
     /// Every comment.
     comments: Vec<Span>,
-    /// Where more parentheses and minuses are open than a value may have. A minus between two
-    /// values counts, too: recovery, which reads these items, counts exactly.
+    /// Places where more parentheses and minuses are open than a value may have. A minus between
+    /// two values counts, too; recovery, which reads these items, counts exactly.
     pub deep: Vec<usize>,
-    /// Where a right text can be taken apart: behind a `}` or before a `let`, at most one place in
-    /// [`SPACING`] bytes.
-    pub ends: Vec<usize>,
-    /// Characters that cannot be seen and are no white space of the language, and carriage returns
-    /// that end no line.
+    /// Places where a text without mistakes can be split: behind a `}` or before a `let`, at most
+    /// one in [`SPLIT_SPACING_BYTES`] bytes.
+    pub split_points: Vec<usize>,
+    /// Invisible characters that are not white space of the language, and carriage returns that end
+    /// no line.
     odd_spaces: Vec<Span>,
 }
 
 impl Scan {
-    /// Walks a text from an offset on. Cancelled, it stops on the way.
+    /// Walks a text from an offset on, until the end or until cancelled.
     pub fn of(text: &str, id: SourceId, start: usize, cancel: &AtomicBool) -> Self {
         let mut scan = Self::default();
         let mut lexer = Lexer::new(text, start);
-        // The minuses since the last operand, and those before every open parenthesis.
+        // Minuses since the last operand, the sum of those before all open parentheses, and those
+        // before each of them.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
-        // So many tokens are read before anybody is asked whether that is still wanted.
+        // Number of tokens between two checks for cancellation.
         const STRIDE: usize = 1 << 14;
         for count in 0_usize.. {
             let token = lexer.token();
@@ -72,14 +73,14 @@ impl Scan {
                         open.clear();
                         (minuses, outside, is_told) = (0, 0, false);
                         if *brace == b'}' {
-                            scan.may_end(token.end);
+                            scan.add_split_point(token.end);
                         }
                     }
                     _ => {}
                 },
                 TokenKind::Name => {
                     if text.get(token.start..token.end) == Some("let") {
-                        scan.may_end(token.start);
+                        scan.add_split_point(token.start);
                     }
                     minuses = 0;
                 }
@@ -95,8 +96,8 @@ impl Scan {
         scan
     }
 
-    /// Notes carriage returns that end no line, also those in comments: there they would take the
-    /// lines along that other programs show below them.
+    /// Adds carriage returns that end no line, including those in comments: other programs show
+    /// what follows one as a new line, which the comment would hide.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
@@ -108,34 +109,39 @@ impl Scan {
         self.odd_spaces.extend(alone.take(room));
     }
 
-    /// Notes where the text can be taken apart, unless it is close behind the last such place.
-    fn may_end(&mut self, place: usize) {
-        if self.ends.last().is_none_or(|&last| place >= last + SPACING) {
-            self.ends.push(place);
+    /// Adds a place where the text can be split, unless it is near the previous one.
+    fn add_split_point(&mut self, place: usize) {
+        if self
+            .split_points
+            .last()
+            .is_none_or(|&last| place >= last + SPLIT_SPACING_BYTES)
+        {
+            self.split_points.push(place);
         }
     }
 
-    /// Whether the text has no comment that is never closed, no value that nests too deep and no
-    /// odd white space.
+    /// Returns whether the text has no unclosed comment, no value that nests too deep and no odd
+    /// white space.
     pub fn is_plain(&self, text: &str) -> bool {
         self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }
 
-    /// The `/*` of the comment that has no `*/`: it takes all of the text, and so it is the last.
+    /// Returns the `/*` of an unclosed comment. It extends to the end of the text, so it is the
+    /// last one.
     fn open_comment(&self, text: &str) -> Option<Span> {
         let last = self.comments.last()?;
         let inner = text.get(last.range())?.strip_prefix("/*")?;
         (!inner.ends_with("*/")).then(|| Span::new(last.source, last.start, last.start + 2))
     }
 
-    /// Adds comments and problems to what was parsed.
+    /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // What a comment took is missing only because of that.
+        // What a comment hides is missing only because of the carriage return.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // What the comment took is no second mistake.
+            // What the comment hides is not a second mistake.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start
@@ -147,7 +153,7 @@ impl Scan {
         parsed.comments = self.comments;
     }
 
-    /// One report for each sort of character, at the first one.
+    /// Reports each kind of character once, at its first place.
     fn report_odd_spaces(&self, text: &str, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
@@ -160,11 +166,11 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            // Words with one between them that has no width may be one or two.
+            // Words that an invisible character without width separates may be one word or two.
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);
-            let times = times(places.len() - 1);
+            let times = further_places(places.len() - 1);
             let mut found = if sort == "\r" {
                 say::CARRIAGE_RETURN.at(at, &[&times], all("write line feeds", "\n"))
             } else {
@@ -172,10 +178,10 @@ impl Scan {
                 let said = say::ODD_SPACE.safe_if(is_safe);
                 said.at(at, &words, all("write plain spaces", " "))
             };
-            // What has no width, as a rule, is not meant to keep words apart.
+            // Characters without width are usually not meant to separate words.
             if !has_width {
                 let applicability = Applicability::safe_if(is_safe);
-                let away = all("take it away", "").being(applicability);
+                let away = all("take it away", "").with_applicability(applicability);
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
@@ -187,7 +193,7 @@ impl Scan {
     }
 }
 
-/// What a character that cannot be seen is called.
+/// Returns the name of an invisible character.
 fn name_of_space(text: &str) -> String {
     let character = text.chars().next().unwrap_or_default();
     let name = match character {

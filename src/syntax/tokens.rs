@@ -1,30 +1,29 @@
 //! The lexer: from a text to its tokens.
 //!
-//! In: a text and an offset. Out: one token after the other, comments among them; what lies between
-//! two tokens is white space. It knows nothing of the grammar, so it reads any text: a character
-//! that starts no token is one by itself. The scan for comments, recovery and the editor read with
-//! it; the formatter walks the tree.
+//! In: a text and an offset. Out: one token after the other, including comments; between two tokens
+//! there is only white space. The lexer does not know the grammar, so it reads any text: a
+//! character that starts no token is a token by itself. Recovery, the editor and the scan for
+//! comments use it; the formatter walks the tree instead.
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TokenKind {
     /// A word of ASCII letters, digits and `_` that does not start with a digit; `let` is one.
     Name,
-    /// What starts with a digit, or with a `.` and a digit, up to the end of the word: `2`, `1e-3`,
-    /// `30deg`, `0x10`.
+    /// A word that starts with a digit, or with a `.` and a digit: `2`, `1e-3`, `30deg`, `0x10`.
     Number,
-    /// `#` and the word right behind it.
+    /// `#` and the word that follows it without a space.
     Color,
-    /// A text in quotation marks, with these; it ends in its line, before a comment.
+    /// A text with its quotation marks; it ends within its line, before a comment.
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
-    /// One character of any other sort, `**` or `:=`.
+    /// Any other character, `**` or `:=`.
     Sign,
-    /// `// …` without its line end, or `/* … */`; without its `*/` it goes on to the end of the
-    /// text.
+    /// `// …` without its line end, or `/* … */`. Without a `*/`, the comment extends to the end of
+    /// the text.
     Comment,
-    /// A character that cannot be seen and is no white space of the language.
+    /// An invisible character that is not white space of the language.
     OddSpace,
     /// The end of the text.
     End,
@@ -33,7 +32,7 @@ pub enum TokenKind {
 /// A token and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
+    /// Its kind.
     pub kind: TokenKind,
     /// Its first byte.
     pub start: usize,
@@ -54,7 +53,7 @@ impl<'s> Lexer<'s> {
         Self { text, at }
     }
 
-    /// The next token.
+    /// Returns the next token.
     pub fn token(&mut self) -> Token {
         let bytes = self.text.as_bytes();
         let blank = |byte: &u8| matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
@@ -67,7 +66,7 @@ impl<'s> Lexer<'s> {
         Token { kind, start, end }
     }
 
-    /// The next token that is no comment and can be seen.
+    /// Returns the next token that is visible and not a comment.
     pub fn seen_token(&mut self) -> Token {
         loop {
             let token = self.token();
@@ -100,7 +99,7 @@ impl<'s> Lexer<'s> {
         }
     }
 
-    /// A character that is not ASCII, or a control character.
+    /// Reads a token that starts with a control character or one that is not ASCII.
     fn other(&self, start: usize) -> (TokenKind, usize) {
         let first = self.rest(start).chars().next().unwrap_or(' ');
         match first {
@@ -148,8 +147,8 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Up to the mark that closes it in its line; where there is none, the word behind the mark. A
-    /// comment may start within: to the grammar these are no quotation marks.
+    /// Reads up to the closing quotation mark in the same line; without one, the mark and the word
+    /// behind it. A comment may start within, as the grammar has no quotation marks.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);
@@ -178,23 +177,23 @@ impl<'s> Lexer<'s> {
     }
 }
 
-/// Where the line ends; the carriage return of a CRLF belongs to its end.
+/// Returns the end of the line; a CRLF belongs to the line end as a whole.
 pub fn line_end(text: &str, at: usize) -> usize {
     let mut lines = text.get(at..).unwrap_or_default().lines();
     at + lines.next().map_or(0, str::len)
 }
 
-/// Whether a byte may stand in a name.
+/// Returns whether a byte may stand in a name.
 pub fn is_name_char(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
-/// Whether these are the digits of a colour.
+/// Returns whether a text is the three or six digits of a colour code.
 pub fn is_color_code(digits: &str) -> bool {
     matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
-/// Whether a character cannot be seen and is no white space of the language.
+/// Returns whether a character is invisible and not white space of the language.
 fn is_odd_space(c: char) -> bool {
     match c {
         ' ' | '\t' | '\r' | '\n' => false,
@@ -203,7 +202,7 @@ fn is_odd_space(c: char) -> bool {
     }
 }
 
-/// The digits at the start of a number, up to its unit or whatever else follows them.
+/// Returns the number at the start of a text, without its unit or anything else that follows.
 pub fn numeric_part(written: &str) -> &str {
     let bytes = written.as_bytes();
     let byte = |at: usize| bytes.get(at).copied().unwrap_or(b' ');
@@ -229,9 +228,9 @@ pub fn numeric_part(written: &str) -> &str {
     written.get(..end).unwrap_or_default()
 }
 
-/// Whether a name stands in a text, outside of its comments.
+/// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do without a look at their tokens.
+    // Most texts need no lexing.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

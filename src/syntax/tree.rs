@@ -1,8 +1,9 @@
 //! The syntax tree.
 //!
-//! It says what was written and where, and nothing of what it means. Every token of a right file
-//! has its place in a node's span, so that a formatter can put the text together again from the
-//! tree and the comments. What could not be understood is `Bad`, and a problem was reported for it.
+//! It records what was written and where, but not what it means. Every token of a text without
+//! mistakes lies in a node's span, so that the formatter can put the text together again from the
+//! tree and the comments. Text that could not be understood is `Bad`, and a problem was reported
+//! for it.
 
 use crate::{math::Angle, source::Span};
 
@@ -13,19 +14,19 @@ pub struct Tree<'s> {
     pub items: Vec<Item<'s>>,
 }
 
-/// What a file is a list of.
+/// An item of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item<'s> {
     /// `let NAME = VALUE`
     Definition(Definition<'s>),
     /// `KIND NAME? { FIELD VALUE … }`
     Block(Block<'s>),
-    /// Something that is neither.
+    /// Text that is neither.
     Bad(Span),
 }
 
 impl Item<'_> {
-    /// The whole item.
+    /// Returns the whole item.
     pub fn span(&self) -> Span {
         match self {
             Self::Definition(definition) => definition.span,
@@ -49,18 +50,18 @@ pub struct Name<'s> {
 pub struct Definition<'s> {
     /// `let`
     pub keyword: Span,
-    /// What is defined; none if it was left out.
+    /// The name that is defined; `None` if it is missing.
     pub name: Option<Name<'s>>,
-    /// `=`; none if it was left out.
+    /// `=`; `None` if it is missing.
     pub equals: Option<Span>,
-    /// What it is.
+    /// The value of the name.
     pub value: Value<'s>,
     /// From `let` to the value's end.
     pub span: Span,
 }
 
 impl Definition<'_> {
-    /// A definition of which nothing is known yet but its `let`.
+    /// Makes a definition whose other parts are not known yet.
     pub fn begun(keyword: Span) -> Self {
         Self {
             keyword,
@@ -75,26 +76,26 @@ impl Definition<'_> {
 /// `KIND NAME? { FIELD VALUE … }`, or `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {
-    /// What it is a block of; none if it was left out.
+    /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
-    /// The name of the object.
+    /// The name of the object, if it has one.
     pub name: Option<Name<'s>>,
-    /// The indices of several objects; it lies apart, as few blocks have one.
+    /// The indices of several objects; boxed, as few blocks have any.
     pub repetition: Option<Box<Repetition<'s>>>,
-    /// `{`; none if it was left out.
+    /// `{`; `None` if it is missing.
     pub open: Option<Span>,
-    /// The fields in their order.
+    /// The fields, in the order of the text.
     pub fields: Vec<Field<'s>>,
-    /// What stands among the fields and is none.
+    /// Places between the fields that are no fields.
     pub bad: Vec<Span>,
-    /// `}`; none if it was left out.
+    /// `}`; `None` if it is missing.
     pub close: Option<Span>,
     /// The whole block.
     pub span: Span,
 }
 
 impl<'s> Block<'s> {
-    /// A block of which no more is known yet than its place, its kind and its name.
+    /// Makes a block whose other parts are not known yet.
     pub fn new(span: Span, kind: Option<Name<'s>>, name: Option<Name<'s>>) -> Self {
         Self {
             kind,
@@ -108,7 +109,8 @@ impl<'s> Block<'s> {
         }
     }
 
-    /// The place that stands for the block as a whole: its kind, or what comes first.
+    /// Returns the place that represents the whole block: its kind, or the first thing that is
+    /// there.
     pub fn keyword(&self) -> Span {
         match (&self.kind, self.open) {
             (Some(kind), _) => kind.span,
@@ -123,12 +125,12 @@ impl<'s> Block<'s> {
 pub struct Repetition<'s> {
     /// `for`
     pub keyword: Span,
-    /// The indices in their order; none if they were not understood.
+    /// The indices, in the order of the text; empty if they were not understood.
     pub indices: Vec<Index<'s>>,
 }
 
 impl Repetition<'_> {
-    /// From `for` to the last count.
+    /// Returns the span from `for` to the last count.
     pub fn span(&self) -> Span {
         let last = self.indices.last();
         self.keyword
@@ -143,14 +145,14 @@ pub struct Index<'s> {
     pub name: Name<'s>,
     /// `<`
     pub less: Span,
-    /// How many values it has.
+    /// The number of its values.
     pub count: Value<'s>,
     /// The comma after it.
     pub comma: Option<Span>,
 }
 
 impl<'s> Index<'s> {
-    /// An index of which no more is known yet than its name.
+    /// Makes an index whose other parts are not known yet.
     pub(super) fn begun(name: Name<'s>) -> Self {
         Self {
             name,
@@ -168,14 +170,14 @@ pub struct Field<'s> {
     pub name: Name<'s>,
     /// Its value.
     pub value: Value<'s>,
-    /// Both.
+    /// The name and the value.
     pub span: Span,
 }
 
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value<'s> {
-    /// What it is.
+    /// Its form.
     pub kind: ValueKind<'s>,
     /// Its place.
     pub span: Span,
@@ -186,7 +188,7 @@ impl<'s> Value<'s> {
         Self { kind, span }
     }
 
-    /// The values that it is made of, in order.
+    /// Returns the values that it is made of, in order.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             ValueKind::Call(call) => call.arguments.iter().map(|e| &e.value).collect(),
@@ -202,7 +204,7 @@ impl<'s> Value<'s> {
     }
 }
 
-/// The ways to write a value.
+/// Forms of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ValueKind<'s> {
     /// A number by its spelling, without a unit.
@@ -214,11 +216,11 @@ pub enum ValueKind<'s> {
         /// Its unit.
         unit: Unit,
     },
-    /// `#rgb` or `#rrggbb`: the spelling, with the `#`; the number of digits is right.
+    /// `#rgb` or `#rrggbb` with the `#`; the number of digits is right.
     ColorCode(&'s str),
     /// A name.
     Name(&'s str),
-    /// `FUNCTION(ARGUMENT, …)`; its parts lie apart, as they would make every value twice as large.
+    /// `FUNCTION(ARGUMENT, …)`; boxed, as it would double the size of every value.
     Call(Box<Call<'s>>),
     /// `(VALUE)`
     Parentheses(Box<Value<'s>>),
@@ -228,21 +230,22 @@ pub enum ValueKind<'s> {
     Negation {
         /// `-`
         sign: Span,
-        /// What follows it.
+        /// The operand.
         operand: Box<Value<'s>>,
     },
-    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, done from
-    /// left to right. A chain rather than a tree, so that a long sum is no deeper than a short one.
+    /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, applied
+    /// from left to right. A chain rather than a tree, so that a long sum is no deeper than a short
+    /// one.
     Chain {
         /// The first value.
         first: Box<Value<'s>>,
-        /// What is done to it, in order.
+        /// The operators and their right operands, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A field's name without a value after it. It is for the next stage to report, which knows the
-    /// fields' names and so whether the value is missing or the name of a field.
+    /// A missing value behind a field's name. The next stage reports it, as only it knows the
+    /// fields and so whether the value is missing or the name is a value.
     Missing,
-    /// Something that was reported.
+    /// Text for which a problem was reported.
     Bad,
 }
 
@@ -257,14 +260,14 @@ pub struct Call<'s> {
     pub parentheses: Span,
 }
 
-/// An operator and what stands after it.
+/// An operator and its right operand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step<'s> {
-    /// What is done.
+    /// The operator.
     pub operator: Operator,
-    /// Its sign.
+    /// The place of its sign.
     pub sign: Span,
-    /// With what.
+    /// The right operand.
     pub operand: Value<'s>,
 }
 
@@ -277,7 +280,7 @@ pub struct Element<'s> {
     pub comma: Option<Span>,
 }
 
-/// The unit of an angle.
+/// Unit of an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// `deg`
@@ -287,7 +290,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// How it is written.
+    /// Returns the spelling.
     pub fn name(self) -> &'static str {
         match self {
             Self::Degrees => "deg",
@@ -295,7 +298,7 @@ impl Unit {
         }
     }
 
-    /// The angle of so many.
+    /// Returns the angle of a number in this unit.
     pub fn of(self, number: f64) -> Angle {
         match self {
             Self::Degrees => Angle::from_degrees(number),
@@ -304,7 +307,7 @@ impl Unit {
     }
 }
 
-/// What stands between two operands.
+/// A binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operator {
     /// `+`
@@ -318,18 +321,18 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// The one that is written so.
+    /// Returns the operator with a sign; `None` if there is none.
     pub fn of(sign: &str) -> Option<Self> {
         let mut all = [Self::Add, Self::Subtract, Self::Multiply, Self::Divide].into_iter();
         all.find(|operator| sign.chars().eq([operator.sign()]))
     }
 
-    /// Whether it is `*` or `/`, which come before `+` and `-`.
+    /// Returns whether the operator is `*` or `/`, which bind tighter than `+` and `-`.
     pub fn is_of_product(self) -> bool {
         matches!(self, Self::Multiply | Self::Divide)
     }
 
-    /// How it is written.
+    /// Returns the spelling.
     pub fn sign(self) -> char {
         match self {
             Self::Add => '+',
@@ -340,7 +343,7 @@ impl Operator {
     }
 }
 
-/// A number that is right, with its unit if it has one.
+/// Makes a number, with its unit if it has one.
 pub(super) fn number(written: &str) -> ValueKind<'_> {
     let units = [("deg", Unit::Degrees), ("rad", Unit::Radians)];
     let angle = units.into_iter().find_map(|(word, unit)| {
@@ -350,14 +353,14 @@ pub(super) fn number(written: &str) -> ValueKind<'_> {
     angle.unwrap_or(ValueKind::Number(written))
 }
 
-/// `-VALUE`
+/// Makes `-VALUE`.
 pub(super) fn negation(sign: Span, operand: Value<'_>) -> Value<'_> {
     let span = sign.to(operand.span);
     let operand = Box::new(operand);
     Value::new(ValueKind::Negation { sign, operand }, span)
 }
 
-/// `FUNCTION(ARGUMENT, …)`
+/// Makes `FUNCTION(ARGUMENT, …)`.
 pub(super) fn call<'s>(
     function: Name<'s>,
     arguments: Vec<Element<'s>>,
@@ -372,7 +375,7 @@ pub(super) fn call<'s>(
     Value::new(ValueKind::Call(Box::new(call)), span)
 }
 
-/// `(VALUE)`, or `(VALUE, VALUE, …)`
+/// Makes `(VALUE)`, or `(VALUE, VALUE, …)`.
 pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     match <[Element<'_>; 1]>::try_from(elements) {
         Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
@@ -380,7 +383,7 @@ pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     }
 }
 
-/// `VALUE OPERATOR VALUE`; operators of one precedence make one chain.
+/// Makes `VALUE OPERATOR VALUE`, or adds the operator to a chain of the same precedence.
 pub(super) fn chain<'s>(
     mut left: Value<'s>,
     operator: Operator,
@@ -405,7 +408,7 @@ pub(super) fn chain<'s>(
     Value::new(ValueKind::Chain { first, rest }, span)
 }
 
-/// A value that cannot be told.
+/// Makes the node of a value that was not understood.
 pub(super) fn bad<'s>(span: Span) -> Value<'s> {
     Value::new(ValueKind::Bad, span)
 }

@@ -1,7 +1,7 @@
-//! The known words by which recovery tells what was meant.
+//! The words that recovery knows.
 //!
-//! The grammar takes any name for a field, a kind or a value. What a text says that does not follow
-//! it can only be told by which of them are known: in `radius color olive` a value is missing. They
+//! To the grammar, a field, a kind or a value may have any name. Which names are known decides what
+//! a text that does not follow the grammar means: in `radius color olive` a value is missing. They
 //! are looked up in the schema and among the names that the text defines.
 
 use std::{collections::HashMap, sync::OnceLock};
@@ -12,19 +12,19 @@ use super::{
 };
 use crate::schema::{self, Condition, Type, predefined};
 
-/// Functions of other languages that stand for a vector or a colour.
+/// Functions of other languages that make a vector or a colour.
 const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vector3D point Point point3 Point3 Point3D rgba color Color";
 
-/// The words of the language and of a text.
+/// Words of the language and of a text.
 #[derive(Debug)]
 pub struct Vocabulary<'s> {
     text: &'s str,
-    /// The names behind every `let`, once somebody asks.
+    /// The defined names, computed on first use.
     lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
 impl<'s> Vocabulary<'s> {
-    /// Those of a text.
+    /// Makes the vocabulary of a text.
     pub fn new(text: &'s str) -> Self {
         Self {
             text,
@@ -32,47 +32,47 @@ impl<'s> Vocabulary<'s> {
         }
     }
 
-    /// Whether a block can start with a word.
+    /// Returns whether a word is a kind of block.
     pub fn is_kind(&self, word: &str) -> bool {
         schema::block(word).is_some()
     }
 
-    /// What a field of a block takes; a mistyped kind is the nearest one.
+    /// Returns the type of a block's field; for a mistyped kind, of the nearest block's.
     pub fn takes(&self, kind: &str, field: &str) -> Option<Type> {
         let row = schema::block_or_nearest(kind)?;
         row.field(field).map(|field| field.takes)
     }
 
-    /// Whether a field takes a whole number.
+    /// Returns whether the values of a field must be whole numbers.
     pub fn is_whole(&self, kind: &str, field: &str) -> bool {
         let row = schema::block(kind).and_then(|row| row.field(field));
         row.is_some_and(|row| row.must.contains(&Condition::Whole))
     }
 
-    /// Whether all parts of what a field takes are more than 0.
+    /// Returns whether all parts of a field's value must be greater than 0.
     pub fn is_positive(&self, kind: &str, field: &str) -> bool {
         let row = schema::block(kind).and_then(|row| row.field(field));
         row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))
     }
 
-    /// The names of a block's fields; of the nearest block, if it is mistyped.
+    /// Returns the names of a block's fields; for a mistyped kind, of the nearest block's.
     pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
         let row = schema::block_or_nearest(kind);
         row.into_iter().flat_map(|row| row.field_names())
     }
 
-    /// Whether a name is defined somewhere in the text.
+    /// Returns whether the text defines a name.
     pub fn is_let(&self, name: &str) -> bool {
         self.lets().contains_key(name)
     }
 
-    /// The names behind every `let`, each with whether its value starts with a plain number, and
-    /// those of the indices.
+    /// Returns the names of definitions and indices, each with whether it surely is a number: an
+    /// index, or a definition whose value starts with a number without a unit.
     fn lets(&self) -> &HashMap<&'s str, bool> {
         self.lets.get_or_init(|| {
             let mut lets = HashMap::new();
             let mut lexer = Lexer::new(self.text, 0);
-            // The last three tokens but comments.
+            // The last three tokens except comments.
             let mut last = ["", "", ""];
             loop {
                 let token = lexer.token();
@@ -97,28 +97,31 @@ impl<'s> Vocabulary<'s> {
         })
     }
 
-    /// Whether a name stands for a value: one that is defined, a colour, a unit, pi or a function.
+    /// Returns whether a name stands for a value: a defined name, a colour, a unit, pi or a
+    /// function.
     pub fn is_value(&self, name: &str) -> bool {
         predefined(name).is_some() || self.is_let(name)
     }
 
-    /// Whether a name is that of a colour.
+    /// Returns whether a name is that of a colour.
     pub fn is_color(&self, name: &str) -> bool {
         schema::css::color(name).is_some()
     }
 
-    /// Whether a name is surely that of a number: pi, or one that is defined so.
+    /// Returns whether a name surely stands for a number: pi, an index, or a name that is defined
+    /// as one.
     pub fn is_factor(&self, name: &str) -> bool {
         name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
 
-    /// Whether a function of another language stands for a vector or a colour.
+    /// Returns whether a name is a function of another language that makes a vector or a colour.
     pub fn is_foreign_function(&self, name: &str) -> bool {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
-    /// Whether a field that follows the grammar may have been meant otherwise: its block does not
-    /// know it, its value is the name of a field, or it takes a word and has something else.
+    /// Returns whether a field that follows the grammar may have been meant otherwise: its block
+    /// does not have it, its value is the name of a field, or it takes a word and has something
+    /// else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

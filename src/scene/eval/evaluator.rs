@@ -239,7 +239,7 @@ impl<'s> Evaluator<'_, 's> {
             let fix = Fix::new(title, [Edit::new(value.span, text)]);
             (
                 unit,
-                fix.being(match origin {
+                fix.with_applicability(match origin {
                     Origin::Unclear => Applicability::Placeholder,
                     _ => Applicability::safe_if(is_safe),
                 }),

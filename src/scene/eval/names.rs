@@ -13,7 +13,7 @@ use crate::{
     diagnostic::Problems,
     schema::Value,
     source::Span,
-    suggest::Budget,
+    suggest::ComparisonBudget,
     syntax::{
         Tree,
         tree::{self, Item, Name},
@@ -37,7 +37,7 @@ pub struct Names<'s> {
     /// The indices of all its blocks.
     pub(super) indices: HashSet<&'s str>,
     /// The comparisons that are left in search of the nearest name.
-    budget: Budget,
+    budget: ComparisonBudget,
     /// What was reported of names, apart from the other problems, some of which are dropped again.
     pub(in crate::scene) problems: RefCell<Problems>,
     /// The names that were reported: the next use of the same name is another label of its
@@ -185,7 +185,7 @@ impl<'s> Names<'s> {
     }
 
     /// The comparisons that are left in search of the nearest name.
-    pub fn budget(&self) -> &Budget {
+    pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }
 }

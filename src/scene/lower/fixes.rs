@@ -40,7 +40,7 @@ pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix 
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
     let is_safe = taken.all(|text| !text.contains("//") && !text.contains("/*"));
-    fix.being(Applicability::safe_if(is_safe))
+    fix.with_applicability(Applicability::safe_if(is_safe))
 }
 
 impl Lowering<'_> {

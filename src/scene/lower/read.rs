@@ -151,7 +151,7 @@ impl<'s> Lowering<'s> {
         let fixes = diagnostics
             .iter_mut()
             .flat_map(|problem| &mut problem.fixes);
-        fixes.for_each(|fix| fix.mind(self.sources));
+        fixes.for_each(|fix| fix.make_careful(self.sources));
         // An argument that is used in several places is wrong once.
         let mut in_sets: Vec<Span> = Vec::new();
         let is_told = |it: &Diagnostic| it.is("bare_angle");
@@ -208,6 +208,6 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     };
     diagnostics.retain(|diagnostic| !diagnostic.labels.iter().any(|label| holds(label.span)));
     let span = Span::new(SourceId::File, first, first + 1);
-    let times = syntax::times(invalid.len() - 1);
+    let times = syntax::further_places(invalid.len() - 1);
     diagnostics.push(syntax::INVALID_UTF8.at(span, &[&times], None));
 }

@@ -127,7 +127,7 @@ impl<'s> Lowering<'s> {
             None => quoted(names),
         };
         let is_safe = Applicability::safe_if(row.kind == Kind::Triangle);
-        let fix = Fix::new(format!("write {shown}"), edits).being(is_safe);
+        let fix = Fix::new(format!("write {shown}"), edits).with_applicability(is_safe);
         let noun = row.noun;
         let message = format!("{noun} has no field `{}`", unknown.text);
         let problem = error("unknown_field", message).help(fix.title.clone());
@@ -389,7 +389,8 @@ impl Meant {
         place: Span,
         written: Option<(String, Applicability)>,
     ) -> Self {
-        let fix = |(written, applicability)| Fix::write(place, written).being(applicability);
+        let fix =
+            |(written, applicability)| Fix::write(place, written).with_applicability(applicability);
         Self {
             fields: fields.to_vec(),
             shown,

@@ -1,6 +1,6 @@
 //! The fields of a block.
 
-use super::{Recovery, Within, foreign::Place};
+use super::{Context, Recovery, foreign::CommentPosition};
 use crate::{
     diagnostic::{Edit, Fix, Label},
     source::Span,
@@ -13,20 +13,20 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a block from behind its `{` up to what closes it, or to where that is missing.
+    /// Reads a block after its `{`, up to the sign that closes it or to where that is missing.
     pub(super) fn body(&mut self, block: &mut Block<'s>, close: &'static str) {
-        let within = Within {
+        let within = Context {
             kind: block.kind.map_or("", |kind| kind.text),
             is_block: true,
             close,
-            ..Within::default()
+            ..Context::default()
         };
-        let outside = std::mem::replace(&mut self.within, within);
-        let told = self.problems.len();
-        // Braces within are reported, and so it is doubtful which one is missing.
+        let outside = std::mem::replace(&mut self.context, within);
+        let problems_before = self.problems.len();
+        // After reported braces within the block, it is uncertain which one is missing.
         let (mut braces, mut had_braces) = (0_usize, false);
         block.close = loop {
-            self.comments(Place::Start);
+            self.comments(CommentPosition::Start);
             if self.kind(0) == TokenKind::End || self.is_after_block(block) {
                 block.span.end = self.last_end.max(block.span.end);
                 if !had_braces {
@@ -55,7 +55,7 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // What the outer block lacks may stand in the inner one.
+                    // The inner block may contain fields that the outer one lacks.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -67,32 +67,32 @@ impl<'s> Recovery<'_, 's> {
                     block.bad.push(at.to(self.behind()));
                 }
                 _ if self.is_name(0) => self.field(block),
-                _ => self.no_field(block),
+                _ => self.value_without_field(block),
             }
         };
         block.span = block.span.to(block.close.unwrap_or(block.span));
-        self.report_slips(told);
-        self.within = outside;
+        self.report_signs(problems_before);
+        self.context = outside;
     }
 
-    /// Whether a condition or a loop of another language starts here, which no field is like.
+    /// Returns whether a condition or a loop of another language starts here; no field is like one.
     fn is_statement_in_block(&self, name: &str) -> bool {
         let is_one = matches!(name, "if" | "else" | "for" | "while" | "repeat");
         is_one && !self.is_field_name(name)
     }
 
-    /// Whether something starts here that shows that the block's `}` was forgotten: an item at the
+    /// Returns whether an item starts here that shows that the block's `}` was forgotten: at the
     /// start of a line that is indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
             && self.is_on_new_line(0)
-            && self.words.is_kind(self.within.kind)
+            && self.words.is_kind(self.context.kind)
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Whether a sign stands where the block should be closed: at the end of a line, and the next
-    /// one begins an item.
+    /// Returns whether the sign here stands where the block should be closed: it ends a line, and
+    /// the next line begins an item.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
@@ -109,7 +109,7 @@ impl<'s> Recovery<'_, 's> {
         let mut apart = " ";
         if self.written(open.to(end)).contains('\n') {
             apart = self.source.line_end();
-            // A comment behind the last field stays there.
+            // A comment behind the last field stays behind it.
             let line_end = line_end(self.text, end.start);
             let rest = self.text.get(end.start..line_end).unwrap_or_default();
             if self.here().start >= line_end && !rest.contains("/*") {
@@ -129,7 +129,7 @@ impl<'s> Recovery<'_, 's> {
         self.problems.push(found);
     }
 
-    /// A block within a block: an object is read by itself, anything else is passed over.
+    /// Reads an object within a block by itself, and skips any other block.
     fn nested_block(&mut self) {
         let (kind, span) = (self.word(0), self.here());
         let what = format!("the block `{}` stands within another one", shorten(kind));
@@ -137,7 +137,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // Indices may stand here, and no `{` behind them.
+        // The head may have indices, and no `{` may follow them.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -145,14 +145,15 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Definitions within a block are read as if they stood before it, where there are no indices.
+    /// Reads definitions within a block as if they stood before it, unless they use an index of the
+    /// block.
     fn misplaced_let(&mut self, block: &Block<'s>) {
         let (keyword, before) = (self.here(), self.items.len());
-        self.within.is_block = false;
+        self.context.is_block = false;
         while self.is(0, "let") {
             self.definition();
         }
-        self.within.is_block = true;
+        self.context.is_block = true;
         let (text, mut help) = (self.text, "write it before the block");
         let has_index = |value: Span| {
             let text = text.get(value.range()).unwrap_or_default();
@@ -170,7 +171,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISPLACED_LET, keyword, &[help], None);
     }
 
-    /// Indices within a block are read as if they stood in its head.
+    /// Reads indices within a block as if they stood in its head.
     fn misplaced_indices(&mut self, block: &mut Block<'s>) {
         let (keyword, mut indices) = (self.bump(), Vec::new());
         while self.is_name(0) && self.is(1, "<") {
@@ -182,19 +183,19 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn field(&mut self, block: &mut Block<'s>) {
-        if let Some(field) = self.glued() {
+        if let Some(field) = self.field_without_space() {
             block.fields.push(field);
             return;
         }
         let name = self.field_name();
         let equals = matches!(self.word(0), "=" | ":" | ":=").then(|| self.bump());
-        let told = self.problems.len();
-        self.within.takes = self.words.takes(self.within.kind, name.text);
-        self.within.field = name.text;
+        let problems_before = self.problems.len();
+        self.context.takes = self.words.takes(self.context.kind, name.text);
+        self.context.field = name.text;
         let value = self.value_of_field(name.span);
-        let is_known = self.within.takes.take().is_some();
+        let is_known = self.context.takes.take().is_some();
         if let Some(equals) = equals.filter(|_| value.kind != ValueKind::Missing) {
-            self.slip(equals);
+            self.note_sign(equals);
         }
         let is_again = || block.fields.iter().any(|f| f.name.text == name.text);
         if value.kind == ValueKind::Missing && is_known && is_again() {
@@ -207,12 +208,13 @@ impl<'s> Recovery<'_, 's> {
         if value.kind == ValueKind::Bad {
             block.bad.push(value.span);
         }
-        self.settle(told);
+        self.clear_uncertain_fixes(problems_before);
         let span = name.span.to(value.span);
         block.fields.push(Field { name, value, span });
     }
 
-    /// The name of a field: one word, but people write `look at` and `view height`.
+    /// Reads the name of a field; two words such as `look at` or `view height` are reported and
+    /// read as one.
     fn field_name(&mut self) -> Name<'s> {
         let first = self.name();
         let second = self.word(0);
@@ -220,7 +222,7 @@ impl<'s> Recovery<'_, 's> {
             let rest = name.strip_prefix(first.text);
             rest.is_some_and(|rest| rest.strip_prefix('_').unwrap_or(rest) == second)
         };
-        let found = self.words.fields(self.within.kind).find(is_both);
+        let found = self.words.fields(self.context.kind).find(is_both);
         let Some(text) = found.filter(|_| self.is_name(0)) else {
             return first;
         };
@@ -230,14 +232,15 @@ impl<'s> Recovery<'_, 's> {
         Name { text, span }
     }
 
-    /// `radius2` and `colorred`: a field with its value, and no space between them.
-    fn glued(&mut self) -> Option<Field<'s>> {
+    /// Reads `radius2` and `colorred`, a field with its value and no space between them. Returns
+    /// `None` if the word is something else.
+    fn field_without_space(&mut self) -> Option<Field<'s>> {
         let (word, span) = (self.word(0), self.here());
         let is_fraction = self.kind(1) == TokenKind::Number && self.is_adjacent(1);
         if self.is_field_name(word) || self.words.is_let(word) {
             return None;
         }
-        let names = self.words.fields(self.within.kind);
+        let names = self.words.fields(self.context.kind);
         let field = names
             .filter(|field| word.starts_with(field))
             .max_by_key(|f| f.len())?;
@@ -248,7 +251,7 @@ impl<'s> Recovery<'_, 's> {
         if numeric_part(rest) != rest && !self.words.is_value(rest) {
             return None;
         }
-        // Where a value follows, the word is a name.
+        // If a value follows, the word is a name.
         let next = self.word(behind);
         let is_value = self.words.is_value(next) && !self.is_field_name(next);
         if self.starts_value(behind) && (!self.is_name(behind) || is_value) {
@@ -270,16 +273,12 @@ impl<'s> Recovery<'_, 's> {
 
     fn value_of_field(&mut self, name: Span) -> Value<'s> {
         let after = Span::new(self.id, name.end, name.end);
-        self.comments(Place::Value);
+        self.comments(CommentPosition::Value);
         let word = self.word(0);
-        // The next line has another name and a value.
-        let is_next = self.is_on_new_line(0)
-            && self.starts_value(1)
-            && !self.words.is_value(word)
-            && !self.is_foreign_call();
-        let is_field = match self.is_field_name(word) {
-            true => !self.words.is_let(word),
-            false => is_next || self.starts_block() || self.starts_item(),
+        let is_field = if self.is_field_name(word) {
+            !self.words.is_let(word)
+        } else {
+            self.starts_block() || self.starts_item()
         };
         let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
         let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();
@@ -289,16 +288,16 @@ impl<'s> Recovery<'_, 's> {
         self.value()
     }
 
-    /// What stands in place of a field and has no name.
-    fn no_field(&mut self, block: &mut Block<'s>) {
-        let (start, told) = (self.here(), self.problems.len());
+    /// Reads what stands in place of a field and has no field's name.
+    fn value_without_field(&mut self, block: &mut Block<'s>) {
+        let (start, problems_before) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
             return self.stray_parenthesis(true);
         }
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // Behind a comma a name is a value, unless a value of its own follows.
+            // Behind a comma a name is a value, unless it has a value of its own.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -320,15 +319,15 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(start.to(self.behind()));
             return;
         }
-        // A comment behind the values is none of them.
+        // A comment behind the values does not belong to them.
         let span = start.to(end);
         block.bad.push(span);
-        // What is wrong within the values goes with the whole.
-        self.problems.truncate(told);
+        // Slips within the values are part of this one.
+        self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
         let shape: Vec<bool> = values.iter().map(is_vector).collect();
-        let names: &[&'static str] = match (self.within.kind, shape.as_slice()) {
+        let names: &[&'static str] = match (self.context.kind, shape.as_slice()) {
             _ if !block.fields.is_empty() => &[],
             ("sphere", [true] | [true, false]) => &["center", "radius"],
             ("box", [true, true]) => &["min", "max"],
@@ -341,8 +340,8 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        // The corners of a box may be its centre and its size.
-        let said = say::MISSING_FIELD_NAME.safe_if(self.within.kind == "sphere");
+        // The two vectors of a box may also be its centre and its size.
+        let said = say::MISSING_FIELD_NAME.safe_if(self.context.kind == "sphere");
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
         block.fields.extend(fields.map(|(text, value)| {

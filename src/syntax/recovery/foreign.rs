@@ -1,4 +1,4 @@
-//! What other languages write and this one has not: statements, comments by `#` and `--`, and whole
+//! Constructs of other languages: statements, comments that start with `#` or `--`, and whole
 //! files.
 
 use memchr::memmem;
@@ -19,63 +19,50 @@ use crate::{
 /// Maximum number of tokens from a comparison to the `?` of its condition.
 const CONDITION_TOKENS: usize = 24;
 
-/// What may stand in a place: what starts a comment differs.
+/// Position in the text; what starts a comment of another language depends on it.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
-    /// An item or a field.
+pub(super) enum CommentPosition {
+    /// Before an item or a field.
     Start,
-    /// A value.
+    /// Before a value.
     Value,
-    /// An operator, or what follows a value.
+    /// Behind a value.
     Operator,
 }
 
-/// Characters of books and other languages that are no part of this one: what to write for one in
-/// the place of a value, and for one behind a value.
-const OF_BOOKS: &[(&str, [&str; 2])] = &[
+/// Characters of mathematical notation and other languages: what to write for one in the place of a
+/// value, and for one behind a value.
+#[rustfmt::skip]
+const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
-    (
-        "√",
-        [
-            "write `sqrt(2)` for the square root of 2",
-            "write `* sqrt(2)` for times the square root of 2",
-        ],
-    ),
+    ("√", ["write `sqrt(2)` for the square root of 2", "write `* sqrt(2)` for times the square root of 2"]),
     ("²³⁴ⁿ", ["write a product, such as `r * r`"; 2]),
     ("½", ["write `0.5`", "write `+ 0.5`"]),
-    ("¼", ["write `0.25`", "write `+ 0.25`"]),
-    ("¾", ["write `0.75`", "write `+ 0.75`"]),
     ("|", ["write `abs(x)` for the size of x, or `length(v)`"; 2]),
-    (
-        "\\",
-        ["write formulas as in `1 / 2` and `2 * pi`, without `\\`"; 2],
-    ),
-    (
-        "?",
-        ["there are no conditions: `pinhole explain condition` says what to write instead"; 2],
-    ),
+    ("\\", ["write formulas as in `1 / 2` and `2 * pi`, without `\\`"; 2]),
+    ("?", ["there are no conditions: `pinhole explain condition` says what to write instead"; 2]),
 ];
 
-/// What to write in place of a remainder, and of a condition between colours.
+/// Help for a remainder, and for a condition between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// What to write for a word with a character of books.
-pub(super) fn of_books(word: &str, is_behind: bool) -> Option<&'static str> {
+/// Returns the help for a word with a character of mathematical notation.
+pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
-    let (_, [value, behind]) = OF_BOOKS.iter().find(is_in)?;
+    let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
     Some(if is_behind { behind } else { value })
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// `if (a > 0) {`, `for i in 0..10 {`, `import "x"`, `print(r)`: passed over, with what stands
-    /// in braces behind it.
+    /// Reports and skips a statement, such as `if (a > 0) {`, `for i in 0..10 {`, `import "x"` or
+    /// `print(r)`, with the block behind it.
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
         self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // What it may have defined is no second mistake.
+        // A `Bad` item prevents reports of names that the statement may define.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -83,8 +70,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// `Math.sin(a)`, `np.cos(a)`, `std::f64::consts::PI`: known words behind those of a library.
-    pub(super) fn of_other_library(&mut self, first: Name<'s>) -> Option<Value<'s>> {
+    /// Reports `Math.sin(a)`, `np.cos(a)` or `std::f64::consts::PI`: known words behind the name of
+    /// a library. Returns `None` if it is something else.
+    pub(super) fn library_name(&mut self, first: Name<'s>) -> Option<Value<'s>> {
         let mut last = 0;
         loop {
             let signs = match (self.word(last), self.word(last + 1)) {
@@ -115,7 +103,7 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
-    /// Whether a `?` follows in what may be the same value.
+    /// Returns whether a `?` follows within what may be the same value.
     fn has_question_mark(&mut self) -> bool {
         for at in 0..CONDITION_TOKENS {
             match self.word(at) {
@@ -128,8 +116,8 @@ impl<'s> Recovery<'_, 's> {
         false
     }
 
-    /// `n > 1 ? a : b` from behind its first value on, and `if n > 1 then a`: passed over, up to
-    /// where the value ends.
+    /// Reports and skips a condition: `n > 1 ? a : b` after its first operand, or `if n > 1 then
+    /// a`. Returns whether one starts here.
     pub(super) fn condition(&mut self) -> bool {
         let is_one = match self.word(0) {
             "if" => !self.words.is_let("if"),
@@ -160,7 +148,7 @@ impl<'s> Recovery<'_, 's> {
         // `i % 2 == 0 ? red : blue` is one mistake.
         let of_remainder = |it: &Diagnostic| it.message == "there is no operator `%`";
         let last = self.problems.last().filter(|it| of_remainder(it));
-        let of_color = matches!(self.within.takes, Some(Type::Color | Type::Colors));
+        let of_color = matches!(self.context.takes, Some(Type::Color | Type::Colors));
         let mut said = statement("if").unwrap_or_default();
         if of_color || last.is_some() {
             said[1] = TURNS.trim_start_matches("there is no remainder: ");
@@ -173,42 +161,46 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Passes over comments of other languages. They end with their line, or before the `}` of a
-    /// block that was opened in it.
-    pub(super) fn comments(&mut self, place: Place) {
+    /// Skips comments of other languages. They end with their line, or before the `}` of a block
+    /// that was opened in it.
+    pub(super) fn comments(&mut self, place: CommentPosition) {
         while self.starts_comment(place) {
             let start = self.here().start;
             let line = self.written(Span::new(self.id, start, line_end(self.text, start)));
             let before = self.line_before(start);
-            let kept = match before.matches('{').count() > before.matches('}').count() {
-                true => line.trim_end_matches([' ', '\t', '}']),
-                false => line,
+            let kept = if before.matches('{').count() > before.matches('}').count() {
+                line.trim_end_matches([' ', '\t', '}'])
+            } else {
+                line
             };
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // A comment with the right sign would take the brace, too.
+            // With `//`, the comment would include the brace, so there is no fix.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);
             } else {
-                self.slip(place);
+                self.note_sign(place);
             }
             self.seek(end);
         }
     }
 
-    fn starts_comment(&mut self, place: Place) -> bool {
+    fn starts_comment(&mut self, place: CommentPosition) -> bool {
         let word = self.word(0);
         if let Some(digits) = word.strip_prefix('#') {
             return match place {
-                Place::Start => statement(word).is_none(),
-                Place::Operator => !(is_color_code(digits) && self.lists > 0),
-                Place::Value => digits.is_empty() && !self.is_on_new_line(1) && self.is_remark(),
+                CommentPosition::Start => statement(word).is_none(),
+                CommentPosition::Operator => !(is_color_code(digits) && self.lists > 0),
+                CommentPosition::Value => {
+                    digits.is_empty() && !self.is_on_new_line(1) && self.is_remark()
+                }
             };
         }
         if matches!(word, ";" | "%") {
-            let is_place = place == Place::Start || (word == "%" && place == Place::Operator);
+            let is_place = place == CommentPosition::Start
+                || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
         // `1 -- big`, but a difference in `1 --b` and `1 -- b`.
@@ -221,10 +213,11 @@ impl<'s> Recovery<'_, 's> {
         word == "-"
             && self.is(1, "-")
             && self.is_adjacent(1)
-            && (place == Place::Start || (place == Place::Operator && is_remark))
+            && (place == CommentPosition::Start
+                || (place == CommentPosition::Operator && is_remark))
     }
 
-    /// Whether words that mean nothing here follow a sign in its line: `; a comment`.
+    /// Returns whether unknown words follow a sign in its line, as in `; a comment`.
     fn is_prose(&mut self) -> bool {
         let mut is_word = |at| {
             let word = self.word(at);
@@ -240,15 +233,16 @@ impl<'s> Recovery<'_, 's> {
                 && !self.is_on_new_line(1)
     }
 
-    /// Whether words follow a `#` that stands in place of a value, rather than the digits or the
-    /// name of a colour.
+    /// Returns whether the words behind a `#` in the place of a value are a comment rather than the
+    /// digits or the name of a colour.
     fn is_remark(&mut self) -> bool {
         let word = self.word(1);
         let is_lone_color = self.words.is_color(word) && !self.is_on_new_line(2);
         self.is(1, "#") || (self.is_name(1) && !is_color_code(word) && !is_lone_color)
     }
 
-    /// `/* /* */ c */`: the first `*/` ended the comment.
+    /// Reports `/* /* */ c */`, where the first `*/` ended the comment. Returns whether the text
+    /// here is the rest of one.
     pub(super) fn nested_comment(&mut self) -> bool {
         const ENOUGH: usize = 64;
         let start = self.here().start;
@@ -272,7 +266,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// A whole file of another program is one mistake.
+    /// Reports a whole file of another program as one mistake. Returns whether the text is one.
     pub(super) fn foreign_file(&mut self) -> bool {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));

@@ -1,28 +1,29 @@
-//! What people write for `for i < 8, j < i` in the head of an object, as tables.
+//! Slips in the indices of an object's head, `for i < 8, j < i`, as tables.
 //!
-//! In: the head's text from its first word on. Out: which part of it is written otherwise, what is
-//! different, and the head as it is written here, if that is certain.
+//! In: the head's text from its first word on. Out: the place of the first slip, what is wrong, and
+//! the right head if it is certain.
 
 use std::ops::Range;
 
 use crate::syntax::tokens::{is_name_char, numeric_part};
 
-/// The first slip in a head.
-pub(super) struct Slip {
+/// First slip in a head.
+pub(super) struct HeadSlip {
     /// Its place in the text.
     pub at: Range<usize>,
-    /// What is different here; nothing where it is not known.
+    /// The message; empty if the slip is unknown.
     pub said: &'static str,
-    /// What to do where the head is not certain.
+    /// The help for a head that is not certain.
     pub help: String,
-    /// The head as it is written here.
+    /// The right head, if it is certain.
     pub right: Option<String>,
 }
 
-/// What is read, what is different, what is written instead, and what to do where that is not
-/// certain. Of what is read, `I` and `W` are names, `O` is one if another follows it, `N` and `M`
-/// are values, `$` is the end, and the slip stands between `«` and `»`.
-type Row = [&'static str; 4];
+/// Pattern, message, right text, and help if the right text is not certain. In the pattern, `I` and
+/// `W` are names, `O` is a name if another one follows it, `N` and `M` are values, `$` is the end,
+/// `|` separates alternatives, and the slip is between `«` and `»`. The other three contain the
+/// matched texts in the places of `{I}`, `{W}`, `{N}` and `{M}`.
+type HeadPattern = [&'static str; 4];
 
 const FROM_ZERO: &str = "an index begins at 0 by itself";
 const NO_RANGE: &str = "an index has a count, and no range";
@@ -32,12 +33,12 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Stands in place of the name of the object.
+/// Right text of a row that moves the object's name before the `for`.
 const NAME_FIRST: &str = "^";
 
-/// An index with its count.
+/// Patterns of an index with its count.
 #[rustfmt::skip]
-const INDICES: [Row; 29] = [
+const INDICES: [HeadPattern; 27] = [
     ["I < N", "", "{I} < {N}", ""],
     ["« 0 <= » I < N", FROM_ZERO, "{I} < {N}", ""],
     ["« 0 < » I < N", FROM_ZERO, "", "write `for {I} < {N} - 1`, and `{I} + 1` for `{I}` in the values"],
@@ -53,7 +54,6 @@ const INDICES: [Row; 29] = [
     ["I « in|=|:=|from [|( 0 ..|to|:|, N ]|) »", NO_RANGE, "", EITHER],
     ["I « in|=|:=|from M ..=|...|to|: N »", NO_RANGE, "", TO],
     ["I « in|=|:=|from M ..<|..|until N »", NO_RANGE, "", UP_TO],
-    ["I « in|=|:=|from [|( M ..|to|:|, N ]|) »", NO_RANGE, "", TO],
     ["« O I = 0 ;|, » I < N", FROM_ZERO, "{I} < {N}", ""],
     ["« O I = 0 ;|, » I <=|≤ N", FROM_ZERO, "{I} < {N+1}", ""],
     ["« O I = M ;|, » I < N", FROM_ZERO, "", UP_TO],
@@ -65,15 +65,14 @@ const INDICES: [Row; 29] = [
     ["I « in|==|=|:=|:|to|until » N", "`<` stands between an index and its count", "", "write `for {I} < {N}`"],
     ["« I » $", "an index lacks its count", "", LACKS_COUNT],
     ["« W » , I < N", "each index has its own count", "", "write `for {W} < {N}, {I} < {N}`, if both count to {N}"],
-    ["« I » ,", "an index lacks its count", "", LACKS_COUNT],
     ["« N » $", "an index lacks its name", "", "write `for i < {N}`, and use `i` in the values"],
 ];
 
 const COMMA: &str = "a comma separates two indices";
 
-/// What follows an index.
+/// Patterns of what follows an index.
 #[rustfmt::skip]
-const BEHIND: [Row; 9] = [
+const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],
     [",", "", ", ", ""],
     ["« ; I ++|+=1 »", "an index counts by 1 by itself", "", ""],
@@ -86,8 +85,8 @@ const BEHIND: [Row; 9] = [
 ];
 
 /// Finds the first slip in a head that starts with `for`, or with what stands for it.
-pub(super) fn slip(head: &str, has_name: bool) -> Slip {
-    let mut found = Found::default();
+pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
+    let mut found = Captures::default();
     let keyword = name_length(head);
     let behind =
         |text: &str, at: usize| text.len() - text.get(at..).unwrap_or_default().trim_start().len();
@@ -101,7 +100,7 @@ pub(super) fn slip(head: &str, has_name: bool) -> Slip {
     let (mut is_sure, mut is_index, mut name) = (true, true, "");
     let mut right = String::from("for ");
     while is_index || behind(text, at) < text.len() {
-        let mut find = |rows: &'static [Row]| {
+        let mut find = |rows: &'static [HeadPattern]| {
             rows.iter()
                 .find_map(|row| Some((row, found.read(row[0], text, at)?)))
         };
@@ -128,18 +127,15 @@ pub(super) fn slip(head: &str, has_name: bool) -> Slip {
         (at, is_index) = (end, *written == ", ");
     }
     if is_in_parentheses {
-        slip.get_or_insert((
-            open..open + 1,
-            "indices stand without parentheses",
-            String::new(),
-        ));
+        let said = "indices stand without parentheses";
+        slip.get_or_insert((open..open + 1, said, String::new()));
     }
     let (mut at, mut said, help) = slip.unwrap_or((0..head.len(), "", String::new()));
     if head.get(..keyword) != Some("for") {
         (at, said) = (0..keyword, "an object is repeated by `for`");
     }
     let right = is_sure.then(|| format!("{name} {right}").trim_start().to_owned());
-    Slip {
+    HeadSlip {
         at,
         said,
         help,
@@ -147,17 +143,18 @@ pub(super) fn slip(head: &str, has_name: bool) -> Slip {
     }
 }
 
-/// What was read of a head last.
+/// Texts of the last match of each letter.
 #[derive(Default)]
-struct Found<'t> {
+struct Captures<'t> {
     i: &'t str,
     n: &'t str,
     m: &'t str,
     w: &'t str,
 }
 
-impl<'t> Found<'t> {
-    /// Reads what a row says; answers where it ends, and where the slip is.
+impl<'t> Captures<'t> {
+    /// Matches a row's pattern. Returns the end of the match and the place of the slip; `None` if
+    /// the text does not match.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
         let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {
@@ -203,7 +200,7 @@ impl<'t> Found<'t> {
             }
             if let Some(slot) = slot {
                 *slot = rest.get(..length)?;
-                // An index that is mentioned twice is the same one.
+                // Both occurrences of an index must be the same name.
                 if item == "I" && !index.is_empty() && index != *slot {
                     return None;
                 }
@@ -214,7 +211,7 @@ impl<'t> Found<'t> {
         Some((at, under))
     }
 
-    /// A text with what was read in the places of its letters.
+    /// Fills the matched texts into a template.
     fn filled(&self, text: &str) -> String {
         let [n, m] = [self.n, self.m].map(|text| text.parse::<u32>().ok());
         let or = |number: Option<u32>, text: String| number.map_or(text, |it| it.to_string());
@@ -241,14 +238,15 @@ impl<'t> Found<'t> {
     }
 }
 
-/// How long the name is that a text starts with.
+/// Returns the length of the name at the start of a text, in bytes.
 fn name_length(text: &str) -> usize {
     let is_name = !text.starts_with(|c: char| c.is_ascii_digit());
     let length = text.bytes().take_while(|&byte| is_name_char(byte)).count();
     if is_name { length } else { 0 }
 }
 
-/// How long what stands in parentheses is.
+/// Returns the length of the group in parentheses at the start of a text, in bytes; 0 if there is
+/// none.
 fn group_length(text: &str) -> usize {
     if !text.starts_with('(') {
         return 0;
@@ -267,7 +265,8 @@ fn group_length(text: &str) -> usize {
     0
 }
 
-/// How long the value is that a text starts with: operands with operators between them.
+/// Returns the length of the value at the start of a text, in bytes: operands with operators
+/// between them.
 fn value_length(text: &str) -> usize {
     let mut end = 0;
     loop {
@@ -279,7 +278,7 @@ fn value_length(text: &str) -> usize {
         };
         let operand = operand.trim_start();
         let operand = operand.strip_prefix('-').unwrap_or(operand);
-        // `0..8` is no number with two points.
+        // `0..8` is a range rather than a number with two points.
         let number = numeric_part(operand);
         let is_range = operand
             .get(number.len()..)

@@ -1,6 +1,6 @@
 //! Items: definitions, blocks with their heads, and lines that are neither.
 
-use super::{Recovery, foreign::Place, is_name, unquoted};
+use super::{Recovery, foreign::CommentPosition, is_name, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
     schema,
@@ -14,24 +14,24 @@ use crate::{
     },
 };
 
-/// What other languages write for `let`.
+/// Words of other languages for `let`.
 const OTHER_LETS: &str =
     "var const def define set val auto local int float double number vec3 vector";
 
-/// Words before a kind that are no name of an object.
+/// Words before a kind that are not the name of an object.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// As far as this a line is searched for what tells what it is.
-const FAR: usize = 24;
+/// Maximum number of tokens of a line that are searched.
+const LINE_TOKENS: usize = 24;
 
-/// Maximum number of items before a line that are searched for another value of the same name: of
-/// long texts each line would be compared with all.
+/// Maximum number of preceding items that are searched for a definition of the same name. Without
+/// it, each line of a long text would be compared with all.
 const ITEMS_BEFORE: usize = 64;
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads one item, or what stands in the place of one.
+    /// Reads one item, or what stands in its place.
     pub(super) fn any_item(&mut self) {
-        self.comments(Place::Start);
+        self.comments(CommentPosition::Start);
         match self.word(0) {
             "" => {}
             "let" => self.definition(),
@@ -53,12 +53,10 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Definitions.
-
     pub(super) fn definition(&mut self) {
         let keyword = self.bump();
         let mut definition = Definition::begun(keyword);
-        let told = self.problems.len();
+        let problems_before = self.problems.len();
         definition.name = self.name_of_definition(keyword);
         if let Some(name) = definition.name
             && self.is(0, "=")
@@ -74,10 +72,10 @@ impl<'s> Recovery<'_, 's> {
             definition.equals = definition.equals.map(|first| first.to(self.bump()));
         }
         definition.value = self.value_of_definition(definition.name, definition.equals);
-        self.settle(told);
+        self.clear_uncertain_fixes(problems_before);
         definition.span = keyword.to(definition.value.span);
-        let is_right = self.problems.len() == told;
-        // A word is for the next item to tell.
+        let is_right = self.problems.len() == problems_before;
+        // A word starts the next item, and so do `;` and `,`.
         let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
         if !is_next && !self.is_boundary() {
             if is_right {
@@ -91,10 +89,10 @@ impl<'s> Recovery<'_, 's> {
     }
 
     fn value_of_definition(&mut self, name: Option<Name<'s>>, sign: Option<Span>) -> Value<'s> {
-        let (start, told) = (self.here(), self.problems.len());
+        let (start, problems_before) = (self.here(), self.problems.len());
         let value = (!self.is_end_of_definition()).then(|| self.value());
         let Some(name) = name else {
-            self.problems.truncate(told);
+            self.problems.truncate(problems_before);
             return bad(value.map_or(self.behind(), |value| value.span));
         };
         let text = shorten(name.text);
@@ -114,7 +112,8 @@ impl<'s> Recovery<'_, 's> {
         value
     }
 
-    /// Reads the name behind `let`: up to the `=`, and what is no name in it is the mistake.
+    /// Reads the name behind `let`. If more than a name stands before the `=`, all of it is
+    /// reported as a bad name.
     fn name_of_definition(&mut self, keyword: Span) -> Option<Name<'s>> {
         let is_sign = matches!(self.word(0), "=" | ":" | ":=");
         if is_sign || self.is_end_of_definition() || self.is_head(0) {
@@ -137,16 +136,17 @@ impl<'s> Recovery<'_, 's> {
         if is_function && let Some(said) = statement("function") {
             self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         } else {
-            // `2ball`: the digits stand behind.
+            // `2ball`: the help puts the digits at the end.
             let written = self.short(span);
             let letters = written.trim_start_matches(|c: char| c.is_ascii_digit());
             let digits = written.len() - letters.len();
-            let help = match is_name(letters) && digits > 0 {
-                true => format!(
+            let help = if is_name(letters) && digits > 0 {
+                format!(
                     ", as in `{letters}{}`",
                     written.get(..digits).unwrap_or_default()
-                ),
-                false => String::new(),
+                )
+            } else {
+                String::new()
             };
             self.report(&say::BAD_NAME, span, &[&written, &help], None);
         }
@@ -154,28 +154,27 @@ impl<'s> Recovery<'_, 's> {
         None
     }
 
-    /// How many tokens of the line stand before one of some words, or the end of the line.
+    /// Returns the number of tokens of the line before the first one that is an end, at most
+    /// [`LINE_TOKENS`].
     pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
-        while count < FAR && !self.is_on_new_line(count) && !is_end(self.word(count)) {
+        while count < LINE_TOKENS && !self.is_on_new_line(count) && !is_end(self.word(count)) {
             count += 1;
         }
         count
     }
 
-    /// Whether no value can follow any more.
+    /// Returns whether no value can follow.
     fn is_end_of_definition(&mut self) -> bool {
         let word = self.word(0);
         let is_new_name = self.is_name(0) && self.is_on_new_line(0);
         matches!(word, "" | "let" | "{" | "}" | ";")
-            || (is_new_name
-                && !self.is_foreign_call()
-                && (!self.words.is_value(word) || self.is_head(0)))
+            || (is_new_name && (!self.words.is_value(word) || self.is_head(0)))
     }
 
     // Blocks.
 
-    /// Reads a block whose head is right, or missing.
+    /// Reads a block whose head has no slip, or is missing.
     pub(super) fn block(&mut self) {
         let span = self.here();
         let kind = self.is_name(0).then(|| self.name());
@@ -185,7 +184,7 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// Reads a block from behind its kind and its name on.
+    /// Reads a block after its kind and its name.
     fn with_indices(&mut self, mut block: Block<'s>) {
         let goes_on = self.indices(&mut block);
         match block.kind {
@@ -197,7 +196,7 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block from its `{` on.
     fn open_block(&mut self, mut block: Block<'s>) {
-        // No block stands in another one; deeper than this they are passed over.
+        // Deeper blocks are skipped: no block may stand in another one.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -217,7 +216,7 @@ impl<'s> Recovery<'_, 's> {
         self.blocks -= 1;
     }
 
-    /// `scene { sphere { … } }`: the blocks within are read by themselves.
+    /// Reads the blocks within `scene { sphere { … } }` one by one.
     fn container(&mut self, kind: Name<'s>) {
         let name = shorten(kind.text);
         let what = format!("blocks stand by themselves, not within `{name}`");
@@ -228,8 +227,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// A line that starts with a name, as a rule: a block, whatever stands in its head, or
-    /// something else.
+    /// Reads a line that, as a rule, starts with a name: a block, whatever its head, or something
+    /// else.
     fn block_or_line(&mut self) {
         let has_other_kind = self.is_name(0) && self.is_kind(1) && !self.is_kind(0);
         if self.is_head(0) && !has_other_kind {
@@ -237,15 +236,15 @@ impl<'s> Recovery<'_, 's> {
         }
         let count = self.find_in_line(|word| matches!(word, "{" | "}" | ";"));
         if self.is_name(0) && self.is(count, "{") && !self.is_on_new_line(count) {
-            return self.odd_head(count);
+            return self.block_with_bad_head(count);
         }
         if !(self.is_name(0) && (self.missing_let() || self.unopened_block())) {
             self.line();
         }
     }
 
-    /// A `{` with more than a kind and a name before it.
-    fn odd_head(&mut self, count: usize) {
+    /// Reads a block that has more than a kind and a name before its `{`.
+    fn block_with_bad_head(&mut self, count: usize) {
         let first = self.name();
         if matches!(self.word(0), "=" | ":" | ":=") && self.is_name(1) && count == 3 {
             self.bump();
@@ -295,8 +294,8 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, from behind
-    /// the `=` on.
+    /// Reads `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, after
+    /// the `=`.
     fn named_block(&mut self, start: Span, name: Name<'s>) {
         let (mut name, mut kind) = (name, self.name());
         let whole = start.to(kind.span);
@@ -313,8 +312,8 @@ impl<'s> Recovery<'_, 's> {
         self.open_block(Block::new(whole, Some(kind), Some(name)));
     }
 
-    /// A kind without the `{` that should follow: `camera:`, `image 640 480`, `sphere (…)`, `sphere
-    /// Ball` and then fields.
+    /// Reads a block that lacks its `{`: `camera:`, `image 640 480`, `sphere (…)`, or `sphere Ball`
+    /// followed by fields. Returns whether one starts here.
     fn unopened_block(&mut self) -> bool {
         let Some(row) = schema::block(self.word(0)) else {
             return false;
@@ -331,12 +330,12 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads a block from where its `{` is missing on.
+    /// Reads a block after the place where its `{` is missing.
     fn without_open(&mut self, mut block: Block<'s>, kind: Name<'s>) {
         let head = block.span.to(self.behind());
         block.span = head;
         let close = if self.is(0, "(") { ")" } else { "}" };
-        // What is written in place of the ` {`.
+        // The place that ` {` replaces.
         let mut open = self.behind();
         if matches!(self.word(0), "(" | ":" | "=") {
             open = open.to(self.bump());
@@ -345,7 +344,7 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if self.is_name(0) && self.words.takes(kind.text, self.word(0)).is_some() {
             self.body(&mut block, close);
-            // Where nothing closes it, or braces stand within, it is not known where it ends.
+            // If nothing closes the block, or it contains braces, its end is unknown.
             let is_flat = !self.written(block.span).contains('{');
             fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));
@@ -365,7 +364,7 @@ impl<'s> Recovery<'_, 's> {
 
     // Lines that are no items.
 
-    /// `x = 3`, and what may have been `let x = 3`.
+    /// Reads `x = 3`, and what may have been `let x = 3`. Returns whether one stands here.
     fn missing_let(&mut self) -> bool {
         let (word, start) = (self.word(0), self.here());
         let is_let = suggest::nearest(word, ["let"]).is_some()
@@ -381,41 +380,31 @@ impl<'s> Recovery<'_, 's> {
         let mut definition = Definition::begun(Span::new(self.id, start.start, start.start));
         definition.name = Some(name);
         definition.equals = Some(self.bump());
-        let told = self.problems.len();
-        let value = match self.is_end_of_definition() {
-            true => bad(self.behind()),
-            false => self.value(),
-        };
+        let problems_before = self.problems.len();
+        let value = (!self.is_end_of_definition()).then(|| self.value());
+        let value = value.unwrap_or_else(|| bad(self.behind()));
         let text = shorten(name.text);
         let written = self.written(value.span);
-        let mut used = written.split(|c: char| !c.is_alphanumeric());
-        let is_used = used.any(|used| used == word);
-        let is_defined = |item: &Item<'s>| match item {
-            Item::Definition(it) => it.name.is_some_and(|it| it.text == word),
-            _ => false,
-        };
-        let mut before = self.items.iter().rev().take(ITEMS_BEFORE);
-        let is_again = before.any(is_defined);
-        if is_plain && (self.words.is_let(word) || is_used || is_again) {
+        if is_plain && self.is_assigned_again(word, written) {
             let what = "assignments: a name keeps its value";
             let help = "give the new value a name of its own with `let NAME = VALUE`";
-            self.problems.truncate(told);
+            self.problems.truncate(problems_before);
             self.report(&say::NOT_IN_LANGUAGE, start, &[what, help], None);
         } else {
             let before = Span::new(self.id, start.start, name.span.start);
             let mut edits = vec![Edit::new(before, "let ")];
-            // A `;` goes with the words of the other language.
+            // A `;` at the end belongs to the other language, as its word for `let` does.
             if self.is(0, ";") {
                 let sign = self.bump();
                 edits.push(Edit::remove_in(sign, self.text));
             }
             let is_next = self.is_on_new_line(0) || (self.is_name(0) && self.is(1, "="));
-            let is_right = self.problems.len() == told && value.kind != ValueKind::Bad;
-            self.problems.truncate(told);
+            let is_right = self.problems.len() == problems_before && value.kind != ValueKind::Bad;
+            self.problems.truncate(problems_before);
             let right = shorten(written);
             let title = format!("write `let {text} = {right}`");
             let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // The word of another language may say more than `let`.
+            // The word of another language may mean more than `let`.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);
             self.report(&said, start, &[&text, &right], fix);
@@ -427,7 +416,19 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Something outside of blocks that starts no block.
+    /// Returns whether the text, or the value that follows, has a name already.
+    fn is_assigned_again(&self, name: &str, value: &str) -> bool {
+        let is_defined = |item: &Item<'s>| match item {
+            Item::Definition(it) => it.name.is_some_and(|it| it.text == name),
+            _ => false,
+        };
+        let mut words = value.split(|c: char| !c.is_alphanumeric());
+        self.words.is_let(name)
+            || words.any(|word| word == name)
+            || self.items.iter().rev().take(ITEMS_BEFORE).any(is_defined)
+    }
+
+    /// Reads a line outside of every block that starts no item.
     fn line(&mut self) {
         let start = self.here();
         if self.is_name(0) {
@@ -443,11 +444,11 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Goes on to the next item that starts a line, or behind a `}`.
+    /// Skips to the next item that starts a line, or past a `}`.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
-                self.comments(Place::Start);
+                self.comments(CommentPosition::Start);
                 let word = self.word(0);
                 let is_item = word == "let" || statement(word).is_some();
                 if is_item || self.is_head(0) || (self.is_name(0) && self.is(1, "=")) {
@@ -464,14 +465,14 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // What closes nothing.
+    // Stray closing signs.
 
-    /// `)` or `]` that was never opened. It is taken away only where it would mean nothing wherever
-    /// it was opened.
+    /// Reports a `)` or `]` that was never opened. The fix removes it only if it would mean nothing
+    /// wherever it was opened.
     pub(super) fn stray_parenthesis(&mut self, is_needless: bool) {
         let sign = self.word(0);
         let span = self.bump();
-        // What opened it may be in something else that is wrong in its line.
+        // The sign that opened it may be in another slip of its line.
         let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();
@@ -480,14 +481,14 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::STRAY_CLOSING, span, &[sign], fix);
     }
 
-    /// `}` that was never opened, and others right behind it.
+    /// Reports a `}` that was never opened, with any others right behind it.
     fn stray_brace(&mut self) {
         let first = self.bump();
         let mut all = first;
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // Before anything but an item it may stand for another sign.
+        // Unless an item follows, it may stand for another sign.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // It may close a block that lacks its `{`.
         let mut last = self.problems.iter().rev().take(8);

@@ -1,8 +1,8 @@
-//! Lists: values between parentheses, or between what people write for them.
+//! Lists: values in parentheses, or in other brackets that stand for them.
 
 use std::ops::RangeInclusive;
 
-use super::{Recovery, example, foreign::Place, is_plain_number};
+use super::{Recovery, example, foreign::CommentPosition, is_plain_number};
 use crate::{
     color::{are_shares, whole_parts},
     diagnostic::{Edit, Fix},
@@ -16,33 +16,33 @@ use crate::{
     },
 };
 
-/// How many values a list may have.
-type Count = RangeInclusive<usize>;
+/// Number of values that a list may have.
+type PartCount = RangeInclusive<usize>;
 
-/// A list as it was read.
+/// A list as it was written.
 struct List<'s> {
     elements: Vec<Element<'s>>,
     /// From its `(` to its `)`.
     span: Span,
-    /// Whether it stands in round parentheses.
+    /// Whether its brackets are parentheses.
     is_round: bool,
-    /// The values before which a comma is missing.
+    /// Indices of the values that lack a comma before them.
     gaps: Vec<usize>,
-    /// A comma without a value on one side.
+    /// A comma that lacks a value on one side.
     needless: Option<Span>,
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Whether braces in place of a value hold a list, rather than fields.
+    /// Returns whether braces in place of a value contain a list rather than fields.
     pub(super) fn is_flat_list(&mut self) -> bool {
         let sign = 1 + usize::from(self.is(1, "-"));
         let is_number = self.kind(sign) == TokenKind::Number;
         self.is(0, "{") && (is_number || (self.is_name(sign) && self.is(sign + 1, ",")))
     }
 
-    /// A vector, a pair, or a value in parentheses.
+    /// Reads a vector, a pair, or a value in parentheses.
     pub(super) fn group(&mut self, close: &'static str) -> Value<'s> {
-        let takes = self.within.takes;
+        let takes = self.context.takes;
         let (parts, count) = match takes {
             Some(Type::Vector) => (Some(Type::Number), 3..=3),
             Some(Type::Colors) => (Some(Type::Color), 2..=2),
@@ -51,12 +51,12 @@ impl<'s> Recovery<'_, 's> {
             Some(Type::Color) => (takes, 3..=3),
             Some(Type::Method) | None => (None, 3..=3),
         };
-        let (start, told) = (self.here(), self.problems.len());
+        let (start, problems_before) = (self.here(), self.problems.len());
         let Some(list) = self.list(close, parts, &count) else {
             return bad(start.to(self.behind()));
         };
         let span = list.span;
-        if !list.is_round && self.problems.len() == told {
+        if !list.is_round && self.problems.len() == problems_before {
             return self.brackets(list, None);
         }
         let Some(elements) = self.checked(list, &count) else {
@@ -65,9 +65,9 @@ impl<'s> Recovery<'_, 's> {
         Value::new(group(elements), span)
     }
 
-    /// The call of a function whose name was read.
+    /// Reads the arguments of a function whose name was read.
     pub(super) fn call(&mut self, function: Name<'s>) -> Value<'s> {
-        let told = self.problems.len();
+        let problems_before = self.problems.len();
         let count = match schema::function(function.text) {
             Some(row) if row.more => row.takes.len()..=usize::MAX,
             Some(row) => row.takes.len()..=row.takes.len(),
@@ -77,13 +77,13 @@ impl<'s> Recovery<'_, 's> {
             return bad(function.span.to(self.behind()));
         };
         let parentheses = list.span;
-        if self.words.is_foreign_function(function.text) && self.problems.len() == told {
+        if self.words.is_foreign_function(function.text) && self.problems.len() == problems_before {
             return self.foreign_function(function, list);
         }
-        // `rgb(100%, 0%, 0%)`, and what another function of colours takes
+        // `rgb(100%, 0%, 0%)`, or the arguments of another function that makes colours.
         let is_known = schema::function(function.text).is_some();
-        if self.problems.len() > told + 1 && self.written(parentheses).contains('%') {
-            self.problems.truncate(told);
+        if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
+            self.problems.truncate(problems_before);
             if is_known {
                 let help = ["%", "write `255` for `100%`"];
                 self.report(&say::UNKNOWN_OPERATOR, parentheses, &help, None);
@@ -95,24 +95,18 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether the call of a function of another language starts here. It is a value on a new line,
-    /// too.
-    pub(super) fn is_foreign_call(&mut self) -> bool {
-        self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
-    }
-
-    /// `vec3(1, 2, 3)` and `rgba(255, 0, 0, 1)`
+    /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read.
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
         let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
-        let (function, takes) = match (name.text, self.within.takes) {
+        let (function, takes) = match (name.text, self.context.takes) {
             ("rgba" | "color" | "Color", _) | (_, Some(Type::Color)) => ("rgb", Type::Color),
             _ => ("", Type::Vector),
         };
         if takes == Type::Color && values.len() == 4 {
             values.truncate(3);
         }
-        let fits = values.len() == 3 && self.within.takes.is_none_or(|t| t == takes);
+        let fits = values.len() == 3 && self.context.takes.is_none_or(|t| t == takes);
         let mut list = self.list_of(&values);
         if takes == Type::Color {
             list = whole_parts(&list);
@@ -124,28 +118,29 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// What is between parentheses, however it is separated; none if its end is missing.
+    /// Reads a list, however its values are separated. Returns `None` if its end is missing or it
+    /// nests too deep.
     fn list(
         &mut self,
         close: &'static str,
         parts: Option<Type>,
-        count: &Count,
+        count: &PartCount,
     ) -> Option<List<'s>> {
         if self.depth >= NESTING_LIMIT {
             self.pass_over();
             return None;
         }
-        let takes = std::mem::replace(&mut self.within.takes, parts);
+        let takes = std::mem::replace(&mut self.context.takes, parts);
         self.depth += 1;
         self.lists += 1;
         let list = self.parts(close, count);
         self.lists -= 1;
         self.depth -= 1;
-        self.within.takes = takes;
+        self.context.takes = takes;
         list.filter(|_| !self.too_deep)
     }
 
-    fn parts(&mut self, close: &'static str, count: &Count) -> Option<List<'s>> {
+    fn parts(&mut self, close: &'static str, count: &PartCount) -> Option<List<'s>> {
         let open = self.bump();
         let mut list = List {
             elements: Vec::new(),
@@ -154,42 +149,34 @@ impl<'s> Recovery<'_, 's> {
             gaps: Vec::new(),
             needless: None,
         };
-        // Reported once, however many there are.
-        let (mut semicolons, mut labels, told) = (Vec::new(), Vec::new(), self.problems.len());
+        // Each is reported once for the whole list.
+        let (mut semicolons, mut labels, problems_before) =
+            (Vec::new(), Vec::new(), self.problems.len());
         loop {
             let is_value_next = list.elements.last().is_none_or(|last| last.comma.is_some());
-            self.comments(match is_value_next {
-                true => Place::Value,
-                false => Place::Operator,
+            self.comments(if is_value_next {
+                CommentPosition::Value
+            } else {
+                CommentPosition::Operator
             });
             if self.too_deep {
                 return None;
             }
             let word = self.word(0);
-            // A definition's line ended before this name.
-            let is_next_item = !self.within.is_block && self.is_name(0) && self.is_on_new_line(0);
             if word == close || (matches!(word, ")" | "]") && close != "}") {
                 list.span = open.to(self.bump());
                 list.is_round &= word == ")";
-                let is_plain = self.problems.len() == told;
+                let is_plain = self.problems.len() == problems_before;
                 self.semicolons(&semicolons, is_plain);
                 self.names_of_parts(&labels, is_plain);
                 let last = list.elements.last().and_then(|last| last.comma);
                 list.needless = list.needless.or(last);
                 return Some(list);
             }
-            // Of `(0, 1, 0} radius 1 )` two signs were exchanged.
-            let next = self.word(1);
-            let goes_on = self.within.is_block && self.is_name(1) && !self.is_on_new_line(1);
-            if (word, close) == ("}", ")") && goes_on && self.is_field_name(next) && self.lists == 1
-            {
+            if self.is_exchanged_brace(close) {
                 let brace = self.bump();
-                self.report(
-                    &say::UNCLOSED_PARENTHESIS,
-                    open,
-                    &[],
-                    Fix::write(brace, ")"),
-                );
+                let fix = Fix::write(brace, ")");
+                self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
                 list.span = open.to(brace);
                 return Some(list);
             }
@@ -202,17 +189,8 @@ impl<'s> Recovery<'_, 's> {
                     Some(last) if last.comma.is_none() => last.comma = Some(comma),
                     _ => list.needless = list.needless.or(Some(comma)),
                 }
-            } else if self.ends_value() || is_next_item {
-                let is_whole = !is_value_next && list.gaps.is_empty() && list.needless.is_none();
-                let last = list.elements.last().map(|element| &element.value);
-                let last = last.filter(|value| value.kind != ValueKind::Bad);
-                // A sum or a product may end behind any part of it.
-                let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
-                let fits = is_whole && is_sure && count.contains(&list.elements.len());
-                self.unclosed(open, close, last.filter(|_| fits).map(|last| last.span.end));
-                list.span = open.to(self.behind());
-                list.is_round = true;
-                return fits.then_some(list);
+            } else if self.ends_value() {
+                return self.unclosed_list(list, close, count);
             } else {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
@@ -233,7 +211,42 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Semicolons in place of the commas of a list, which may be wrong in other ways, too.
+    /// Returns whether the `}` here stands for a `)`: in `(0, 1, 0} radius 1 )` two signs were
+    /// exchanged.
+    fn is_exchanged_brace(&mut self, close: &str) -> bool {
+        let next = self.word(1);
+        (self.word(0), close) == ("}", ")")
+            && self.lists == 1
+            && self.context.is_block
+            && self.is_name(1)
+            && !self.is_on_new_line(1)
+            && self.is_field_name(next)
+    }
+
+    /// Reports a list that lacks its end. Returns it if all of its values are certain.
+    fn unclosed_list(
+        &mut self,
+        mut list: List<'s>,
+        close: &str,
+        count: &PartCount,
+    ) -> Option<List<'s>> {
+        let last = list.elements.last();
+        let is_whole = last.is_some_and(|last| last.comma.is_none())
+            && list.gaps.is_empty()
+            && list.needless.is_none();
+        let last = last.map(|element| &element.value);
+        let last = last.filter(|value| value.kind != ValueKind::Bad);
+        // A sum or a product may end behind any part of it.
+        let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
+        let fits = is_whole && is_sure && count.contains(&list.elements.len());
+        let end = last.filter(|_| fits).map(|last| last.span.end);
+        self.unclosed(list.span, close, end);
+        list.span = list.span.to(self.behind());
+        list.is_round = true;
+        fits.then_some(list)
+    }
+
+    /// Reports semicolons in place of commas; if the list has other slips, without a fix.
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
@@ -247,8 +260,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// The names of parts, each with its `=`. In any other order than the usual one, nobody knows
-    /// what is meant.
+    /// Reports the names of parts, each with its `=`. In another order than x, y, z or r, g, b
+    /// their meaning is uncertain, and there is no fix.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {
             return;
@@ -257,18 +270,17 @@ impl<'s> Recovery<'_, 's> {
         let names: String = labels.iter().map(name).collect();
         let is_usual = matches!(names.as_str(), "xyz" | "rgb");
         let fix = (is_usual && is_plain).then(|| {
-            let edits = labels.iter();
-            let edits = edits.map(|label| Edit::remove_in(*label, self.text));
+            let edits = labels.iter().map(|it| Edit::remove_in(*it, self.text));
             Fix::new("take the names away", edits)
         });
         let help = "write the values alone, in the order x, y, z";
         self.report(&say::NOT_IN_LANGUAGE, first, &["names of parts", help], fix);
     }
 
-    /// A list without its end, and where that is missing if it is known.
+    /// Reports a list without its end; `end` is where the end is missing, if that is known.
     fn unclosed(&mut self, open: Span, close: &str, end: Option<usize>) {
         let word = self.word(0);
-        // A field's name behind which no value stands does not end a list, nor does a sign.
+        // A list ends before a field's name only if a value follows that name.
         let is_end = matches!(word, "" | "}") || (self.is_name(0) && self.starts_value(1));
         let before = match word {
             "" => "at the end".to_owned(),
@@ -284,16 +296,18 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
-    /// The values of a list, if it is known how many they are.
-    fn checked(&mut self, list: List<'s>, count: &Count) -> Option<Vec<Element<'s>>> {
+    /// Returns the values of a list if their number is certain.
+    fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
         let fits = count.contains(&elements.len());
         if let Some(comma) = list.needless {
-            let fix = self.remove("remove this comma", comma);
-            match fits {
-                true => self.report(&say::NEEDLESS_COMMA, comma, &[], fix),
-                false => self.report(&say::MISSING_PART, comma, &[], None),
-            }
+            let said = if fits {
+                &say::NEEDLESS_COMMA
+            } else {
+                &say::MISSING_PART
+            };
+            let fix = fits.then(|| self.remove("remove this comma", comma));
+            self.report(said, comma, &[], fix);
             return fits.then_some(elements);
         }
         let Some(&first) = list.gaps.first() else {
@@ -313,7 +327,7 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // `min1.6` is one word that was torn, rather than two values.
+        // `min1.6` is one word that was split, rather than two values.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),
@@ -324,7 +338,7 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(elements)
     }
 
-    /// `rgb [255, 0, 0]`, `normalize <1, 2, 3>`
+    /// Reads the arguments of `rgb [255, 0, 0]` or `normalize <1, 2, 3>`.
     pub(super) fn call_in_brackets(
         &mut self,
         name: Name<'s>,
@@ -335,24 +349,24 @@ impl<'s> Recovery<'_, 's> {
             Type::Color => Type::Color,
             _ => Type::Vector,
         };
-        let told = self.problems.len();
+        let problems_before = self.problems.len();
         if let Some(list) = self.list(close, None, &(3..=3))
-            && self.problems.len() == told
+            && self.problems.len() == problems_before
         {
-            let outside = self.within.takes.replace(takes);
+            let outside = self.context.takes.replace(takes);
             self.brackets(list, Some((name, row)));
-            self.within.takes = outside;
+            self.context.takes = outside;
         }
         bad(name.span.to(self.behind()))
     }
 
-    /// A list in other brackets, perhaps behind the function that takes it.
+    /// Reports a list in other brackets, possibly the argument of a function.
     fn brackets(
         &mut self,
         list: List<'s>,
         behind: Option<(Name<'s>, &schema::Function)>,
     ) -> Value<'s> {
-        let takes = self.within.takes;
+        let takes = self.context.takes;
         let span = behind.map_or(list.span, |(name, _)| name.span.to(list.span));
         let (what, function, count) = match takes {
             Some(Type::Color) => ("a colour", "rgb", 3),
@@ -374,9 +388,10 @@ impl<'s> Recovery<'_, 's> {
         let fix = fits.then(|| replace(span, right));
         let said = say::BRACKETS.safe_if(function.is_empty() || !are_shares(&[&parts]));
         self.report(&said, span, &[what, example(takes)], fix);
-        let kind = match fits && function.is_empty() {
-            true => ValueKind::Tuple(list.elements),
-            false => ValueKind::Bad,
+        let kind = if fits && function.is_empty() {
+            ValueKind::Tuple(list.elements)
+        } else {
+            ValueKind::Bad
         };
         Value { kind, span }
     }

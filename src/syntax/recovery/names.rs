@@ -1,4 +1,4 @@
-//! Names where values stand: what they stand for, and calls of functions.
+//! Names in the places of values: references and calls of functions.
 
 use super::{Recovery, example};
 use crate::{
@@ -12,10 +12,10 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// A name, the call of a function, or what people write for one.
+    /// Reads a name, the call of a function, or a construct of another language in place of one.
     pub(super) fn reference(&mut self) -> Value<'s> {
         let name = self.name();
-        if let Some(value) = self.of_other_library(name) {
+        if let Some(value) = self.library_name(name) {
             return value;
         }
         if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
@@ -41,24 +41,25 @@ impl<'s> Recovery<'_, 's> {
         // `sizes[i]` and `Ball[3]`
         let (is_let, is_known) = (self.words.is_let(name.text), self.words.is_value(name.text));
         if self.is(0, "[") && self.is_adjacent(0) && (is_let || !is_known) {
-            let told = self.problems.len();
+            let problems_before = self.problems.len();
             self.group("]");
-            self.problems.truncate(told);
+            self.problems.truncate(problems_before);
             // `Ball[3].center`
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();
             }
             let span = name.span.to(self.behind());
-            let words = match is_let {
-                true => [
+            let words = if is_let {
+                [
                     "lists to take a value from",
                     "write a block for each value, or compute the value from the index",
-                ],
-                false => [
+                ]
+            } else {
+                [
                     "values of objects",
                     "define the place with `let`, or write the formula that gives it, and use that in both",
-                ],
+                ]
             };
             self.report(&say::NOT_IN_LANGUAGE, span, &words, None);
             return bad(span);
@@ -69,7 +70,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether the argument of a function that lacks its parentheses starts at a token ahead.
+    /// Returns whether the argument of a function without parentheses starts at a token ahead.
     fn is_argument(&mut self, ahead: usize) -> bool {
         let (word, kind) = (self.word(ahead), self.kind(ahead));
         let is_sign = matches!(word, "[" | "<") || (word == "{" && self.is_flat_list());
@@ -81,7 +82,8 @@ impl<'s> Recovery<'_, 's> {
             && (kind == TokenKind::Number || is_negative || is_name || (is_sign && ahead == 0))
     }
 
-    /// `sin 30deg`, `rgb 255 0 0`, `length v - 1`: as many operands as the function takes.
+    /// Reads the arguments in `sin 30deg`, `rgb 255 0 0` or `length v - 1`: as many operands as the
+    /// function takes.
     fn call_without_parentheses(&mut self, name: Name<'s>, row: &schema::Function) -> Value<'s> {
         let close = match self.word(0) {
             "[" => "]",
@@ -96,7 +98,7 @@ impl<'s> Recovery<'_, 's> {
             (true, 0) => usize::MAX,
             _ => row.takes.len(),
         };
-        let told = self.problems.len();
+        let problems_before = self.problems.len();
         let mut arguments = vec![self.signed()];
         while arguments.len() < most {
             let comma = usize::from(self.is(0, ","));
@@ -109,14 +111,14 @@ impl<'s> Recovery<'_, 's> {
             arguments.push(self.signed());
         }
         let span = name.span.to(self.behind());
-        if self.problems.len() > told {
+        if self.problems.len() > problems_before {
             return bad(span);
         }
         let (list, end) = (self.list_of(&arguments), self.last_end);
         let is_whole = row.accepts(arguments.len())
             && (!row.more || self.lists == 0)
             && !self.goes_on(&arguments);
-        // What is computed with the result may have been meant for the argument.
+        // An operator behind the argument may have been meant to be within the parentheses.
         let whole = self.operations(bad(span)).span;
         let is_all = self.last_end == end;
         let mut fix = replace(span, format!("{}({list})", name.text));
@@ -124,7 +126,7 @@ impl<'s> Recovery<'_, 's> {
             fix.title += ", or put more of what follows between the parentheses";
         }
         let said = say::MISSING_PARENTHESES.safe_if(is_all);
-        let help = [example(self.within.takes)];
+        let help = [example(self.context.takes)];
         self.report(&said, span, &help, Some(fix).filter(|_| is_whole));
         bad(whole)
     }

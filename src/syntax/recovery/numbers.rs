@@ -1,4 +1,4 @@
-//! Numbers, with what people write behind them.
+//! Numbers, with units and other text behind them.
 
 use super::Recovery;
 use crate::{
@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// What people write for a unit, how much of the right one it is, and that one: nothing for a
-/// length, which is in metres.
+/// Spellings of units, the factor to the right unit, and that unit. Lengths have none: they are in
+/// metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -32,7 +32,8 @@ pub(super) fn unit_of(written: &str) -> Option<(f64, &'static str)> {
     row.map(|&(_, factor, unit)| (factor, unit))
 }
 
-/// A number times a factor, without the last digits, which are those of rounding.
+/// Returns a number times a factor, rounded to 12 digits so that the result has no digits of
+/// rounding error.
 fn scaled(number: &str, factor: f64) -> Option<String> {
     if factor == 1.0 {
         return Some(number.to_owned());
@@ -42,7 +43,7 @@ fn scaled(number: &str, factor: f64) -> Option<String> {
     Some(format!("{rounded}"))
 }
 
-/// `0x10`, `0b11` and `0o17`
+/// Returns the value of a number such as `0x10`, `0b11` or `0o17`.
 fn in_other_base(written: &str) -> Option<u32> {
     let (base, digits) = written.strip_prefix('0')?.split_at_checked(1)?;
     let base = match base {
@@ -55,7 +56,7 @@ fn in_other_base(written: &str) -> Option<u32> {
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// A number, with its unit if it has one.
+    /// Reads a number, with its unit if it has one.
     pub(super) fn number(&mut self) -> Value<'s> {
         let written = self.word(0);
         let span = self.bump();
@@ -77,11 +78,11 @@ impl<'s> Recovery<'_, 's> {
         let behind = Span::new(self.id, span.start + digits.len(), span.end);
         match unit_of(unit).filter(|_| !self.words.is_let(unit)) {
             Some(right) => self.with_unit(digits, right, span, behind),
-            None => self.odd_number(written, digits, span, behind),
+            None => self.bad_number(written, digits, span, behind),
         }
     }
 
-    /// A number with a unit that is none, or stands apart from it.
+    /// Reports a number whose unit is wrong, or is separated from it.
     fn with_unit(
         &mut self,
         number: &'s str,
@@ -94,7 +95,7 @@ impl<'s> Recovery<'_, 's> {
             "" => Type::Number,
             _ => Type::Angle,
         };
-        let fits = self.within.takes.is_none_or(|takes| takes == wanted);
+        let fits = self.context.takes.is_none_or(|takes| takes == wanted);
         let label = match wanted {
             _ if !fits => "only angles have a unit, such as `30deg`",
             Type::Number if unit.to_ascii_lowercase().starts_with(['p', 'f']) => {
@@ -105,8 +106,8 @@ impl<'s> Recovery<'_, 's> {
         };
         let text = scaled(number, factor).filter(|_| fits);
         let angle = |unit| ValueKind::Angle { number, unit };
-        // What is told about an angle, or a number, that stays the same number is not told only
-        // once this is mended.
+        // A correct angle or number is kept, so that what else is wrong with it is reported at
+        // once.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => angle(Unit::Degrees),
@@ -124,11 +125,11 @@ impl<'s> Recovery<'_, 's> {
         Value::new(meant, whole)
     }
 
-    /// What starts as a number does and is none.
-    fn odd_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
+    /// Reports a word that starts with a digit and is not a number.
+    fn bad_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
-        let takes = self.within.takes;
+        let takes = self.context.takes;
         let is_scaled = takes == Some(Type::Vector) && self.words.is_let(unit);
         let (label, right, place) = if is_scaled || self.words.is_factor(unit) {
             let takes_number = is_scaled || matches!(takes, None | Some(Type::Number));
@@ -154,17 +155,17 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// `0.5x1.5x2` and `4x4`
+    /// Returns the right text of `0.5x1.5x2` or `4x4`.
     fn sizes(&self, written: &str, span: Span) -> Option<String> {
         let parts: Vec<&str> = written.split(['x', 'X']).collect();
         let is_number = |part: &&str| !part.is_empty() && numeric_part(part) == *part;
         if !parts.iter().all(is_number) {
             return None;
         }
-        match (parts.as_slice(), self.within.takes) {
+        match (parts.as_slice(), self.context.takes) {
             ([_, _, _], None | Some(Type::Vector)) => Some(format!("({})", parts.join(", "))),
             // `width 640x480`
-            ([a, b], Some(Type::Number)) if self.within.field == "width" => {
+            ([a, b], Some(Type::Number)) if self.context.field == "width" => {
                 let before = self.text.get(..span.start)?.rsplit('{').next()?;
                 let behind = self.text.get(span.end..)?.split('}').next()?;
                 let is_free = !has_name(before, "height") && !has_name(behind, "height");

@@ -1,4 +1,4 @@
-//! Indices: what stands between the name of an object and its `{`.
+//! Indices of a block: the part of its head between the name of the object and the `{`.
 
 use super::{Recovery, head, is_name};
 use crate::{
@@ -13,7 +13,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Whether indices start at a token ahead: a line that starts with `for` is for others to tell.
+    /// Returns whether indices start at a token ahead. A line that starts with `for` is a statement
+    /// of another language instead.
     pub(super) fn is_repetition(&mut self, ahead: usize) -> bool {
         let words = ["for", "foreach", "loop", "repeat", "while"];
         let is_word = words.contains(&self.word(ahead)) && !self.is_on_new_line(ahead);
@@ -24,14 +25,13 @@ impl<'s> Recovery<'_, 's> {
                 || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads the indices of a block, if there are any: `for i < 8, j < i`. In what other languages
-    /// write for it there is one mistake, whatever stands before the `{`. Answers whether the block
-    /// goes on behind them.
+    /// Reads the indices of a block, if it has any: `for i < 8, j < i`. Anything else up to the `{`
+    /// is reported as one mistake. Returns whether the block goes on behind the indices.
     pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
         if !self.is_repetition(0) {
             return true;
         }
-        let told = self.problems.len();
+        let problems_before = self.problems.len();
         let kind = block.kind.map_or("", |kind| kind.text);
         let (is_for, keyword) = (self.is(0, "for"), self.bump());
         let mut repetition = Repetition {
@@ -59,7 +59,7 @@ impl<'s> Recovery<'_, 's> {
                 self.bump();
             }
             let span = keyword.to(self.behind());
-            if self.problems.len() == told {
+            if self.problems.len() == problems_before {
                 self.bad_repetition(span, block.name.is_some());
             }
             block.bad.push(span);
@@ -69,7 +69,8 @@ impl<'s> Recovery<'_, 's> {
         is_right || self.is(0, "{") || self.starts_fields(kind)
     }
 
-    /// Whether a field of a kind with its value stands here, so that a `{` is missing before it.
+    /// Returns whether a field of a kind with its value starts here, so that a `{` is missing
+    /// before it.
     pub(super) fn starts_fields(&mut self, kind: &str) -> bool {
         let is_field = self.is_name(0) && self.words.takes(kind, self.word(0)).is_some();
         is_field && self.starts_value(1) && !self.is(1, "<")
@@ -81,19 +82,17 @@ impl<'s> Recovery<'_, 's> {
         let fix = slip.right.map(|right| replace(span, right));
         let is_char = |c: char| !c.is_ascii_alphanumeric();
         let words = |text| str::split(text, is_char).filter(|word| !word.is_empty());
-        // Nothing but signs is new or gone.
+        // The fix is safe if it only changes signs.
         let mut edits = fix.iter().flat_map(|fix| &fix.edits);
         let is_safe = edits.all(|edit| words(&edit.text).eq(words(written)));
-        let at = Span::new(
-            self.id,
-            span.start + slip.at.start,
-            span.start + slip.at.end,
-        );
-        self.told(at, slip.said, &slip.help, fix, is_safe);
+        let [start, end] = [slip.at.start, slip.at.end].map(|at| span.start + at);
+        let at = Span::new(self.id, start, end);
+        self.report_head(at, slip.said, &slip.help, fix, is_safe);
     }
 
-    /// Reports a slip in a head; without words, how a head is written.
-    pub(super) fn told(
+    /// Reports a slip in a head. If message or help is empty, the report explains how a head is
+    /// written.
+    pub(super) fn report_head(
         &mut self,
         at: Span,
         said: &str,
@@ -107,8 +106,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, at, &words, fix);
     }
 
-    /// `Ball[8]`, `Ball[i] for i < 8` and `i < 8` in place of a name, up to the `for` or the `{`.
-    /// Answers whether it was one of them.
+    /// Reports `Ball[8]`, `Ball[i] for i < 8` or `i < 8` in place of a name, up to the `for` or the
+    /// `{`. Returns whether it was one of them.
     pub(super) fn counted_name(&mut self, kind: &str, rest: Span) -> bool {
         let written = self.written(rest);
         let id = self.id;
@@ -118,35 +117,34 @@ impl<'s> Recovery<'_, 's> {
             let inner = index.trim_matches(['[', ']', ' ']);
             let (at, is_repeated) = (part(open, written.len()), self.is_repetition(0));
             let fix = Fix::new(format!("write `{kind} {name}`"), [Edit::new(at, "")]);
-            let said = match is_repeated {
-                true => "the objects of a head with indices are numbered by themselves",
-                false => "a count stands in a `for`",
+            let said = if is_repeated {
+                "the objects of a head with indices are numbered by themselves"
+            } else {
+                "a count stands in a `for`"
             };
             let head = format!("{kind} {name}");
             let head = head.trim_end();
-            let head = match is_name(inner) && !self.words.is_let(inner) {
-                true => format!("write `{head} for {inner} < 8 {{` with the number of its values"),
-                false => format!("write `{head} for i < {inner} {{`, and use `i` in the values"),
+            let head = if is_name(inner) && !self.words.is_let(inner) {
+                format!("write `{head} for {inner} < 8 {{` with the number of its values")
+            } else {
+                format!("write `{head} for i < {inner} {{`, and use `i` in the values")
             };
-            self.told(at, said, &head, Some(fix).filter(|_| is_repeated), false);
+            self.report_head(at, said, &head, Some(fix).filter(|_| is_repeated), false);
             return true;
         }
         let Some((before, _)) = written.split_once('<').filter(|_| !self.is_repetition(0)) else {
             return false;
         };
-        let name = before
-            .trim_end()
-            .bytes()
-            .rev()
-            .take_while(|&byte| is_name_char(byte));
-        let start = before.trim_end().len() - name.count();
+        let before = before.trim_end();
+        let name = before.bytes().rev().take_while(|byte| is_name_char(*byte));
+        let start = before.len() - name.count();
         let index = format!("for {}", written.get(start..).unwrap_or_default());
         let slip = head::slip(&index, true);
         let fix = (slip.right.is_some() && slip.said.is_empty()).then(|| {
             let edit = Edit::insert(self.id, rest.start + start, "for ");
             Fix::new(format!("write `{}`", shorten(&index)), [edit])
         });
-        self.told(
+        self.report_head(
             part(start, written.len()),
             "an index stands behind a `for`",
             "",
@@ -156,7 +154,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads `i < 8`, with the comma behind it, or `i <= 7`.
+    /// Reads `i < 8`, or `i <= 7`, with the comma behind it.
     pub(super) fn index(&mut self) -> Index<'s> {
         let (name, less) = (self.name(), self.bump());
         let equal = self.is(0, "=").then(|| self.bump());

@@ -1,11 +1,11 @@
 //! Values: operators and operands.
 
 use super::{
-    Recovery, example,
-    foreign::{self, Place},
-    is_name,
-    joined::{are_names, is_same_in_parentheses},
-    unquoted,
+    Context, Recovery,
+    adjacent::{are_names, is_same_in_parentheses},
+    example,
+    foreign::{self, CommentPosition},
+    is_name, unquoted,
 };
 use crate::{
     diagnostic::{Edit, Fix},
@@ -19,68 +19,82 @@ use crate::{
     },
 };
 
-/// The operators of a product, and what people write for them.
+/// Operators of a product, and signs that people write for them.
 const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
-/// Those of a sum.
+/// Operators of a sum, and signs that people write for them.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
 impl<'s> Recovery<'_, 's> {
-    /// The value of a field, of a definition, or of a `--set`, with whatever stands in place of it.
+    /// Reads the value of a field, a definition or a `--set` argument, with everything that stands
+    /// in its place.
     pub(super) fn value(&mut self) -> Value<'s> {
         let start = self.here();
-        let (mut values, mut commas) = (Vec::new(), 0_usize);
-        self.too_deep = false;
-        loop {
-            if values.is_empty() {
-                self.comments(Place::Value);
-            } else {
-                self.comments(Place::Operator);
-                if self.is(0, ",") && self.goes_on_behind_comma() {
-                    self.bump();
-                    commas += 1;
-                } else if !self.goes_on(&values) {
-                    break;
-                }
-            }
-            let at = self.last_end;
-            let is_method = self.within.takes == Some(Type::Method);
-            values.push(match is_method && self.is_name(0) && !self.is(1, "(") {
-                true => self.hyphenated(),
-                false => self.expression(),
-            });
-            if self.too_deep {
-                return bad(start.to(self.behind()));
-            }
-            if self.last_end == at {
-                break;
-            }
-        }
-        if values.len() > 1 && self.closes_nothing() {
-            let (sign, span) = (self.word(0), self.bump());
-            let parts = self
-                .within
-                .takes
-                .and_then(Type::parts)
-                .map(|(_, count)| count);
-            let is_list = parts == Some(values.len()) && commas + 1 == values.len();
-            let is_positive = self.words.is_positive(self.within.kind, self.within.field);
-            let is_sure = values.iter().all(|value| match &value.kind {
-                ValueKind::Name(name) => self.words.is_value(name),
-                ValueKind::Negation { .. } if is_positive => false,
-                _ => self.is_number(value),
-            });
-            let fix = (is_list && is_sure && sign == ")").then(|| {
-                let title = format!("write `({})`", self.list_of(&values));
-                Fix::new(title, [Edit::insert(self.id, start.start, "(")])
-            });
-            self.report(&say::STRAY_CLOSING, span, &[sign], fix);
-            self.operations(bad(start.to(span)));
+        let (values, commas) = self.values();
+        if self.too_deep {
             return bad(start.to(self.behind()));
         }
-        let mut value = self.joined(values, commas);
-        while self.closes_nothing() {
+        if values.len() > 1 && self.is_stray_closing() {
+            return self.unopened_list(start, &values, commas);
+        }
+        let value = self.adjacent_values(values, commas);
+        self.stray_closings(start.start, value)
+    }
+
+    /// Reads values as long as they may belong together. Returns them, and the number of commas
+    /// between them.
+    fn values(&mut self) -> (Vec<Value<'s>>, usize) {
+        let (mut values, mut commas) = (Vec::new(), 0);
+        self.too_deep = false;
+        self.comments(CommentPosition::Value);
+        loop {
+            let at = self.last_end;
+            let is_method = self.context.takes == Some(Type::Method);
+            values.push(if is_method && self.is_name(0) && !self.is(1, "(") {
+                self.hyphenated()
+            } else {
+                self.expression()
+            });
+            if self.too_deep || self.last_end == at {
+                return (values, commas);
+            }
+            self.comments(CommentPosition::Operator);
+            if self.is(0, ",") && self.goes_on_behind_comma() {
+                self.bump();
+                commas += 1;
+            } else if !self.goes_on(&values) {
+                return (values, commas);
+            }
+        }
+    }
+
+    /// Reports a list that lacks its `(`, before its `)`.
+    fn unopened_list(&mut self, start: Span, values: &[Value<'s>], commas: usize) -> Value<'s> {
+        let (sign, span) = (self.word(0), self.bump());
+        let parts = self.context.takes.and_then(Type::parts);
+        let is_list = parts.is_some_and(|(_, count)| count == values.len());
+        let is_list = is_list && commas + 1 == values.len();
+        let Context { kind, field, .. } = self.context;
+        let is_positive = self.words.is_positive(kind, field);
+        let is_sure = values.iter().all(|value| match &value.kind {
+            ValueKind::Name(name) => self.words.is_value(name),
+            ValueKind::Negation { .. } if is_positive => false,
+            _ => self.is_number(value),
+        });
+        let fix = (is_list && is_sure && sign == ")").then(|| {
+            let title = format!("write `({})`", self.list_of(values));
+            Fix::new(title, [Edit::insert(self.id, start.start, "(")])
+        });
+        self.report(&say::STRAY_CLOSING, span, &[sign], fix);
+        self.operations(bad(start.to(span)));
+        bad(start.to(self.behind()))
+    }
+
+    /// Reports closing signs behind a value that starts at an offset, and reads the operators that
+    /// follow each of them.
+    fn stray_closings(&mut self, start: usize, mut value: Value<'s>) -> Value<'s> {
+        while self.is_stray_closing() {
             let is_needless = is_same_in_parentheses(&value);
-            let is_call = self.unopened_call(start.start);
+            let is_call = self.unopened_call(start);
             if !is_call {
                 self.stray_parenthesis(is_needless);
             }
@@ -98,21 +112,21 @@ impl<'s> Recovery<'_, 's> {
         value
     }
 
-    fn closes_nothing(&mut self) -> bool {
+    fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // In place of a block's `}`, it is for the block to tell.
-        let is_end = |this: &mut Self| this.within.is_block && this.is_end_of_block();
-        matches!(word, ")" | "]") && word != self.within.close && !is_end(self)
+        // In place of a block's `}`, the block reports it.
+        let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
+        matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
 
-    /// Whether what stands behind some values belongs to them.
+    /// Returns whether the next token belongs to the values before it.
     pub(super) fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
         let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
         match self.kind(0) {
-            _ if is_new && !self.within.is_block => false,
+            _ if is_new && !self.context.is_block => false,
             TokenKind::Name => {
-                // The words of a colour or a method, written apart.
-                let is_words = matches!(self.within.takes, Some(Type::Color | Type::Method))
+                // The name of a colour or a method in separate words.
+                let is_words = matches!(self.context.takes, Some(Type::Color | Type::Method))
                     && are_names(values)
                     && (!self.starts_value(1) || self.is_field_name(next));
                 !is_new
@@ -127,7 +141,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether a comma stands between values, rather than between two fields.
+    /// Returns whether the comma here separates values rather than fields.
     fn goes_on_behind_comma(&mut self) -> bool {
         let word = self.word(1);
         matches!(self.kind(1), TokenKind::Number | TokenKind::Color)
@@ -136,7 +150,7 @@ impl<'s> Recovery<'_, 's> {
             || (self.is_name(1) && matches!(self.word(2), "," | ")"))
     }
 
-    /// `multi-jittered`. A comment or the end of a line does not belong into a name.
+    /// Reads a name with hyphens, such as `multi-jittered`, without spaces, comments or line ends.
     fn hyphenated(&mut self) -> Value<'s> {
         let mut span = self.bump();
         while self.is(0, "-") && self.is_name(1) && self.is_adjacent(0) && self.is_adjacent(1) {
@@ -149,7 +163,7 @@ impl<'s> Recovery<'_, 's> {
 
     // Operators.
 
-    /// A value with its operators.
+    /// Reads a value with its operators.
     pub(super) fn expression(&mut self) -> Value<'s> {
         let first = self.signed();
         self.operations(first)
@@ -161,7 +175,7 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // An `if` is read in the place of an operand.
+        // An `if` is handled in the place of an operand.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {
             return bad(left.span.to(self.behind()));
@@ -169,7 +183,7 @@ impl<'s> Recovery<'_, 's> {
         left
     }
 
-    /// Goes on with a value as long as these operators follow.
+    /// Extends a value while these operators follow.
     fn chain(
         &mut self,
         mut left: Value<'s>,
@@ -177,13 +191,13 @@ impl<'s> Recovery<'_, 's> {
         operand: fn(&mut Self) -> Value<'s>,
     ) -> Value<'s> {
         loop {
-            self.comments(Place::Operator);
+            self.comments(CommentPosition::Operator);
             let written = self.word(0);
             if self.too_deep || !signs.contains(&written) {
                 return left;
             }
             let sign = self.bump();
-            self.comments(Place::Value);
+            self.comments(CommentPosition::Value);
             if PRODUCT.contains(&self.word(0)) {
                 self.report(&say::MISSING_OPERAND, sign, &["after", written], None);
                 left = bad(left.span.to(self.passed_operators()));
@@ -215,7 +229,7 @@ impl<'s> Recovery<'_, 's> {
         chain(left, operator, sign, right)
     }
 
-    /// `r^2` and `r**2` as a product.
+    /// Returns the fix that writes `r^2` or `r**2` as a product.
     fn power(&self, sign: &str, base: &Value<'s>, exponent: &Value<'s>) -> Option<Fix> {
         let is_square = matches!(sign, "^" | "**") && exponent.kind == ValueKind::Number("2");
         let is_one = matches!(base.kind, ValueKind::Number(_) | ValueKind::Name(_));
@@ -234,7 +248,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, span, &[written, help], fix);
     }
 
-    /// An operator behind which nothing stands.
+    /// Reports an operator that lacks its right operand.
     fn without_operand(&mut self, left: Value<'s>, written: &str, sign: Span) -> Value<'s> {
         if written == "%" {
             self.unknown_operator(written, sign, false, None);
@@ -244,20 +258,21 @@ impl<'s> Recovery<'_, 's> {
         bad(left.span.to(sign))
     }
 
-    /// Passes over operators that have no value before them, with the value behind them.
+    /// Skips operators that lack a left operand, and the value behind them.
     fn passed_operators(&mut self) -> Span {
         while PRODUCT.contains(&self.word(0)) {
             self.bump();
         }
         if !self.ends_value() {
-            let told = self.problems.len();
+            let problems_before = self.problems.len();
             self.signed();
-            self.problems.truncate(told);
+            self.problems.truncate(problems_before);
         }
         self.behind()
     }
 
-    /// Whether no value can stand here: at what closes or separates, a field, or an item.
+    /// Returns whether no value can stand here: before a closing or separating sign, a field, or an
+    /// item.
     pub(super) fn ends_value(&mut self) -> bool {
         let word = self.word(0);
         match self.kind(0) {
@@ -274,7 +289,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     pub(super) fn signed(&mut self) -> Value<'s> {
-        self.comments(Place::Value);
+        self.comments(CommentPosition::Value);
         let written = self.word(0);
         if !SUM.contains(&written) {
             return self.operand();
@@ -282,12 +297,12 @@ impl<'s> Recovery<'_, 's> {
         if self.depth >= NESTING_LIMIT {
             return self.pass_over();
         }
-        let (sign, told) = (self.bump(), self.problems.len());
+        let (sign, problems_before) = (self.bump(), self.problems.len());
         self.depth += 1;
         let operand = self.signed();
         self.depth -= 1;
         if written == "+" {
-            if self.problems.len() == told {
+            if self.problems.len() == problems_before {
                 let edit = Edit::new(Span::new(self.id, sign.start, operand.span.start), "");
                 let fix = Fix::new(format!("write `{}`", self.short(operand.span)), [edit]);
                 self.report(&say::PLUS_SIGN, sign, &[], fix);
@@ -324,7 +339,7 @@ impl<'s> Recovery<'_, 's> {
             }
             _ => {
                 let start = self.behind();
-                self.unexpected("a value", example(self.within.takes));
+                self.unexpected("a value", example(self.context.takes));
                 // `\frac{1}{2}` is one mistake.
                 if word == "\\" {
                     self.bump();
@@ -343,7 +358,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether a value can start at a token ahead.
+    /// Returns whether a value can start at a token ahead.
     pub(super) fn starts_value(&mut self, ahead: usize) -> bool {
         match self.kind(ahead) {
             TokenKind::Number | TokenKind::Color | TokenKind::Quoted | TokenKind::Word => true,
@@ -392,7 +407,7 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Passes over the rest of a value that nests too deep.
+    /// Reports a value that nests too deep, and skips its rest.
     pub(super) fn pass_over(&mut self) -> Value<'s> {
         let first = self.here();
         self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);

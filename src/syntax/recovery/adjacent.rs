@@ -1,5 +1,5 @@
-//! Several values where one should stand: the parts of a list without parentheses, a product
-//! without its sign, a number with commas, or the value of a field without a name.
+//! Several values in the place of one: the parts of a list without parentheses, a product without
+//! its sign, a number with commas, or the value of a field without its name.
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
@@ -16,24 +16,29 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// The parts of a list, for a text.
+    /// Returns the text of a list's parts.
     pub(super) fn list_of(&self, values: &[Value<'s>]) -> String {
         let texts = values.iter().map(|value| self.written(value.span));
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// One value of several that were written behind each other.
-    pub(super) fn joined(&mut self, mut values: Vec<Value<'s>>, commas: usize) -> Value<'s> {
+    /// Reports several values that stand in the place of one, and returns the value that they
+    /// probably mean.
+    pub(super) fn adjacent_values(
+        &mut self,
+        mut values: Vec<Value<'s>>,
+        commas: usize,
+    ) -> Value<'s> {
         let (first, second, span) = match values.as_slice() {
             [] => return bad(self.behind()),
             [_] => return values.swap_remove(0),
             [first, second, rest @ ..] => {
-                // A comment of another language may stand behind the last one.
+                // The span ends with the last value: a comment of another language may follow.
                 let last = rest.last().unwrap_or(second);
                 (first.clone(), second.clone(), first.span.to(last.span))
             }
         };
-        let (takes, whole) = (self.within.takes, self.written(span));
+        let (takes, whole) = (self.context.takes, self.written(span));
         let numbers = values.iter().all(is_plain_number);
         let right = format!("({})", self.list_of(&values));
         if values.iter().any(|value| value.kind == ValueKind::Bad) {
@@ -44,7 +49,7 @@ impl<'s> Recovery<'_, 's> {
             _ => is_plain_number(value) || self.is_factor(value),
         });
         match (takes, values.len()) {
-            // `dark red` and `multi jittered` are one name, written wrongly.
+            // `dark red` and `multi jittered` are one misspelt name.
             (Some(Type::Color | Type::Method), _)
                 if are_names(&values) && commas == 0 && !whole.contains(['\n', '/']) =>
             {
@@ -65,7 +70,7 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // `2 ball`, where a vector should stand: times whatever it is.
+            // `2 ball`, in place of a vector: a product, whatever `ball` is.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -99,48 +104,51 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Values that begin within a torn word, as in `center1.6, 1, 0`, are not the author's.
+    /// Reports a list without parentheses. If it begins within a word, as in `center1.6, 1, 0`, a
+    /// part of the first value is missing, and there is no fix.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
-        let help = example(self.within.takes);
-        let is_torn = self
-            .line_before(span.start)
-            .ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let help = example(self.context.takes);
+        let before = self.line_before(span.start);
+        let is_torn = before.ends_with(|c: char| c.is_alphanumeric() || c == '_');
         let fix = fix.filter(|_| !is_torn);
         self.report(&say::MISSING_PARENTHESES, span, &[help], fix);
     }
 
-    /// Two values with nothing between: an operator is missing, or the name of a field.
+    /// Reports two values with nothing between them: an operator is missing, or the name of a
+    /// field.
     pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
         let is_whole = self.is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
         let (l, r) = (self.short(left.span), self.short(right.span));
-        let is_method = self.within.takes == Some(Type::Method);
-        if self.within.is_block && self.lists == 0 && (is_whole || is_method) {
-            let takes_color = self.words.takes(self.within.kind, "color").is_some();
-            let said = match takes_color && self.is_color(right) {
-                true => &say::COLOR_WITHOUT_NAME,
-                false => &say::MISSING_FIELD_NAME,
+        let is_method = self.context.takes == Some(Type::Method);
+        if self.context.is_block && self.lists == 0 && (is_whole || is_method) {
+            let takes_color = self.words.takes(self.context.kind, "color").is_some();
+            let said = if takes_color && self.is_color(right) {
+                &say::COLOR_WITHOUT_NAME
+            } else {
+                &say::MISSING_FIELD_NAME
             };
             return self.report(said, right.span, &[&r], None);
         }
-        // `2 pi`, if both are surely numbers.
+        // `2 pi`, if both surely are numbers.
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // `2 ball` and `(n * 0.28) ball`, in the place of a vector or an angle.
-        let is_scaled = matches!(self.within.takes, Some(Type::Vector | Type::Angle))
+        // `2 ball` and `(n * 0.28) ball`, in place of a vector or an angle.
+        let is_scaled = matches!(self.context.takes, Some(Type::Vector | Type::Angle))
             && self.is_named_factor(left, right);
         let is_product =
-            is_scaled || are_numbers && matches!(self.within.takes, None | Some(Type::Number));
+            is_scaled || are_numbers && matches!(self.context.takes, None | Some(Type::Number));
         let title = format!("write `{l} * {r}`");
         let fix = is_product.then(|| Fix::new(title, [Edit::new(sign, " * ")]));
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
     }
 
-    /// `sin30deg * i)`: the `)` in front of which reading stopped belongs to the only function
-    /// since an offset that is written together with its argument.
+    /// Reports the missing `(` of `sin30deg * i)`: the `)` here belongs to the only function since
+    /// an offset that is joined with its argument. Returns whether there is one.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Of a longer value with many parentheses too many, each would be read to its end.
+        // Limits the time for a value with many surplus parentheses, each of which would read it
+        // again.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;
@@ -174,7 +182,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Whether a value starts with a name that is surely that of a number.
+    /// Returns whether a value starts with a name that surely stands for a number.
     pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Name(name) => self.words.is_factor(name),
@@ -193,7 +201,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether a value is surely made of numbers.
+    /// Returns whether a value surely consists of numbers.
     pub(super) fn is_number(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Number(_) => true,
@@ -206,39 +214,39 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Whether a number, or numbers in parentheses, stand before a name.
+    /// Returns whether the left value is a number, or numbers in parentheses, and the right one a
+    /// name.
     fn is_named_factor(&self, left: &Value<'s>, right: &Value<'s>) -> bool {
         let is_factor = is_plain_number(left) || matches!(left.kind, ValueKind::Parentheses(_));
         is_factor && self.is_number(left) && matches!(right.kind, ValueKind::Name(_))
     }
 
-    /// `1,5` and `1,000,000`
+    /// Reports `1,5` and `1,000,000`. Returns whether the values are such a number.
     fn comma_in_number(&mut self, span: Span) -> bool {
         let parts: Vec<&str> = self.written(span).split(',').collect();
         let is_digits = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
         let Some((head, rest)) = parts.split_first() else {
             return false;
         };
-        let is_whole = self.words.is_whole(self.within.kind, self.within.field);
+        let is_whole = self.words.is_whole(self.context.kind, self.context.field);
         let are_thousands = rest.iter().all(|part| part.len() == 3);
-        let (message, right) = if !rest.iter().all(is_digits) {
+        let is_single = rest.len() == 1;
+        let is_decimal = is_single && numeric_part(head) == *head && !head.contains('.');
+        let is_grouped = are_thousands && (!is_single || is_whole);
+        if !(rest.iter().all(is_digits) && (is_grouped || is_decimal)) {
             return false;
-        } else if are_thousands && (rest.len() > 1 || is_whole) {
-            ("no commas stand in a number", parts.join("_"))
-        } else if rest.len() == 1 && numeric_part(head) == *head && !head.contains('.') {
-            ("a decimal point is written `.`, not `,`", parts.join("."))
+        }
+        // A comma before exactly three digits separates thousands: a decimal fraction seldom has
+        // just three.
+        let is_whole_number = are_thousands && is_single && *head != "0";
+        let (message, sign) = if is_grouped || is_whole_number {
+            ("no commas stand in a number", "_")
         } else {
-            return false;
-        };
-        // Of three digits nobody writes all behind a point.
-        let is_whole_number = are_thousands && rest.len() == 1 && *head != "0";
-        let (message, right) = match is_whole_number {
-            true => ("no commas stand in a number", parts.join("_")),
-            false => (message, right),
+            ("a decimal point is written `.`, not `,`", ".")
         };
         let comma = span.start + head.len();
         let comma = Span::new(self.id, comma, comma + 1);
-        let mut fix = replace(span, right);
+        let mut fix = replace(span, parts.join(sign));
         if is_whole_number {
             fix.title += ", or a `.` if the comma is a decimal point";
         }
@@ -247,18 +255,16 @@ impl<'s> Recovery<'_, 's> {
     }
 }
 
-/// Whether digits stand in groups of three.
+/// Returns whether digits stand in groups of three.
 fn are_thousands(text: &str) -> bool {
     let mut groups = text.split(' ');
     let is_head = |head: &str| (1..=3).contains(&head.len());
     groups.next().is_some_and(is_head)
         && groups.all(|group| group.len() == 3)
-        && text
-            .bytes()
-            .all(|byte| byte.is_ascii_digit() || byte == b' ')
+        && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Whether a parenthesis that closes behind a value means nothing, wherever it was opened.
+/// Returns whether a `)` behind a value changes nothing, wherever its `(` would be.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {
