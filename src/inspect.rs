@@ -9,35 +9,36 @@ use crate::{
     area::Area,
     math::{Big, Real},
     numbers::{grouped, short, short_vector},
-    scene::{Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere},
-    seen::{self, LISTED, Seen},
+    scene::{
+        Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere, Triangle,
+    },
+    seen::{self, LISTED, Visibility},
     source::Source,
     tracer::{Basis, vertices},
 };
 use glam::DVec3;
 
-/// What `pinhole inspect` shows. Every number is the rounding of what real arithmetic makes of the
-/// scene.
+/// The output of `pinhole inspect`. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inspection {
-    /// Width and height in pixels.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
     /// The camera.
     pub camera: CameraFacts,
-    /// The sampling technique.
+    /// The sampling method.
     pub method: Method,
-    /// Samples in each pixel, if that is what the scene gives.
+    /// Number of samples of each pixel, if the scene gives it.
     pub per_pixel: Option<u64>,
-    /// Samples in the whole picture.
+    /// Number of samples of the whole picture.
     pub total: u64,
     /// The seed.
     pub seed: u64,
-    /// For each of the world's axes where its parallels meet, in pixels from the picture's top
-    /// left corner; `None` if the axis is parallel to the view plane.
+    /// Vanishing point of the lines parallel to each of the world's axes, in pixels from the
+    /// picture's top left corner; `None` if the axis is parallel to the view plane.
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// The objects in file order.
     pub objects: Vec<ObjectFacts>,
-    /// Whether the areas that are seen of them are exact.
+    /// Whether the areas that are seen of the objects are exact.
     pub is_exact: bool,
 }
 
@@ -46,45 +47,45 @@ pub struct Inspection {
 pub struct CameraFacts {
     /// The eye.
     pub eye: DVec3,
-    /// The picture's right.
+    /// Unit vector to the picture's right.
     pub u: DVec3,
-    /// The picture's top.
+    /// Unit vector to the picture's top.
     pub v: DVec3,
-    /// Against the view direction.
+    /// Unit vector against the view direction.
     pub w: DVec3,
     /// Distance from the eye to the view plane, in metres.
     pub d: f64,
     /// Height of the window, in metres.
     pub view_height: f64,
-    /// The angle that the window's height takes up, in degrees.
+    /// Vertical field of view, in degrees.
     pub fov_deg: f64,
-    /// The angle that the window's width takes up, in degrees.
+    /// Horizontal field of view, in degrees.
     pub hfov_deg: f64,
-    /// The near plane's depth.
+    /// Depth of the near plane, in metres.
     pub near: f64,
-    /// The far plane's depth.
+    /// Depth of the far plane, in metres.
     pub far: Option<f64>,
-    /// Up, down or level, as the exact y of the view direction says.
+    /// "up", "down" or "level", by the exact y of the view direction.
     pub looks: &'static str,
 }
 
 /// An object in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectFacts {
-    /// Its name.
+    /// The object's name.
     pub name: Option<String>,
-    /// The values of its block's indices.
+    /// Values of its block's indices.
     pub indices: Box<[u32]>,
-    /// The line it begins in, counted from 1.
+    /// The line in which it begins, counted from 1.
     pub line: usize,
-    /// What it is.
+    /// The object's shape.
     pub shape: Shape,
-    /// What is seen of it.
-    pub seen: Seen,
+    /// What is seen of the object.
+    pub seen: Visibility,
 }
 
 impl ObjectFacts {
-    /// Its name, or else its indices, by which the members of a block are told apart.
+    /// Returns its name, or else its indices, which distinguish the members of a block.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -94,7 +95,7 @@ impl ObjectFacts {
     }
 }
 
-/// Says what a scene means; `source` is the file that it was read from.
+/// Describes a scene; `source` is the file that it was read from.
 pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let per_pixel = match scene.sampler.count {
         Count::PerPixel(count) => Some(count),
@@ -102,14 +103,17 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     };
     let basis = Basis::new(&scene.camera, &scene.image);
     let (seen, is_exact) = seen::seen(scene);
-    let objects = scene.objects.iter().zip(seen);
-    let objects = objects.map(|(object, seen)| ObjectFacts {
-        name: object.name.clone(),
-        indices: object.indices.clone(),
-        line: source.line(object.span.start),
-        shape: object.shape,
-        seen,
-    });
+    let objects = scene
+        .objects
+        .iter()
+        .zip(seen)
+        .map(|(object, seen)| ObjectFacts {
+            name: object.name.clone(),
+            indices: object.indices.clone(),
+            line: source.line(object.span.start),
+            shape: object.shape,
+            seen,
+        });
     Inspection {
         size: [scene.image.width, scene.image.height],
         vanishing_points: [0, 1, 2].map(|axis| vanishing_point(&scene.image, &basis, axis)),
@@ -123,7 +127,7 @@ pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     }
 }
 
-/// The samples in the whole picture.
+/// Returns the number of samples of the whole picture.
 pub fn total_samples(count: Count, image: &Image) -> u64 {
     match count {
         Count::PerPixel(count) => {
@@ -133,7 +137,7 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
     }
 }
 
-/// A camera by itself, and where the parallels of each axis meet: what [`inspect`] says of a whole
+/// Describes a camera alone, with the vanishing points of the axes, as [`inspect`] does for a whole
 /// scene.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
@@ -167,10 +171,11 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
     }
 }
 
-/// Where the lines parallel to an axis meet. The ray along the axis a has the direction (a·u, a·v,
-/// −a·w) in the camera's axes, and meets the view plane where that is scaled to depth 1.
+/// Returns the vanishing point of the lines parallel to an axis. The ray along the axis a has the
+/// direction (a·u, a·v, −a·w) in the camera's axes, and meets the view plane where this is scaled
+/// to depth 1.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // w is −f/|f|, so this is zero exactly where the axis is parallel to the view plane.
+    // w is −f/|f|, so its component is zero exactly if the axis is parallel to the view plane.
     if basis.w[axis].is_zero() {
         return None;
     }
@@ -181,24 +186,24 @@ fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]
     Some([rounded(&x), rounded(&y)])
 }
 
-/// Rounded to a finite `f64`, without a negative zero.
+/// Rounds to a finite `f64`, without a negative zero.
 fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// What is seen of the objects that are not listed, in sum.
+/// Sums over the objects that are not listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
     objects: u64,
     seen: u64,
-    /// The area that shows them, in pixels.
+    /// Area that shows them, in pixels.
     pixels: f64,
     outside: u64,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The same for people, who want no list of a million objects.
+/// The text for people, which lists only the first of very many objects.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
@@ -241,9 +246,9 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// What is seen of the objects.
+/// The part of the text about what is seen of the objects.
 impl Inspection {
-    /// What is seen of all that are not listed: how many of them, and how many pixels.
+    /// Sums what is seen of the objects that are not listed. Returns `None` if all are listed.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
         let mut sum = Rest {
@@ -252,12 +257,12 @@ impl Inspection {
         };
         for object in rest {
             match object.seen {
-                Seen::Part(_, pixels) => {
+                Visibility::Part(_, pixels) => {
                     sum.seen += 1;
                     sum.pixels += pixels;
                 }
-                Seen::Outside(_) => sum.outside += 1,
-                Seen::HiddenBy(_) | Seen::Nothing => {}
+                Visibility::Outside(_) => sum.outside += 1,
+                Visibility::HiddenBy(_) | Visibility::Nothing => {}
             }
         }
         Some(sum)
@@ -269,15 +274,16 @@ impl Inspection {
         }
         let all = self.size.map(f64::from).iter().product::<f64>();
         let share = |pixels: f64| format!("{} %", short(100.0 * pixels / all));
-        let about = match self.is_exact {
-            true => "",
-            false => ", about: by the middles of pixels where there are too many outlines",
+        let about = if self.is_exact {
+            ""
+        } else {
+            ", about: by the middles of pixels where there are too many outlines"
         };
         writeln!(f, "\nin the picture{about}")?;
         for (index, object) in self.objects.iter().enumerate().take(LISTED) {
             let name = object.shown_name();
             let words = match object.seen {
-                Seen::Part(around, pixels) => {
+                Visibility::Part(around, pixels) => {
                     let Area {
                         x,
                         y,
@@ -286,13 +292,13 @@ impl Inspection {
                     } = around;
                     format!("{width} x {height} pixels at ({x}, {y}), {}", share(pixels))
                 }
-                Seen::Outside(place) => place.words().replace('`', ""),
-                Seen::HiddenBy(other) => {
+                Visibility::Outside(place) => place.words().replace('`', ""),
+                Visibility::HiddenBy(other) => {
                     let other = self.objects.get(other);
                     let name = other.map(|it| it.name.as_deref().unwrap_or(it.shape.kind()));
                     format!("hidden by {}", name.unwrap_or_default())
                 }
-                Seen::Nothing => "nothing of it".to_owned(),
+                Visibility::Nothing => "nothing of it".to_owned(),
             };
             let kind = object.shape.kind();
             writeln!(f, "  {index:<3} {kind:<12} {name:<10} {words}")?;
@@ -311,7 +317,8 @@ impl Inspection {
     }
 }
 
-/// A camera for people: its axes, its field of view, and where the parallels of each axis meet.
+/// Describes a camera for people: its axes, its field of view, and the vanishing points of the
+/// axes.
 pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
     let mut text = format!("camera    looks {}\n", camera.looks);
     let vectors = [
@@ -340,7 +347,7 @@ pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>
     text
 }
 
-/// A shape in one line.
+/// Describes a shape in one line.
 pub fn summary(shape: &Shape) -> String {
     match *shape {
         Shape::Sphere(Sphere {
@@ -354,11 +361,10 @@ pub fn summary(shape: &Shape) -> String {
         ),
         Shape::Triangle(triangle) => {
             let [a, b, c] = vertices(&triangle).map(short_vector);
-            match triangle.outline {
-                Outline::Centered(_) => {
-                    format!("base {a} to {b}, apex {c}, {}", triangle.color)
-                }
-                Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {}", triangle.color),
+            let Triangle { outline, color } = triangle;
+            match outline {
+                Outline::Centered(_) => format!("base {a} to {b}, apex {c}, {color}"),
+                Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {color}"),
             }
         }
         Shape::Box(Cuboid {

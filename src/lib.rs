@@ -48,6 +48,7 @@ pub mod color;
 pub mod diagnostic;
 pub mod explain;
 pub mod files;
+mod lock;
 pub mod math;
 pub mod numbers;
 pub mod source;

@@ -1,15 +1,15 @@
-//! `threads.rs` where there are none, as in a browser: the calling thread does all of it, without
-//! rayon, which would make the engine larger and no faster.
+//! Stands in for `threads.rs` where there are no threads, as in a browser: the calling thread does
+//! all work, without rayon, which would make the engine larger and no faster.
 
 use std::num::NonZero;
 
 use thiserror::Error;
 
-/// Why there are no threads, which here is no reason to do nothing.
+/// Error of starting threads, which does not occur here.
 #[derive(Debug, Error)]
 pub enum NoThreads {}
 
-/// Nothing is to be limited.
+/// Does nothing: there are no threads to limit.
 pub fn limit(_: NonZero<usize>) {}
 
 pub(crate) fn available() -> usize {
@@ -36,7 +36,7 @@ pub(crate) fn install<R>(
     Ok(work())
 }
 
-/// What loops of rayon are here: one thing after the other.
+/// Sequential versions of the parallel loops of rayon.
 pub(crate) mod prelude {
     use std::slice;
 

@@ -12,28 +12,28 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// What `pinhole probe` shows: the ray through a point of the picture, and all surfaces on it.
-/// Every number is the rounding of what real arithmetic makes of the scene and the point.
+/// The output of `pinhole probe`: the ray through a point of the picture, and all surfaces on it.
+/// Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
     pub pixel: DVec2,
-    /// Columns and rows of the picture.
+    /// Number of columns and of rows of the picture.
     pub picture: [u32; 2],
     /// The eye.
     pub origin: DVec3,
     /// The ray's direction, of length 1.
     pub direction: DVec3,
-    /// All crossings in front of the eye, the nearest first, with the object.
+    /// All crossings in front of the eye, the nearest first, with their objects.
     pub hits: Vec<(Hit, Object)>,
     /// The colour that is seen.
     pub color: Color,
 }
 
-/// Follows the ray through a point of the picture plane.
+/// Follows the ray through a point of the picture plane, in pixels from the top left corner.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
-    let world = World::reaching(scene, (pixel - half).abs());
+    let world = World::for_rays(scene, (pixel - half).abs());
     let (direction, hits) = ray(&world, pixel);
     let visible = hits.iter().find(|hit| hit.visible);
     let color = visible.map_or(scene.image.background, |hit| hit.color);
@@ -49,7 +49,7 @@ pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
 }
 
 impl Probe {
-    /// The JSON object of the command line's contract.
+    /// Returns the JSON object of the command line's contract.
     pub fn to_json(&self) -> Value {
         let hits = self.hits.iter().map(|(hit, object)| {
             let mut facts = json!({
@@ -79,18 +79,18 @@ impl Probe {
     }
 }
 
-/// The same for people.
+/// The text for people.
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (short(self.pixel.x), short(self.pixel.y));
         let [width, height] = self.picture;
         let size = DVec2::new(f64::from(width), f64::from(height));
         let is_outside = self.pixel.cmplt(DVec2::ZERO).any() || self.pixel.cmpgt(size).any();
-        let outside = match is_outside {
-            true => format!(", outside of the picture of {width} by {height} pixels"),
-            false => String::new(),
-        };
-        writeln!(f, "pixel     ({x}, {y}){outside}")?;
+        write!(f, "pixel     ({x}, {y})")?;
+        if is_outside {
+            write!(f, ", outside of the picture of {width} by {height} pixels")?;
+        }
+        writeln!(f)?;
         writeln!(
             f,
             "ray       from {} along {}",

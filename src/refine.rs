@@ -1,37 +1,40 @@
-//! A picture that comes in steps, for whoever is waiting for it.
+//! Coarse pictures that become finer step by step, for a preview.
 //!
-//! In: the prepared scene. Out: pictures in coarse blocks, one after the other. A block shows what
-//! is seen at its centre, so that nothing is shown that is not there. What a preview does with
-//! them, when it begins with the picture itself (`render`), and when it gives up on a scene
-//! that has changed, is its own business.
+//! In: the prepared scene. Out: pictures in blocks, one after the other. A block shows what is seen
+//! at its centre, so that nothing is shown that is not there. The preview decides when to continue
+//! with the picture itself (`render`), and when to give up on a scene that has changed.
 
-use std::sync::{PoisonError, atomic::Ordering};
+use std::sync::{Mutex, atomic::Ordering};
 
 use crate::{
     area::Area,
     film::Film,
+    lock::{lock, unpoisoned},
     render::{Control, RenderError},
     threads::{self, prelude::*},
     tracer::World,
 };
 use glam::DVec2;
 
-/// The sides of the blocks, in pixels, step by step: each step takes four times as long as the one
+/// Sides of the blocks, in pixels, step by step. Each step takes four times as long as the one
 /// before it, and all of them together less than a picture with one sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarse {
-    /// The side of a block, in pixels.
+    /// Side of a block, in pixels.
     pub side: u32,
-    /// A pixel for each block. The last column and the last row may stand for blocks that are cut
-    /// off.
+    /// One pixel for each block. The blocks of the last column and of the last row may be cut off.
     pub film: Film,
 }
 
-/// Shows a part of the picture, which lies in it, in blocks that become finer down to a side of 1
-/// pixel or more. Cancelled, it ends within a row of blocks, and shows no more.
+/// Shows a part of the picture, which must lie in it, in blocks that become finer down to a side of
+/// `finest` pixels. If it is cancelled, it ends within a row of blocks.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,
@@ -46,8 +49,12 @@ pub fn coarse_to_fine(
     Ok(())
 }
 
-/// A part of the picture in blocks of a side of 1 pixel or more, from the part's top left corner
-/// on.
+/// Renders a part of the picture in blocks of this side, 1 pixel or more, from the part's top left
+/// corner on.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn coarse(
     world: &World,
     part: Area,
@@ -60,7 +67,7 @@ pub fn coarse(
         .map(|color| color.to_linear())
         .collect();
     let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));
-    let film = std::sync::Mutex::new(Film::new(width, height)?);
+    let film = Mutex::new(Film::new(width, height)?);
     threads::install(control.threads, || {
         (0..height).into_par_iter().for_each(|row| {
             if control.cancel.load(Ordering::Relaxed) {
@@ -81,20 +88,20 @@ pub fn coarse(
                 width,
                 height: 1,
             };
-            let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut film = lock(&film);
             film.put(place, &blocks);
         });
     })?;
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);
     }
-    let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let film = unpoisoned(film.into_inner());
     Ok(Coarse { side, film })
 }
 
-/// The slot of what is seen at the centre of a block.
+/// Returns the palette slot that is seen at the centre of a block.
 fn at_center(world: &World, block: Area) -> usize {
-    // In the middle of a pixel, or on the edge before one.
+    // At the centre of a pixel, or on the edge before one.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

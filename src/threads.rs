@@ -1,5 +1,5 @@
-//! How many threads work is done on, and whether they are started for it: what is a part of other
-//! work is done on the threads of that.
+//! The number of threads, and pools of them. Work that is a part of other work runs on the threads
+//! of that work.
 
 use std::{
     num::NonZero,
@@ -10,31 +10,30 @@ use std::{
     thread,
 };
 
-/// Why there are no threads.
+/// Error of starting threads.
 pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// More threads than this are not started, whatever is asked for: no machine has as many processors
-/// for one picture.
-const MOST: usize = 1024;
+/// Maximum number of threads, whatever is asked for: no machine has more processors for one
+/// picture.
+const MAX_THREADS: usize = 1024;
 
-/// What the process was limited to; 0 where it was not. This and the number of processors are all
-/// that is kept for a whole process; they change how long things take and nothing else.
+/// Limit of the process; 0 if there is none. This and the number of processors are the only state
+/// of the whole process; they change how long things take and nothing else.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// As many as the process has: to ask the system takes longer than a small picture.
+/// Number of processors, stored because asking the system takes longer than a small picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
-/// From now on this process starts no more threads at once than this, unless it is told otherwise
-/// for something.
+/// Limits the number of threads of this process for all work that does not ask for a number itself.
 pub fn limit(threads: NonZero<usize>) {
-    LIMIT.store(threads.get().min(MOST), Ordering::Relaxed);
+    LIMIT.store(threads.get().min(MAX_THREADS), Ordering::Relaxed);
 }
 
-/// One thread for each processor, or as many as the process is limited to, whatever variables of
-/// the environment say.
+/// Number of threads: one for each processor, or the limit of the process, whatever environment
+/// variables say.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
         0 => *PROCESSORS,
@@ -42,37 +41,37 @@ pub(crate) fn available() -> usize {
     }
 }
 
-/// Threads to do something on.
+/// Threads to run work on.
 pub(crate) enum Threads {
-    /// Started for it.
+    /// A pool that was started for the work.
     Started(ThreadPool),
-    /// Those that do what it is a part of: what makes hundreds of pictures has them all made by the
+    /// The current threads: work that consists of hundreds of pictures renders all of them on the
     /// same threads.
-    These,
+    Current,
 }
 
 impl Threads {
-    /// So many, or as many as are available; those that this is already done on, if they are as
+    /// Returns `threads` threads, or as many as are available: the current ones, if there are as
     /// many, or if the system starts none.
     ///
     /// # Errors
     ///
-    /// If not even the calling thread can be had.
+    /// Not even the calling thread can be used.
     pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
-        let wanted = threads.map_or_else(available, |threads| threads.get().min(MOST));
+        let wanted = threads.map_or_else(available, |threads| threads.get().min(MAX_THREADS));
         match rayon::current_thread_index() {
-            Some(_) if rayon::current_num_threads() == wanted => Ok(Self::These),
+            Some(_) if rayon::current_num_threads() == wanted => Ok(Self::Current),
             _ => Self::started(ThreadPoolBuilder::new().num_threads(wanted).build()),
         }
     }
 
-    /// A pool, or, where it could not be built, as where too many threads are started, those that
-    /// this is done on: rayon takes a thread that is in no pool for one that is a pool by itself,
-    /// for good.
+    /// Returns a pool. If it could not be built, for instance because too many threads are running,
+    /// returns the current threads: rayon would permanently treat a thread outside of pools as a
+    /// pool of its own.
     fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
-            Err(_) if rayon::current_thread_index().is_some() => Ok(Self::These),
+            Err(_) if rayon::current_thread_index().is_some() => Ok(Self::Current),
             Err(_) => {
                 let alone = ThreadPoolBuilder::new().num_threads(1);
                 alone.use_current_thread().build().map(Self::Started)
@@ -80,20 +79,20 @@ impl Threads {
         }
     }
 
-    /// Does it.
+    /// Runs work on the threads.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match self {
             Self::Started(pool) => pool.install(work),
-            Self::These => work(),
+            Self::Current => work(),
         }
     }
 }
 
-/// Does something on so many threads, or on as many as are available.
+/// Runs work on `threads` threads, or on as many as are available.
 ///
 /// # Errors
 ///
-/// If not even the calling thread can be had.
+/// Not even the calling thread can be used.
 pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,
@@ -107,7 +106,7 @@ mod tests {
 
     use super::{prelude::*, *};
 
-    /// Twice, as the second time the calling thread is in a pool.
+    /// Runs twice, since the calling thread is in a pool the second time.
     #[test]
     fn where_no_thread_can_be_started_the_calling_one_does_it() {
         for _ in 0..2 {
@@ -127,9 +126,9 @@ mod tests {
     #[test]
     fn what_is_done_on_as_many_threads_starts_no_others() {
         let [two, three] = [2, 3].map(NonZero::new);
-        let is_these = |threads| matches!(Threads::new(threads), Ok(Threads::These));
-        assert!(!is_these(two));
-        let inside = install(two, || [is_these(two), is_these(three)]);
+        let is_current = |threads| matches!(Threads::new(threads), Ok(Threads::Current));
+        assert!(!is_current(two));
+        let inside = install(two, || [is_current(two), is_current(three)]);
         assert!(matches!(inside, Ok([true, false])));
     }
 }

@@ -14,7 +14,7 @@ use super::{
 use crate::{
     area::Area,
     files::{self, Purpose},
-    film::{self, Linear, Recipe},
+    film::{self, LinearFilm, Recipe},
     numbers,
     render::{Exact, RenderError, Rendered, render_as_asked},
     sampling::Sampling,
@@ -271,7 +271,7 @@ impl PictureOutput {
                 // The path may have become a link to the scene.
                 check_is_not(path, scene)?;
                 files::write(path, path_choice.purpose(path), cancel, |out| {
-                    let linear: Linear = match (format, picture) {
+                    let linear: LinearFilm = match (format, picture) {
                         (FileFormat::Exr, RenderedPicture::Light(light)) => light.film().into(),
                         (FileFormat::Exr, RenderedPicture::Floats(floats)) => floats.film().into(),
                         _ => return write_png(picture, recipe, out),

@@ -9,7 +9,7 @@ use std::mem;
 
 use glam::DVec2;
 
-use crate::{math::Real, tracer::Line};
+use crate::{math::Real, tracer::BoundaryLine};
 
 use super::{
     clip::{PIXEL, measure, split},
@@ -32,7 +32,7 @@ const WIDE: f64 = 3.0;
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some lines.
-pub fn shares(lines: &[Line], mut regions: Regions) -> Shares {
+pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
     let mut worst = 0.0_f64;
     for line in lines {
@@ -81,7 +81,7 @@ pub fn shares(lines: &[Line], mut regions: Regions) -> Shares {
 }
 
 /// The parts of a convex polygon on both sides of a line.
-fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
+fn cut(polygon: Vec<DVec2>, line: &BoundaryLine) -> Vec<Vec<DVec2>> {
     let heights = || polygon.iter().map(|p| height(line, p));
     if heights().all(|h| h >= 0.0) || heights().all(|h| h <= 0.0) {
         return vec![polygon];
@@ -91,7 +91,7 @@ fn cut(polygon: Vec<DVec2>, line: &Line) -> Vec<Vec<DVec2>> {
     vec![below, above]
 }
 
-fn height(line: &Line, p: &DVec2) -> f64 {
+fn height(line: &BoundaryLine, p: &DVec2) -> f64 {
     let [a, b, c] = line.factors;
     a * p.x + b * p.y + c
 }

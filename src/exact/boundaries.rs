@@ -10,8 +10,8 @@ use std::{cell::OnceCell, ops::ControlFlow};
 use crate::{
     math::{Big, Double},
     tracer::{
-        Candidate, Conic, Curve, Held, KEPT, LOOSE_LINE, Line, Object, Patch, Precision, SubPixel,
-        SubPixelFrame, Surface, World, candidates,
+        Boundary, BoundaryLine, CACHE_SLOTS, Conic, InverseDepth, LOOSE_LINE, Object, ObjectRef,
+        Patch, Precision, SubPixel, SubPixelFrame, VisibilityCandidate, World, candidates,
     },
 };
 
@@ -43,15 +43,20 @@ enum Origin {
 /// Asks some objects for their boundaries in a sub-pixel, in one precision.
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
-    candidates: &'a [Candidate],
+    candidates: &'a [VisibilityCandidate],
     /// The objects that were asked.
-    objects: Vec<OnceCell<Held<'a, T>>>,
+    objects: Vec<OnceCell<ObjectRef<'a, T>>>,
     frame: SubPixelFrame<T>,
     budget: &'a Budget<'a>,
 }
 
 /// Of some candidates, in file order, those that may be seen in a sub-pixel.
-pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &mut Vec<Candidate>) {
+pub fn narrowed(
+    world: &World,
+    sub_pixel: SubPixel,
+    among: &[VisibilityCandidate],
+    out: &mut Vec<VisibilityCandidate>,
+) {
     let patch = Patch::of_sub_pixel(&world.geometry.fast.camera, sub_pixel);
     let objects = among.iter().map(|candidate| candidate.object);
     candidates::visible_among(world, &patch, objects, out);
@@ -63,10 +68,10 @@ pub fn narrowed(world: &World, sub_pixel: SubPixel, among: &[Candidate], out: &m
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
-    candidates: &[Candidate],
+    candidates: &[VisibilityCandidate],
     most: usize,
     budget: &Budget,
-    out: &mut Vec<Curve>,
+    out: &mut Vec<Boundary>,
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
@@ -79,7 +84,7 @@ pub fn curves(
         budget.charge(LOOK_WORK);
         let before = out.len();
         let is_whole = boundaries.push(origin, out);
-        if !out[before..].iter().all(Curve::is_tight) {
+        if !out[before..].iter().all(Boundary::is_tight) {
             out.truncate(before);
             loose.push(origin);
         } else if !is_whole {
@@ -120,8 +125,8 @@ pub fn curves(
 
 /// Leaves one of the curves whose forms are equal, as they are of objects that share planes or
 /// edges. What it is off is as much as any of them was.
-fn leave_one_of_each(curves: &mut Vec<Curve>) {
-    curves.sort_by_cached_key(Curve::key);
+fn leave_one_of_each(curves: &mut Vec<Boundary>) {
+    curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
         let is_equal = again.key() == curve.key();
         if is_equal {
@@ -137,7 +142,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     fn new(
         world: &'a World,
         sub_pixel: SubPixel,
-        candidates: &'a [Candidate],
+        candidates: &'a [VisibilityCandidate],
         budget: &'a Budget,
     ) -> Self {
         let objects = candidates.iter().map(|_| OnceCell::new());
@@ -164,7 +169,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     /// Where surfaces of two objects cross, until one says that it is enough.
     fn pairs(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
         let geometry = &self.world.geometry;
-        let is_board = |candidate: &Candidate| {
+        let is_board = |candidate: &VisibilityCandidate| {
             matches!(
                 *f64::object(geometry, candidate.object),
                 Object::Checkerboard(_)
@@ -191,14 +196,14 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     /// Adds an origin's curves that may pass through the sub-pixel. Says whether all surfaces of it
     /// that are seen there cross each other somewhere, as all do that are not equal.
-    fn push(&self, origin: Origin, out: &mut Vec<Curve>) -> bool {
-        let mut push = |curve: Curve| {
+    fn push(&self, origin: Origin, out: &mut Vec<Boundary>) -> bool {
+        let mut push = |curve: Boundary| {
             if curve.may_pass() {
                 out.push(curve);
             }
         };
         let mut all = true;
-        let mut cross = |a: &Surface<T>, b: &Surface<T>| {
+        let mut cross = |a: &InverseDepth<T>, b: &InverseDepth<T>| {
             self.charge_last();
             match self.frame.crossing(a, b) {
                 Some(curve) => push(curve),
@@ -217,7 +222,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
                 let frame = T::frame(&self.world.geometry);
                 for clip in [&frame.near, &frame.far].into_iter().flatten() {
                     for surface in &self.surfaces(i) {
-                        cross(surface, &Surface::Plane(clip));
+                        cross(surface, &InverseDepth::Plane(clip));
                     }
                 }
             }
@@ -236,7 +241,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             self.charge_last();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
             // Of so many, few are kept.
-            if self.candidates.len() > KEPT && matches!(*object, Object::Convex(_)) {
+            if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
             object
@@ -249,12 +254,13 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         }
     }
 
-    fn surfaces(&self, at: usize) -> Vec<Surface<'_, T>> {
-        self.object(at).surfaces(self.candidates[at].crossings)
+    fn surfaces(&self, at: usize) -> Vec<InverseDepth<'_, T>> {
+        self.object(at)
+            .inverse_depths(self.candidates[at].crossings)
     }
 }
 
-impl Curve {
+impl Boundary {
     /// Whether it may pass through the sub-pixel.
     fn may_pass(&self) -> bool {
         match self {
@@ -290,7 +296,7 @@ impl Curve {
 
     fn rad_mut(&mut self) -> &mut f64 {
         match self {
-            Self::Line(Line { rad, .. }) | Self::Conic(Conic { rad, .. }) => rad,
+            Self::Line(BoundaryLine { rad, .. }) | Self::Conic(Conic { rad, .. }) => rad,
         }
     }
 }

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::{
     math::{Double, Real},
-    tracer::{Conic, Line},
+    tracer::{BoundaryLine, Conic},
 };
 
 use super::conic_segment::Arc;
@@ -324,7 +324,7 @@ impl Tangents {
 
 impl Track<'_> {
     /// The track of a line; none if it is vertical, or so steep that it may be said to be.
-    pub fn of_line(line: &Line) -> Option<Self> {
+    pub fn of_line(line: &BoundaryLine) -> Option<Self> {
         let [a, b, c] = line.factors;
         let (slope, start) = (-a / b, -c / b);
         (slope.abs() <= STEEP && start.is_finite()).then_some(Self::Line { slope, start })

@@ -51,7 +51,7 @@ use crate::{
     area::Area,
     cancel,
     color::Color,
-    tracer::{Candidate, Curve, Part, Quartering, Scratch, SubPixel, World},
+    tracer::{Boundary, PicturePart, Quartering, Scratch, SubPixel, VisibilityCandidate, World},
 };
 
 use self::{
@@ -126,7 +126,7 @@ pub struct Integrator<'a, const N: usize = 3> {
 struct Piece {
     sub_pixel: SubPixel,
     /// What may be seen there.
-    candidates: Vec<Candidate>,
+    candidates: Vec<VisibilityCandidate>,
     shares: Shares,
     state: State,
 }
@@ -154,7 +154,7 @@ impl Piece {
 
     /// Its memory in bytes, apart from its place in the heap.
     fn memory(&self) -> usize {
-        let candidates = self.candidates.capacity() * size_of::<Candidate>();
+        let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
         candidates + shares
     }
@@ -221,8 +221,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
                 return ControlFlow::Break(());
             }
             match part {
-                Part::OneColor { area, slot } => film.fill(area, self.colors[slot]),
-                Part::Pixel {
+                PicturePart::OneColor { area, slot } => film.fill(area, self.colors[slot]),
+                PicturePart::Pixel {
                     x,
                     y,
                     candidates,
@@ -238,7 +238,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
                 // `Quartering::new` allows any number of candidates.
-                Part::Crowded { .. } => unreachable!("every part of an exact picture is quartered"),
+                PicturePart::Crowded { .. } => {
+                    unreachable!("every part of an exact picture is quartered")
+                }
             }
             ControlFlow::Continue(())
         });
@@ -261,20 +263,22 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let scratch = &mut Scratch::default();
         let _ = self.quartering.parts(part, scratch, &mut |part| {
             match part {
-                Part::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
-                Part::Pixel { x, y, .. } if self.work() > self.most_work => {
+                PicturePart::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
+                PicturePart::Pixel { x, y, .. } if self.work() > self.most_work => {
                     let slot = self.world.slot_at(x, y, DVec2::ZERO);
                     is_exact = false;
                     show(Area::pixel(x, y), &[(slot, 1.0)]);
                 }
-                Part::Pixel {
+                PicturePart::Pixel {
                     x, y, candidates, ..
                 } => {
                     let seen = self.pixel_shares(x, y, candidates, &mut curves, &cancel::NEVER);
                     is_exact &= seen.bound <= 1e-6;
                     show(Area::pixel(x, y), &seen.by_slot);
                 }
-                Part::Crowded { .. } => unreachable!("every part of an exact picture is quartered"),
+                PicturePart::Crowded { .. } => {
+                    unreachable!("every part of an exact picture is quartered")
+                }
             }
             ControlFlow::Continue(())
         });
@@ -286,8 +290,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         &self,
         x: u32,
         y: u32,
-        candidates: &[Candidate],
-        curves: &mut Vec<Curve>,
+        candidates: &[VisibilityCandidate],
+        curves: &mut Vec<Boundary>,
         cancel: &AtomicBool,
     ) -> ExactPixel<N> {
         let together = self.pixel_shares(x, y, candidates, curves, cancel);
@@ -305,8 +309,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         &self,
         x: u32,
         y: u32,
-        candidates: &[Candidate],
-        curves: &mut Vec<Curve>,
+        candidates: &[VisibilityCandidate],
+        curves: &mut Vec<Boundary>,
         cancel: &AtomicBool,
     ) -> Shares {
         let budget = Budget::of_pixel(self.tolerance, cancel);
@@ -373,7 +377,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between
     /// the least and the greatest number of all colours that may be seen there.
-    fn centered(&self, pixel: &ExactPixel<N>, candidates: &[Candidate]) -> ExactPixel<N> {
+    fn centered(&self, pixel: &ExactPixel<N>, candidates: &[VisibilityCandidate]) -> ExactPixel<N> {
         let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
         let background = (!is_covered).then(|| self.world.background());
         let slots = candidates.iter();
@@ -419,8 +423,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
     fn piece(
         &self,
         sub_pixel: SubPixel,
-        candidates: Vec<Candidate>,
-        curves: &mut Vec<Curve>,
+        candidates: Vec<VisibilityCandidate>,
+        curves: &mut Vec<Boundary>,
         budget: &Budget,
     ) -> Piece {
         let quarterings = libm::ilogb(sub_pixel.side).unsigned_abs() as usize;
@@ -432,8 +436,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
             true => {
                 let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
                 let lines = curves.iter().map(|curve| match curve {
-                    Curve::Line(line) => Some(*line),
-                    Curve::Conic(_) => None,
+                    Boundary::Line(line) => Some(*line),
+                    Boundary::Conic(_) => None,
                 });
                 match lines.collect::<Option<Vec<_>>>() {
                     Some(lines) => arrangement::shares(&lines, regions),

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use crate::{
     math::{Big, Double, Real},
-    tracer::{Candidate, LOOSE_LINE, Object, Precision, SubPixel, World, candidates},
+    tracer::{LOOSE_LINE, Object, Precision, SubPixel, VisibilityCandidate, World, candidates},
 };
 
 use super::{
@@ -37,7 +37,7 @@ pub struct Shares {
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
-    candidates: &'a [Candidate],
+    candidates: &'a [VisibilityCandidate],
     /// The boards that were met so far, by object.
     boards: Vec<(usize, Checkered)>,
     shares: Shares,
@@ -71,7 +71,7 @@ impl<'a> Regions<'a> {
     pub fn new(
         world: &'a World,
         sub_pixel: SubPixel,
-        candidates: &'a [Candidate],
+        candidates: &'a [VisibilityCandidate],
         budget: &'a Budget<'a>,
     ) -> Self {
         Self {
@@ -219,7 +219,7 @@ fn seen(
     world: &World,
     sub_pixel: SubPixel,
     at: DVec2,
-    candidates: &[Candidate],
+    candidates: &[VisibilityCandidate],
     budget: &Budget,
 ) -> (Option<usize>, bool) {
     let count = candidates.len() as f64;
@@ -240,7 +240,7 @@ impl Shares {
     pub fn unknown(
         world: &World,
         sub_pixel: SubPixel,
-        candidates: &[Candidate],
+        candidates: &[VisibilityCandidate],
         budget: &Budget,
     ) -> Self {
         let (seen, _) = seen(world, sub_pixel, DVec2::ZERO, candidates, budget);

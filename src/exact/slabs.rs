@@ -13,7 +13,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 
 use glam::DVec2;
 
-use crate::{math::Real, tracer::Curve};
+use crate::{math::Real, tracer::Boundary};
 
 use super::{
     branches::{Graph, Section, Track},
@@ -44,12 +44,12 @@ const STEPS: usize = 60;
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// The shares of a pixel that is cut by some curves.
-pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
+pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
     for curve in curves {
         match curve {
-            Curve::Line(line) => {
+            Boundary::Line(line) => {
                 // As in `arrangement`, but that here it is y that is rounded, which `ROUNDING`
                 // counts.
                 regions.doubt(3.0 * line.rad);
@@ -65,7 +65,7 @@ pub fn shares(curves: &[Curve], mut regions: Regions) -> Shares {
                     }
                 }
             }
-            Curve::Conic(conic) => {
+            Boundary::Conic(conic) => {
                 regions.doubt(conic.doubtful_area());
                 let graph = Graph::new(conic);
                 cuts.extend(graph.ends());

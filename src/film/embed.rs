@@ -7,8 +7,8 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
-/// A picture of no more than so many columns and rows: squares of as many pixels as it takes are
-/// averaged, in linear light.
+/// Shrinks a picture to at most this number of columns and rows, by averaging squares of pixels in
+/// linear light.
 pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge> {
     let whole = Area::whole(film.width(), film.height());
     let side = (whole.width.div_ceil(columns)).max(whole.height.div_ceil(rows));
@@ -24,7 +24,7 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
     })
 }
 
-/// A picture as a PNG in a `data:` URI.
+/// Encodes a picture as a PNG in a `data:` URI.
 pub fn data_uri(film: &Film) -> io::Result<String> {
     let mut bytes = Vec::new();
     write_png(film, None, &mut bytes)?;

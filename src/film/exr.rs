@@ -1,6 +1,6 @@
-//! OpenEXR: the linear means, rounded to 32-bit floats, in the channels R, G and B.
+//! OpenEXR: linear means, rounded to 32-bit floats, in the channels R, G and B.
 //!
-//! The display window is the whole picture, and the data window the part of it that the file holds.
+//! The display window is the whole picture, the data window the part of it that the file contains.
 
 use std::{
     collections::BTreeSet,
@@ -37,26 +37,26 @@ use crate::{area::Area, files::Sink};
 
 /// A film of linear light.
 #[derive(Clone, Copy, Debug)]
-pub enum Linear<'a> {
-    /// Its means.
+pub enum LinearFilm<'a> {
+    /// Means in `f64`.
     Means(&'a Film),
-    /// Means rounded to 32 bits.
+    /// Means rounded to 32-bit floats.
     Floats(&'a Film<[f32; 3]>),
 }
 
-impl<'a> From<&'a Film> for Linear<'a> {
+impl<'a> From<&'a Film> for LinearFilm<'a> {
     fn from(film: &'a Film) -> Self {
         Self::Means(film)
     }
 }
 
-impl<'a> From<&'a Film<[f32; 3]>> for Linear<'a> {
+impl<'a> From<&'a Film<[f32; 3]>> for LinearFilm<'a> {
     fn from(film: &'a Film<[f32; 3]>) -> Self {
         Self::Floats(film)
     }
 }
 
-impl Linear<'_> {
+impl LinearFilm<'_> {
     fn width(self) -> u32 {
         match self {
             Self::Means(film) => film.width(),
@@ -79,9 +79,9 @@ impl Linear<'_> {
     }
 }
 
-/// Writes a part of a whole picture, or all of it.
+/// Writes a film that is a part of a whole picture, or all of it.
 pub fn write_exr<'a>(
-    film: impl Into<Linear<'a>>,
+    film: impl Into<LinearFilm<'a>>,
     part: Area,
     whole: Area,
     out: &mut dyn Sink,
@@ -89,13 +89,13 @@ pub fn write_exr<'a>(
     write(film.into(), part, whole, out)
 }
 
-fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
+fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
         // A picture has at most 2^20 columns and rows.
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // A block of 16 rows is in memory several times over, which for the widest pictures would
+        // A block of 16 rows is in memory several times at once; for the widest pictures that would
         // be more than the film.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
@@ -112,7 +112,7 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         ..LayerAttributes::default()
     };
     image.attributes = ImageAttributes {
-        // Those of sRGB, which are also what a reader assumes where a file has none.
+        // The primaries of sRGB, which readers also assume if a file has none.
         chromaticities: Some(Chromaticities {
             red: Vec2(0.64, 0.33),
             green: Vec2(0.3, 0.6),
@@ -124,7 +124,7 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
             whole.height as usize,
         )))
     };
-    // One block after the other, so that no more than one is in memory.
+    // Block by block, so that at most one is in memory.
     image
         .write()
         .non_parallel()
@@ -135,15 +135,15 @@ fn write(film: Linear, part: Area, whole: Area, out: &mut dyn Sink) -> io::Resul
         })
 }
 
-/// Reads a picture. It holds its colours as they are seen on black already, so an alpha is not
-/// looked at.
+/// Reads a picture. Its colours are premultiplied already, as seen on black, so an alpha channel is
+/// ignored.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
-        // Before anything is unpacked.
+        // Checked before anything is decompressed.
         let Vec2(width, height) = header.layer_size;
         let channels = &header.channels.list;
-        // Channels beyond the four are decoded, too.
+        // Channels other than the four usual ones are decoded, too.
         let sizes = channels
             .iter()
             .map(|channel| channel.sample_type.bytes_per_sample());
@@ -190,9 +190,10 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let is_half = |channel: &ChannelDescription| channel.sample_type == SampleType::F16;
     Ok(Picture {
         film,
-        rounding: match [red, green, blue].iter().any(is_half) {
-            true => Rounding::Half,
-            false => Rounding::Float,
+        rounding: if [red, green, blue].iter().any(is_half) {
+            Rounding::Half
+        } else {
+            Rounding::Float
         },
         coding: Coding::Exact,
         crop,
@@ -200,8 +201,8 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// The names of the channels that are read: R, G and B, or those of the only layer that has such
-/// ones.
+/// Returns the names of the channels to read: R, G and B, or those of the only layer that has all
+/// three.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

@@ -2,12 +2,12 @@
 
 use crate::math::{Double, Real, two_product};
 
-/// The mean of a pixel's samples: Σ count · colour / n, n being the sum of the counts, rounded
-/// once.
+/// Returns the mean of a pixel's samples, Σ count · colour / n with n the sum of the counts,
+/// rounded once.
 ///
-/// The colours come in the order of the palette, so that the same counts give the same bits in
-/// whichever order they were made. The sum and the quotient are double-doubles: their errors are
-/// some 2^−100 of the mean, and a colour alone comes back as it was.
+/// The colours are given in the order of the palette, so that the same counts give the same bits in
+/// whichever order they were found. The sum and the quotient are double-doubles with errors of
+/// about 2^−100 of the mean, and a single colour is returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
     let mut sums = [Double::from_f64(0.0); 3];
@@ -21,8 +21,8 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// sum / count by two steps of long division: the rest of the first is exact but for the rounding
-/// of what `lo` adds, so a quotient that lies in the middle between two f64 is exact before its
+/// Returns sum / count by two steps of long division. The first remainder is exact except for the
+/// rounding of what `lo` adds, so that a quotient halfway between two `f64` is exact before its
 /// only rounding, too.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;

@@ -1,4 +1,4 @@
-//! Whether there is memory for a picture, before it is taken.
+//! Whether there is enough memory for a picture, checked before it is allocated.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::files::read_system_text;
 
-/// A picture for which there is no memory.
+/// A picture for which there is not enough memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a picture of {width} × {height} pixels needs {} of memory, {}",
@@ -14,17 +14,18 @@ use crate::files::read_system_text;
     .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
 )]
 pub struct TooLarge {
-    /// Columns of pixels.
+    /// Number of columns of pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Number of rows of pixels.
     pub height: u32,
-    /// How many bytes it needs.
+    /// Number of bytes that it needs.
     pub needed: u64,
-    /// How many there are, where the system says so.
+    /// Number of available bytes, if the system tells it.
     pub available: Option<u64>,
 }
 
-/// Refuses a picture for which there is not so much memory, and says how many bytes it needs.
+/// Rejects a picture for which there is not enough memory; otherwise returns the number of bytes
+/// that it needs.
 pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLarge> {
     let pixels = u64::from(width) * u64::from(height);
     let needed = pixels.saturating_mul(bytes_per_pixel);
@@ -39,37 +40,37 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Refuses a picture also where the system does not hand out as much; what is taken to find that
-/// out is given back at once.
+/// Rejects a picture also if the system does not allocate as much. The allocation that tests this
+/// is freed at once.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
-    match usize::try_from(needed).is_ok_and(fits) {
-        true => Ok(()),
-        false => Err(TooLarge {
-            width,
-            height,
-            needed,
-            available: None,
-        }),
+    if usize::try_from(needed).is_ok_and(fits) {
+        return Ok(());
     }
+    Err(TooLarge {
+        width,
+        height,
+        needed,
+        available: None,
+    })
 }
 
-/// How many bytes this process may still take: what the machine has available and what is left of
-/// its control group's limit, the smaller one. A system that hands out memory which it does not
-/// have would otherwise end the process halfway. Nothing on systems other than Linux, where the
-/// reservation itself has to fail.
+/// Returns the number of bytes that this process may still allocate: the smaller one of what the
+/// machine has available and of what its control group has left. Without this check, a system that
+/// overcommits memory would end the process halfway. Returns `None` on systems other than Linux,
+/// where the allocation itself must fail.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }
 
 fn machine() -> Option<u64> {
     let table = read_system_text("/proc/meminfo")?;
-    // In KiB.
+    // The table is in KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
-/// What is left of the limits of this process's control group and of the groups around it.
+/// Returns the least of what the control groups around this process have left.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
     let groups = read_system_text("/proc/self/cgroup")?;
@@ -82,23 +83,24 @@ fn control_group() -> Option<u64> {
         .min()
 }
 
-/// What a group may still take. Copies of files, which it is charged for, give way on demand.
+/// Returns what a group may still allocate. Cached file pages, which count as its usage, are
+/// reclaimed on demand.
 fn left(group: &Path) -> Option<u64> {
     let read = |name| read_system_text(group.join(name));
-    // Without a limit there is a word here.
+    // Without a limit, the file contains a word.
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;
     let usage: u64 = read("memory.current")?.trim().parse().ok()?;
     let cache = entry(&read("memory.stat").unwrap_or_default(), "inactive_file ").unwrap_or(0);
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// The number behind a name in a table.
+/// Returns the number after a name in a table.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()
 }
 
-/// A number of bytes for people.
+/// Formats a number of bytes for people.
 fn size(bytes: u64) -> String {
     const UNITS: [&str; 7] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     let power = bytes.max(1).ilog2() / 10;

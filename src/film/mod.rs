@@ -1,9 +1,9 @@
-//! Pixels, and the files they go to.
+//! Pixels in memory, and the files they are written to and read from.
 //!
-//! In: how often each colour was seen in a pixel. Out: the mean in linear light, `pixels` in
+//! In: how often each colour was seen in a pixel. Out: its mean in linear light, `pixels` in
 //! memory, and a picture file: `png` with the scene that made it, or `exr`. `read` makes a
-//! `picture` of a file, also of another program's, `compare` says how far two films are apart, and
-//! `embed` puts one into a page.
+//! `picture` of a file, also of other programs' files; `compare` measures how far two films are
+//! apart, and `embed` puts one into a page.
 
 mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]
@@ -30,8 +30,8 @@ pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
     },
-    exr::{Linear, write_exr},
-    jpeg::{Jpeg, Table as JpegTable},
+    exr::{LinearFilm, write_exr},
+    jpeg::{Jpeg, JpegTable},
     mean::mean,
     memory::{TooLarge, reserve as reserve_memory},
     picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable},

@@ -1,6 +1,7 @@
-//! Files that stand in a picture's place and are none: what they are, and the way out.
+//! Files that are no pictures although they are in a picture's place: what they are, and the way
+//! out.
 
-/// How such files begin, and what is said of them.
+/// First bytes of such files, and the message about each.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",
@@ -21,10 +22,11 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
 const WEB: &str = "a web page: the download was of a page around the picture, or failed";
 const PFM: &str = "a PFM: OpenEXR is the format of floats that is read here";
 
-/// The names of what cameras write, after the eight bytes of an ISO base media file's first box.
+/// Brands of pictures from telephones and cameras, after the eight bytes that begin an ISO base
+/// media file.
 const CAMERAS: [&[u8]; 5] = [b"heic", b"heix", b"hevc", b"mif1", b"msf1"];
 
-/// What a file is that is no picture, if it is known.
+/// Returns what a file is that is no picture. Returns `None` if it is unknown.
 pub(super) fn of(bytes: &[u8]) -> Option<&'static str> {
     if bytes.is_empty() {
         return Some("an empty file");

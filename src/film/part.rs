@@ -1,30 +1,31 @@
-//! Where in a whole picture a part of it lies, which says nothing of that itself.
+//! The place of a cropped part in a whole picture, if the part itself does not tell it.
 
 use super::pixels::Film;
 use crate::area::Area;
 
 /// Maximum number of pixels that are compared, over all places.
-const MOST_COMPARED: u64 = 100_000_000;
+const MAX_COMPARED: u64 = 100_000_000;
 
-/// Share of the usual difference that is left where a part lies; sampling noise leaves less.
-const LEFT: f64 = 0.2;
+/// Maximum share of the mean difference at the place where a part lies. Sampling noise leaves less.
+const MAX_LEFT: f64 = 0.2;
 
-/// Minimum share of the whole picture: a smaller part looks alike in too many places.
-const LEAST_SHARE: f64 = 0.05;
+/// Minimum share of the whole picture: a smaller part resembles too many places.
+const MIN_SHARE: f64 = 0.05;
 
-/// The place in a whole picture where a part of it differs far less than elsewhere, if there is
-/// one.
+/// Finds the place in a whole picture where a part of it differs far less than elsewhere. Returns
+/// `None` if there is no such place.
 pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     let area = Area::whole(part.width(), part.height());
     let columns = whole.width().checked_sub(area.width)? + 1;
     let rows = whole.height().checked_sub(area.height)? + 1;
     let all = Area::whole(whole.width(), whole.height());
-    if (area.pixels() as f64) < LEAST_SHARE * all.pixels() as f64 {
+    if (area.pixels() as f64) < MIN_SHARE * all.pixels() as f64 {
         return None;
     }
     let places = u64::from(columns) * u64::from(rows);
-    let compared = (MOST_COMPARED / places).clamp(16, 400).min(area.pixels());
-    // Every so many pixels one, with a number that no width is a multiple of in all rows.
+    let compared = (MAX_COMPARED / places).clamp(16, 400).min(area.pixels());
+    // One of every `step` pixels. The step is odd, so that it rarely divides the width, and the
+    // columns differ from row to row.
     let step = (area.pixels() / compared).max(1) | 1;
     let points: Vec<(u32, u32)> = (0..area.pixels())
         .step_by(step as usize)
@@ -55,5 +56,5 @@ pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
             }
         }
     }
-    (least < LEFT * sum / places as f64).then_some(place)
+    (least < MAX_LEFT * sum / places as f64).then_some(place)
 }

@@ -1,4 +1,4 @@
-//! A picture as a file holds it, and why a file is none.
+//! A picture as a file contains it, and why a file is none.
 
 use image::ImageFormat;
 use thiserror::Error;
@@ -6,35 +6,35 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless it is said that it may be larger:
-/// of 2^26 pixels with four bytes each, whose film takes 1.5 GiB.
+/// Maximum number of bytes that a picture is decoded to, unless the caller allows more: 2^26 pixels
+/// of four bytes, whose film takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
-/// A picture as a file holds it.
+/// A picture as a file contains it.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Its means in linear light.
+    /// The means in linear light.
     pub film: Film,
-    /// How its numbers are rounded.
+    /// The rounding of the file's numbers.
     pub rounding: Rounding,
-    /// What else its coding does to them.
+    /// Other changes that the file's coding makes to colours.
     pub coding: Coding,
-    /// The part of a whole picture that it is, if it says so.
+    /// The part of a whole picture that it is, if the file says so.
     pub crop: Option<Area>,
-    /// How transparent it is, if it is.
+    /// The opacity; `None` for an opaque picture.
     pub opacity: Option<Opacity>,
 }
 
-/// How transparent a picture is.
+/// The opacity of a picture.
 #[derive(Clone, Debug)]
 pub struct Opacity {
-    /// The least and the greatest of its pixels, from 0 to 1.
+    /// Least and greatest opacity of its pixels, from 0 to 1.
     pub range: [f64; 2],
-    /// The picture as it would be if it were opaque.
+    /// The colours of the picture without their opacity.
     pub film: Film,
 }
 
-/// What the numbers of a file are rounded to.
+/// The numbers that a file's values are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// Bytes of sRGB, or fewer bits.
@@ -48,11 +48,11 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// How far it may move a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255 of the
-    /// way from black to white.
+    /// Maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255
+    /// of the way from black to white.
     ///
-    /// The floats' part is their relative rounding 2^−11 or 2^−24 of the light, times the 255 ·
-    /// 1.055/2.4 steps of a unit of light at white, where that product is greatest, rounded up.
+    /// That of floats is their relative rounding, 2^−11 or 2^−24 of the light, times the 255 ·
+    /// 1.055/2.4 steps per unit of light at white, where this product is greatest, rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -63,30 +63,29 @@ impl Rounding {
     }
 }
 
-/// What a file's coding does to colours besides rounding them.
+/// What a file's coding does to colours besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
     /// Nothing.
     Exact,
-    /// It changes them where that is hardly seen: JPEG, and one kind of WebP.
+    /// Colours change where that is hardly visible: JPEG, and one kind of WebP.
     Lossy,
-    /// It replaces them by the nearest of at most 256: GIF.
+    /// Colours are replaced by the nearest of at most 256: GIF.
     Palette,
-    /// It says that they follow another curve than sRGB's, as which they are read: a PNG's `gAMA`
-    /// or `iCCP`.
+    /// The file declares a curve other than sRGB's, but is read as sRGB: a PNG's `gAMA` or `iCCP`.
     OtherCurve,
-    /// It is a PNM with a mark or lines of text in front, which are passed over.
+    /// A PNM after a byte order mark or lines of text, which are skipped.
     TextBefore,
-    /// It is a PNM of numbers in UTF-16.
+    /// A PNM whose numbers are in UTF-16.
     Utf16,
-    /// It is a PNM of bytes in which every line feed had become two, as in a text.
+    /// A PNM of bytes in which every line feed had become two bytes, as in a text file.
     TextMode,
-    /// It is a PNM of bytes in which all above 127 had become two, as letters of a text in UTF-8.
+    /// A PNM of bytes in which each byte above 127 had become two, as in UTF-8 text.
     Utf8,
 }
 
 impl Coding {
-    /// What whoever compares such a picture should know.
+    /// Returns a warning for people who compare such a picture.
     pub fn warning(self) -> Option<&'static str> {
         match self {
             Self::Exact => None,
@@ -116,16 +115,16 @@ impl Coding {
 /// Why a file is no picture.
 #[derive(Debug, Error)]
 pub enum Unreadable {
-    /// It is none, or of a format that is not read.
+    /// The file is no picture, or has a format that is not read.
     #[error(
         "it is no picture in PNG, OpenEXR, PNM, BMP, TIFF, WebP, GIF or JPEG, the formats that are read here{}",
         .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
     )]
     Format(Option<ImageFormat>),
-    /// It is something else.
+    /// The file is something else that is known.
     #[error("it is no picture, but {0}")]
     Other(&'static str),
-    /// It does not follow its format.
+    /// The file does not follow its format.
     #[error(
         "it begins as {format} files do, but is damaged or cut off: {}",
         shortened(cause)
@@ -133,21 +132,21 @@ pub enum Unreadable {
     Damaged {
         /// The format's name.
         format: String,
-        /// What is wrong.
+        /// The defect.
         cause: String,
     },
-    /// It uses a part of its format that is not read here.
+    /// The file uses a part of its format that is not supported here.
     #[error("it is {format} of a kind that is not read here: {}", shortened(cause))]
     Unsupported {
         /// The format's name.
         format: String,
-        /// What is not read.
+        /// The part that is not supported.
         cause: String,
     },
-    /// To unpack it takes too much memory, besides what the picture itself takes.
+    /// Decompression takes too much memory, besides that of the picture itself.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
-    /// It is larger than pictures that are read.
+    /// The picture is larger than the limit.
     #[error(
         "it has {width} × {height} pixels, which are decoded to more than the {limit} bytes that are read"
     )]
@@ -156,13 +155,13 @@ pub enum Unreadable {
         width: u64,
         /// The number of rows.
         height: u64,
-        /// How many bytes are decoded at most.
+        /// Maximum number of decoded bytes.
         limit: u64,
     },
-    /// It has no columns or no rows.
+    /// The picture has no columns or no rows.
     #[error("it has {0} × {1} pixels, and so none at all")]
     Empty(u64, u64),
-    /// There is no memory for it.
+    /// There is not enough memory for the picture.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
     /// A value is infinite or NaN.
@@ -175,13 +174,13 @@ pub enum Unreadable {
     },
 }
 
-/// What a format is called.
+/// Returns the name of a format.
 pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Refuses a picture that is decoded to more bytes than this, with four channels of so many bytes,
-/// or has no pixels.
+/// Rejects a picture without pixels, or one that is decoded to more than `limit` bytes, with four
+/// channels of `channel` bytes each.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,
@@ -202,7 +201,7 @@ pub(super) fn check_size(
     }
 }
 
-/// What a decoder says, which may hold a part of the file of any length.
+/// Shortens a decoder's message, which may contain a part of the file of any length.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
     let mut characters = cause.trim_end().chars();

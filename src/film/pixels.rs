@@ -1,4 +1,4 @@
-//! A picture in memory: a row of pixels after the other.
+//! A picture in memory: row by row of pixels.
 
 use super::{
     memory::{self, TooLarge},
@@ -6,20 +6,21 @@ use super::{
 };
 use crate::area::Area;
 
-/// What a film keeps of a pixel: its mean in linear light, the mean rounded to floats of 32 bits,
-/// or the bytes of sRGB, which take an eighth of the memory.
+/// What a film stores of a pixel: its mean in linear light, the mean rounded to 32-bit floats, or
+/// the bytes of sRGB, which take an eighth of the memory.
 pub trait Pixel: Copy + Default + Send + Sync {
-    /// From the mean.
+    /// Converts a mean.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Whether a mean that may be off by a bound in each channel is certain to become the same.
+    /// Whether all means within an error bound of this one, in each channel, are converted to the
+    /// same value.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
-/// What bytes of sRGB can be made of.
+/// A pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
-    /// The bytes of a row; `room` is for those that are not there yet.
-    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8];
+    /// Returns the bytes of a row; `buffer` stores them if they must be computed.
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 
 impl Pixel for [f64; 3] {
@@ -28,7 +29,7 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file holds floats of 32 bits.
+        // An EXR file contains 32-bit floats.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -45,17 +46,17 @@ impl Pixel for [f32; 3] {
 }
 
 impl AsBytes for [f64; 3] {
-    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, room: &'a mut Vec<u8>) -> &'a [u8] {
-        room.clear();
+    fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8] {
+        buffer.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
         for &light in row {
-            // Most pixels are as the one before.
+            // Most pixels equal the one before.
             if light != before {
                 (before, last) = (light, encoder.pixel(light));
             }
-            room.extend(last);
+            buffer.extend(last);
         }
-        room
+        buffer
     }
 }
 
@@ -79,20 +80,25 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// A picture: of each pixel the mean in linear light, or what else is kept of it.
+/// A picture: for each pixel its mean in linear light, or another kind of [`Pixel`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film<P = [f64; 3]> {
     width: u32,
     height: u32,
-    /// Row by row from the top.
+    /// The pixels, row by row from the top.
     pixels: Vec<P>,
 }
 
 impl<P: Pixel> Film<P> {
-    /// A black picture, if the memory for it is there.
+    /// Creates a black picture.
+    ///
+    /// # Errors
+    ///
+    /// There is not enough memory for it.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // The system has zeros at hand, so that a page is touched only when something is put there.
+        // The system provides zeroed memory, so that a page is touched only when something is
+        // written to it.
         Ok(Self {
             width,
             height,
@@ -100,7 +106,11 @@ impl<P: Pixel> Film<P> {
         })
     }
 
-    /// A picture of which each pixel, named by column and row, is given.
+    /// Creates a picture from a function of column and row.
+    ///
+    /// # Errors
+    ///
+    /// There is not enough memory for it.
     pub fn from_fn(
         width: u32,
         height: u32,
@@ -117,29 +127,33 @@ impl<P: Pixel> Film<P> {
         Ok(film)
     }
 
-    /// A part of it, which lies in it.
+    /// Copies a part of the picture, which must lie in it.
+    ///
+    /// # Errors
+    ///
+    /// There is not enough memory for it.
     pub fn part(&self, part: Area) -> Result<Self, TooLarge> {
         Self::from_fn(part.width, part.height, |x, y| {
             self.pixel(part.x + x, part.y + y)
         })
     }
 
-    /// How many columns it has.
+    /// Number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// How many rows it has.
+    /// Number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// A pixel's red, green and blue.
+    /// Returns one pixel.
     pub fn pixel(&self, x: u32, y: u32) -> P {
         self.row(y)[x as usize]
     }
 
-    /// The pixels of a row, from the left.
+    /// Returns the pixels of a row, from the left.
     pub fn row(&self, y: u32) -> &[P] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
@@ -150,7 +164,7 @@ impl<P: Pixel> Film<P> {
         &self.pixels
     }
 
-    /// The same, to be changed.
+    /// All pixels, row by row, for changes.
     pub fn pixels_mut(&mut self) -> &mut [P] {
         &mut self.pixels
     }
@@ -165,8 +179,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// How many pixels of a film have bytes that are certain to be the rounding of the true mean's,
-/// given how far each may be from it.
+/// Counts the pixels of a film whose bytes are certainly the rounding of the true mean's, given the
+/// error bound of each.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

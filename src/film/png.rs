@@ -1,9 +1,9 @@
-//! Portable Network Graphics: 8 bits of sRGB a channel, and the scene that the picture shows.
+//! Portable Network Graphics: 8 bits of sRGB per channel, and the scene that the picture shows.
 //!
-//! The text goes into compressed iTXt chunks before the pixels: `Software`, which PNG itself knows,
-//! `pinhole:scene`, one `pinhole:set` for each override in their order, and `pinhole:crop` as
-//! `X,Y,W,H`. There is no date and nothing of the machine, so that the same scene makes the same
-//! file.
+//! The text is stored in compressed iTXt chunks before the pixels: `Software`, a keyword of PNG
+//! itself, `pinhole:scene`, one `pinhole:set` for each override in their order, and `pinhole:crop`
+//! as `X,Y,W,H`. There is no date and nothing about the machine, so that the same scene makes the
+//! same file.
 
 use std::io::{self, Write};
 
@@ -20,10 +20,10 @@ use crate::area::Area;
 /// The first bytes of every PNG.
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// A recipe with more bytes of text than this is not kept in a picture.
+/// Maximum number of bytes of a recipe's text. A longer recipe is not stored in a picture.
 pub const TEXT_LIMIT: usize = 1 << 20;
 
-/// Nor is one with more overrides.
+/// Maximum number of a recipe's overrides. A recipe with more is not stored in a picture.
 pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";
@@ -38,37 +38,37 @@ pub struct Recipe {
     pub scene: String,
     /// The `--set` arguments, in order.
     pub overrides: Vec<String>,
-    /// The part of the picture, if it is not the whole.
+    /// The part of the picture that was rendered; `None` for the whole.
     pub crop: Option<Area>,
 }
 
-/// Why a picture does not stand for a scene.
+/// Why a picture cannot be read as a scene.
 #[derive(Debug, Error)]
 pub enum NotOurs {
-    /// It does not follow the format.
+    /// The file does not follow the format.
     #[error("it begins as a PNG does, but is damaged or no picture")]
     Damaged,
-    /// It has no scene in it.
+    /// The picture contains no scene.
     #[error(
         "the picture carries no scene: another program wrote it, or its scene had more than 1 MiB of text"
     )]
     NoScene,
-    /// It has more text than Pinhole puts in.
+    /// The picture contains more text than Pinhole writes.
     #[error("the picture carries more than 1 MiB of text")]
     TooMuchText,
-    /// It has more overrides than Pinhole puts in.
+    /// The picture contains more overrides than Pinhole writes.
     #[error("the picture carries more than 1000 overrides")]
     TooManyOverrides,
-    /// A text of it is none.
+    /// A text of the picture is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// Its crop makes no sense.
+    /// The crop is no area.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
 }
 
 impl Recipe {
-    /// Whether it is short enough to be kept in a picture.
+    /// Whether the recipe is short enough to be stored in a picture.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         let crop = self.crop.map_or(0, |crop| crop.to_string().len());
@@ -86,6 +86,10 @@ impl Recipe {
 }
 
 /// Writes a picture, with what it was made from if that is given and [`fits`](Recipe::fits).
+///
+/// # Errors
+///
+/// `out` cannot be written to.
 pub fn write_png<P: AsBytes>(
     film: &Film<P>,
     recipe: Option<&Recipe>,
@@ -95,9 +99,9 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // Rows of flat colours repeat as they are: differences of neighbours, which the format's
-    // filters store, are packed less well. Of such pictures a higher level makes files smaller
-    // by a few hundredths, and takes three times as long.
+    // Rows of flat colours repeat, and compress better as they are than as the differences of
+    // neighbours that the format's filters store. A higher level makes files of such pictures
+    // smaller by a few hundredths, and takes three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
@@ -111,20 +115,24 @@ pub fn write_png<P: AsBytes>(
         writer.write_text_chunk(&chunk)?;
     }
 
-    // Row by row: the bytes of the whole are never in memory at once.
+    // Row by row: the bytes of the whole picture are never in memory at once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::default();
-    let mut room = Vec::new();
+    let mut buffer = Vec::new();
     for y in 0..film.height() {
-        rows.write_all(P::bytes(film.row(y), &encoder, &mut room))?;
+        rows.write_all(P::bytes(film.row(y), &encoder, &mut buffer))?;
     }
     rows.finish()?;
     writer.finish()?;
     Ok(())
 }
 
-/// Reads what a picture was made from. Only what precedes the pixels is looked at, and no more than
-/// [`TEXT_LIMIT`] is unpacked.
+/// Reads what a picture was made from. Only what precedes the pixels is read, and at most
+/// [`TEXT_LIMIT`] bytes are decompressed.
+///
+/// # Errors
+///
+/// The picture contains no scene, or more than a recipe may have.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
     let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
@@ -141,10 +149,12 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
             .into_iter()
             .find(|ours| ours.as_bytes() == keyword);
         let Some(keyword) = keyword else { continue };
-        let text = match is_packed {
-            true => fdeflate::decompress_to_vec_bounded(text, left).map_err(not_unpacked)?,
-            false if text.len() > left => return Err(NotOurs::TooMuchText),
-            false => text.to_owned(),
+        let text = if is_packed {
+            fdeflate::decompress_to_vec_bounded(text, left).map_err(not_unpacked)?
+        } else if text.len() > left {
+            return Err(NotOurs::TooMuchText);
+        } else {
+            text.to_owned()
         };
         left -= text.len();
         let text = String::from_utf8(text).map_err(|_| NotOurs::NotUtf8)?;
@@ -162,8 +172,8 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     })
 }
 
-/// A chunk's kind and content, and what follows it; nothing if it is cut off or its checksum is
-/// wrong.
+/// Returns a chunk's kind and content, and the bytes after it. Returns `None` if it is cut off or
+/// its checksum is wrong.
 fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
@@ -177,7 +187,7 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     (crc32fast::hash(checked) == u32::from_be_bytes(*checksum)).then_some((kind, content, rest))
 }
 
-/// The keyword of an iTXt chunk, whether its text is packed, and that.
+/// Returns the keyword of an iTXt chunk, whether its text is compressed, and the text.
 fn international_text(content: &[u8]) -> Option<(&[u8], bool, &[u8])> {
     let (keyword, rest) = before_zero(content)?;
     let (&[is_packed, _method], rest) = rest.split_first_chunk()?;

@@ -1,8 +1,9 @@
-//! PNM files, as class-mates' first programs write them: P1 to P6, in numbers or in bytes.
+//! PNM files, as students' first programs write them: P1 to P6, in numbers or in bytes.
 //!
-//! What a shell or a system may have done to one is undone where that can be told for certain: a
-//! mark or lines of text in front, UTF-16 instead of bytes, a carriage return before every line
-//! feed. What is missing or out of range is named with its place. PAM is left to `image`.
+//! Damage that a shell or a system may have done to a file is repaired if it can be recognised for
+//! certain: a byte order mark or lines of text in front, UTF-16 instead of bytes, a carriage return
+//! before every line feed. What is missing or out of range is reported with its position. PAM is
+//! left to `image`.
 
 use super::{
     memory,
@@ -11,26 +12,26 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes before a picture that may be a program's other words.
+/// Maximum number of bytes before a picture that may be other output of a program.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// How a PNM file begins.
+/// The beginning of a PNM file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// With the letter P, after this many bytes, which are none or a byte order mark.
+    /// The letter P, after this many bytes: none, or a byte order mark.
     Plain(usize),
-    /// With UTF-16, big-endian or not, after this many bytes.
+    /// UTF-16.
     Utf16 {
-        /// The length of its mark.
+        /// Length of the byte order mark, in bytes.
         mark: usize,
-        /// Whether the high byte comes first.
+        /// Whether the encoding is big-endian.
         is_big: bool,
     },
 }
 
-/// How a file begins if it is a PNM, without words in front.
+/// Returns the beginning of a file if it is a PNM without text in front.
 pub fn start(bytes: &[u8]) -> Option<Start> {
     let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
     if is_head(&bytes[mark..]) {
@@ -46,23 +47,23 @@ pub fn start(bytes: &[u8]) -> Option<Start> {
     is_head(&text).then_some(Start::Utf16 { mark, is_big })
 }
 
-/// The place of the line in which a PNM begins, after lines of other words.
+/// Returns the position of the line in which a PNM begins, after lines of other text.
 pub fn after_lines(bytes: &[u8]) -> Option<usize> {
     let start = &bytes[..bytes.len().min(LINES_BEFORE)];
     let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
     feeds.map(|at| at + 1).find(|&at| {
-        // A picture says its size, and not only something that looks like a first line.
-        let mut head = Reader::new(&start[at..]);
+        // A picture states its size; a first line that merely looks like a picture's is not enough.
+        let mut head = PnmReader::new(&start[at..]);
         is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
     })
 }
 
-/// Whether bytes begin as a PNM does: its two letters, and what ends a word.
+/// Whether bytes begin as a PNM does: with its two letters, and the end of a word.
 fn is_head(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'1'..=b'6', end, ..] if end.is_ascii_whitespace() || *end == b'#')
 }
 
-/// The characters of UTF-16 that are bytes, all of them.
+/// Converts UTF-16 to bytes. Returns `None` if a character is no byte.
 fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
     let (pairs, _) = bytes.as_chunks::<2>();
     let byte = |&[a, b]: &[u8; 2]| match if is_big { (a, b) } else { (b, a) } {
@@ -76,7 +77,7 @@ fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
 ///
 /// # Errors
 ///
-/// What is wrong with it, and where.
+/// The file is no picture, or a damaged one; the message says what is wrong with it, and where.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     match start(bytes) {
         Some(Start::Plain(0)) => read_bytes(bytes, limit, Coding::Exact),
@@ -109,7 +110,7 @@ fn damaged(cause: String) -> Unreadable {
 
 fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unreadable> {
     let kind = bytes[1] - b'0';
-    let mut reader = Reader::new(bytes);
+    let mut reader = PnmReader::new(bytes);
     let [width, height] = [reader.number()?, reader.number()?];
     let is_bits = kind == 1 || kind == 4;
     let maxval = if is_bits { 1 } else { reader.number()? };
@@ -134,16 +135,16 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     let whole = 2 * channels + size_of::<[f64; 3]>();
     memory::check(width, height, whole as u64)?;
     let mut film = Film::new(width, height)?;
-    let samples = Samples {
+    let raster = Raster {
         width: width as usize,
         height: height as usize,
         channels,
         maxval: maxval as u16,
     };
     let (numbers, mended) = match kind {
-        1..=3 => (samples.in_text(&mut reader, is_bits)?, None),
-        4 => (samples.in_bits(reader.after_one_space())?, None),
-        _ => samples.in_bytes(&reader, length as usize)?,
+        1..=3 => (raster.in_text(&mut reader, is_bits)?, None),
+        4 => (raster.in_bits(reader.after_one_space())?, None),
+        _ => raster.in_bytes(&reader, length as usize)?,
     };
     let light: Vec<f64> = (0..=maxval)
         .map(|number| srgb_to_linear(number as f64 / maxval as f64))
@@ -164,20 +165,20 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// What a raster has to hold.
-struct Samples {
+/// The expected contents of a raster.
+struct Raster {
     width: usize,
     height: usize,
     channels: usize,
     maxval: u16,
 }
 
-impl Samples {
+impl Raster {
     fn count(&self) -> usize {
         self.width * self.height * self.channels
     }
 
-    /// What a number belongs to.
+    /// Returns the name of the pixel, and the channel, that a number belongs to.
     fn place(&self, index: usize) -> String {
         let pixel = index / self.channels;
         let (x, y) = (pixel % self.width, pixel / self.width);
@@ -207,17 +208,18 @@ impl Samples {
         ))
     }
 
-    /// Numbers with white space between them; of bits none is needed, and 1 is black.
-    fn in_text(&self, reader: &mut Reader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
+    /// Reads numbers with white space between them. Bits need none, and 1 is black.
+    fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {
             reader.skip_space();
             if reader.is_at_end() {
                 return Err(self.cut_off(index));
             }
-            let number = match is_bits {
-                true => reader.bit(),
-                false => reader.number(),
+            let number = if is_bits {
+                reader.bit()
+            } else {
+                reader.number()
             };
             match number? {
                 number if number > u64::from(self.maxval) => {
@@ -230,7 +232,7 @@ impl Samples {
         Ok(numbers)
     }
 
-    /// Bits, of which 1 is black; each row begins with a byte of its own.
+    /// Reads bits, of which 1 is black. Each row begins with a new byte.
     fn in_bits(&self, raster: &[u8]) -> Result<Vec<u16>, Unreadable> {
         let row = self.width.div_ceil(8);
         let bit = |index: usize| {
@@ -242,20 +244,18 @@ impl Samples {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Bytes, or words of two with the high one first; and what had been done to them.
+    /// Reads bytes, or words of two bytes with the high one first. Returns also which damage was
+    /// repaired.
     fn in_bytes(
         &self,
-        reader: &Reader,
+        reader: &PnmReader,
         length: usize,
     ) -> Result<(Vec<u16>, Option<Coding>), Unreadable> {
         let raster = reader.after_one_space();
         let wanted = length * self.count();
-        let mended = match raster.len() == wanted {
-            true => None,
-            false => reader
-                .after_line_end()
-                .and_then(|rest| mended(rest, wanted)),
-        };
+        let text = reader.after_line_end();
+        let text = text.filter(|_| raster.len() != wanted);
+        let mended = text.and_then(|rest| mended(rest, wanted));
         if raster.len() != wanted && mended.is_none() && is_text_with_losses(raster) {
             return Err(damaged(LOST.to_owned()));
         }
@@ -266,17 +266,17 @@ impl Samples {
                 [byte] => u16::from(*byte),
                 bytes => u16::from_be_bytes([bytes[0], bytes[1]]),
             };
-            match number > self.maxval {
-                true => Err(self.above(index, number.into(), None)),
-                false => Ok(number),
+            if number > self.maxval {
+                return Err(self.above(index, number.into(), None));
             }
+            Ok(number)
         };
         let numbers: Result<_, _> = (0..self.count()).map(number).collect();
         Ok((numbers?, mended.map(|(_, coding)| coding)))
     }
 }
 
-/// A raster of the length that it should have, if it was written as a text, and as which.
+/// Repairs a raster that was written as text, if that gives it the wanted length.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {
@@ -285,20 +285,19 @@ fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let letters = str::from_utf8(raster).ok()?.chars();
     let bytes = letters.map(|letter| u8::try_from(letter).ok());
     let bytes = bytes.collect::<Option<Vec<u8>>>()?;
-    let bytes = match bytes.len() == wanted {
-        true => bytes,
-        false => of_lines(&bytes)?,
-    };
-    Some((bytes, Coding::Utf8))
+    if bytes.len() == wanted {
+        return Some((bytes, Coding::Utf8));
+    }
+    Some((of_lines(&bytes)?, Coding::Utf8))
 }
 
-/// Whether bytes are a text in which some had been none, and were replaced.
+/// Whether bytes are a text in which characters that were none had been replaced.
 fn is_text_with_losses(raster: &[u8]) -> bool {
     str::from_utf8(raster).is_ok_and(|text| text.contains(char::REPLACEMENT_CHARACTER))
 }
 
-/// A raster that was written as text where a line ends in two bytes: all its line feeds have a
-/// carriage return before them, and without these it has the length that it should have.
+/// Repairs a raster that was written as text on a system where lines end in two bytes: every line
+/// feed follows a carriage return, and without these the raster has the wanted length.
 fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     let is_feed = |at: usize| raster[at] == b'\n';
     let mut feeds = (0..raster.len()).filter(|&at| is_feed(at));
@@ -313,14 +312,14 @@ fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (kept.len() == wanted).then_some(kept)
 }
 
-/// Reads numbers from a text, past comments.
-struct Reader<'b> {
+/// A reader of numbers in a text, past comments.
+struct PnmReader<'b> {
     bytes: &'b [u8],
     at: usize,
 }
 
-impl<'b> Reader<'b> {
-    /// After the two letters.
+impl<'b> PnmReader<'b> {
+    /// Starts after the two letters.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }
@@ -329,7 +328,7 @@ impl<'b> Reader<'b> {
         self.at >= self.bytes.len()
     }
 
-    /// The line, from 1, as editors count.
+    /// Line number, from 1, as editors count.
     fn line(&self) -> usize {
         let before = &self.bytes[..self.at];
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
@@ -362,23 +361,23 @@ impl<'b> Reader<'b> {
             self.at += word.len();
             return Ok(number);
         }
-        // Lines are counted from the first on: not for each number.
+        // Lines are counted from the beginning, which would take too long for every number.
         let line = self.line();
         Err(damaged(match word {
             [] => "it ends before its size and maxval".to_owned(),
             _ => {
                 let word = String::from_utf8_lossy(&word[..word.len().min(20)]);
                 let is_number = word.parse::<f64>().is_ok();
-                let way_out = match !is_number && word.starts_with(char::is_alphabetic) {
-                    true => ": what is not the picture's goes to standard error",
-                    false => "",
-                };
+                let is_text = !is_number && word.starts_with(char::is_alphabetic);
+                let way_out =
+                    is_text.then_some(": what is not the picture's goes to standard error");
+                let way_out = way_out.unwrap_or_default();
                 format!("`{word}` in line {line} is no whole number{way_out}")
             }
         }))
     }
 
-    /// A number of one digit.
+    /// Reads a number of one digit.
     fn bit(&mut self) -> Result<u64, Unreadable> {
         let byte = self.bytes[self.at];
         self.at += 1;
@@ -395,12 +394,12 @@ impl<'b> Reader<'b> {
         }
     }
 
-    /// What follows the one white space after a header.
+    /// Returns what follows the single white space after a header.
     fn after_one_space(&self) -> &'b [u8] {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }
 
-    /// What follows the end of the header's line.
+    /// Returns what follows the end of the header's line.
     fn after_line_end(&self) -> Option<&'b [u8]> {
         let rest = self.bytes.get(self.at..)?;
         rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))

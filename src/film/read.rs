@@ -1,12 +1,12 @@
-//! Picture files of any program become films.
+//! Reads picture files of any program into films.
 //!
-//! In: the bytes of a picture in PNG, in OpenEXR, or in any format that `image` reads here. Out:
-//! linear means, how far the file's rounding may have moved them, and what else its coding does to
+//! In: the bytes of a picture in PNG, in OpenEXR, or in any other format that `image` reads here.
+//! Out: linear means, the maximum error of the file's rounding, and what else its coding does to
 //! colours.
 //!
-//! Whole numbers count as sRGB, whatever a `gAMA` or a colour profile says: that is how the
-//! pictures of a scene are meant, and what most programs write without saying so. Floats count as
-//! linear light. What is transparent is seen on black, mixed in linear light.
+//! Whole numbers are taken for sRGB, whatever a `gAMA` or a colour profile says: the pictures of a
+//! scene are meant so, and most programs write them so without saying it. Floats are taken for
+//! linear light. Transparent pixels are shown on black, mixed in linear light.
 
 use std::{error::Error, io::Cursor};
 
@@ -24,43 +24,51 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// What a decoder may take besides the picture, in bytes: as much as `image` allows by default.
+/// Maximum number of bytes that a decoder may allocate besides the picture: the default of `image`.
 const UNPACKING: usize = 512 << 20;
 
-/// Whether a file begins as a picture does, of a format that is read here or not.
+/// Whether a file begins as a picture does, in a format that is read here or not.
 pub fn is_picture(bytes: &[u8]) -> bool {
     pnm::start(bytes).is_some() || format(bytes).is_some()
 }
 
-/// Whether a PNM begins after lines of text, among as many of a file's first bytes as there are.
+/// Whether a PNM begins after lines of text, within the first bytes of a file.
 pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
     pnm::after_lines(bytes).is_some()
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // The two letters of this format could be a name in a scene.
+    // The two letters of this format could begin a name in a scene.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-    match format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
-        true => None,
-        false => Some(format),
+    if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
+        return None;
     }
+    Some(format)
 }
 
-/// Reads a picture of the usual size.
+/// Reads a picture of at most [`DECODED_LIMIT`] decoded bytes.
+///
+/// # Errors
+///
+/// The file is no picture that can be read.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     read_picture_up_to(bytes, DECODED_LIMIT)
 }
 
-/// Reads a picture that is decoded to at most so many bytes, which its first bytes tell, and for
-/// which there is memory.
+/// Reads a picture of at most `limit` decoded bytes, which its first bytes tell, if there is memory
+/// for it.
+///
+/// # Errors
+///
+/// The file is no picture that can be read.
 pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
-        // A mark, UTF-16 or lines of text come before it.
+        // A byte order mark, UTF-16 or lines of text may come first.
         None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,
@@ -86,7 +94,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if limit > DECODED_LIMIT {
-        // What there is memory for is looked at below.
+        // Whether there is memory is checked below.
         reader.no_limits();
     }
     let decoder = reader.into_decoder().map_err(unreadable)?;
@@ -99,7 +107,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
         2 => Rounding::Word,
         _ => Rounding::Float,
     };
-    // What is decoded, the same with all four channels, and the film.
+    // The decoded picture, its copy with all four channels, and the film.
     let channels = match rounding {
         Rounding::Float => size_of::<[f32; 4]>(),
         _ => size_of::<[u16; 4]>(),
@@ -110,7 +118,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
-        // A byte k is the word 257 k, the same part of the whole.
+        // A byte k equals the word 257 k, as a fraction of the whole range.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
@@ -146,7 +154,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     };
     let limits = png::Limits { bytes: UNPACKING };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // Bytes or words of gray or colours, with an opacity.
+    // Bytes or words of gray or of colours, with opacity.
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
@@ -174,7 +182,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let light = light_of_words();
     let word = |index: usize| match rounding {
         Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
-        // A byte k is the word 257 k, the same part of the whole.
+        // A byte k equals the word 257 k, as a fraction of the whole range.
         _ => 257 * u16::from(samples[index]),
     };
     let count = film.pixels().len();
@@ -183,17 +191,18 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     Ok(Picture {
         film,
         rounding,
-        coding: match says_other_curve(reader.info()) {
-            true => Coding::OtherCurve,
-            false => Coding::Exact,
+        coding: if says_other_curve(reader.info()) {
+            Coding::OtherCurve
+        } else {
+            Coding::Exact
         },
         crop: read_recipe(bytes).ok().and_then(|recipe| recipe.crop),
         opacity,
     })
 }
 
-/// Whether a PNG says that its numbers follow another curve than sRGB's. A chunk `sRGB` overrules
-/// `gAMA`, and `iCCP` both.
+/// Whether a PNG declares a curve other than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP`
+/// both.
 fn says_other_curve(info: &png::Info) -> bool {
     match (&info.icc_profile, info.srgb, info.gama_chunk) {
         (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
@@ -203,42 +212,42 @@ fn says_other_curve(info: &png::Info) -> bool {
 }
 
 /// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from
-/// sRGB's; none if there is none.
+/// sRGB's. Returns `None` if the profile has no such curve.
 fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let count = number(128)?.min(100) as usize;
-    // A tag has 12 bytes: its name, its place and its length.
+    // A tag has 12 bytes: its name, its position and its length.
     let tag = (0..count)
         .map(|index| 132 + 12 * index)
         .find(|&at| matches!(profile.get(at..at + 4), Some(b"rTRC" | b"kTRC")))?;
     let at = number(tag + 4)? as usize;
     let word = |at: usize| Some(u16::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let fixed = |index: usize| Some(f64::from(number(at + 12 + 4 * index)? as i32) / 65536.0);
-    // The light of one half, which is 0.2140 by sRGB and 0.2176 by a power of 2.2.
+    // The light of one half, which is 0.2140 in sRGB and 0.2176 by a power of 2.2.
     let light = match (profile.get(at..at + 4)?, number(at + 8)?) {
         (b"curv", 0) => 0.5,
         (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
         (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
         (b"para", 0) => libm::pow(0.5, fixed(0)?),
-        // The other functions are (a x + b)^g there, and more in the last but one and the last.
+        // At one half, the other functions are (a x + b)^g; two of them add a constant to it.
         (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
         _ => return None,
     };
     Some((light - srgb_to_linear(0.5)).abs() > 0.01)
 }
 
-/// The part of the whole that a word is.
+/// Converts a word to a fraction of the range of words.
 fn part(word: u16) -> f64 {
     f64::from(word) / f64::from(u16::MAX)
 }
 
-/// The light of each word of sRGB.
+/// Returns the light of every word of sRGB.
 fn light_of_words() -> Vec<f64> {
     let words = 0..=u16::MAX;
     words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
-/// Fills a film with samples of red, green, blue and opacity.
+/// Fills a film from samples of red, green, blue and opacity.
 fn fill<T: Copy>(
     film: &mut Film,
     samples: &[T],
@@ -248,7 +257,7 @@ fn fill<T: Copy>(
     mix(film, samples.as_chunks().0.iter().copied(), light, opacity)
 }
 
-/// Fills a film with pixels of red, green, blue and opacity, on black.
+/// Fills a film from pixels of red, green, blue and opacity, on black.
 fn mix<T: Copy>(
     film: &mut Film,
     pixels: impl Iterator<Item = [T; 4]>,
@@ -279,7 +288,7 @@ fn mix<T: Copy>(
 
 fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {
     let format = name(format);
-    // Its own words name the format again.
+    // The error's own text would name the format again.
     let cause = error
         .source()
         .map_or_else(|| error.to_string(), ToString::to_string);

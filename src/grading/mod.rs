@@ -53,7 +53,7 @@ mod work;
 
 use std::{
     borrow::Cow,
-    sync::{Arc, Mutex, PoisonError, atomic::AtomicBool},
+    sync::{Arc, Mutex, atomic::AtomicBool},
 };
 
 use crate::{
@@ -64,6 +64,7 @@ use crate::{
     film::{
         self, Comparison, Film, Jpeg, Picture, Rounding, SizesDiffer, Tolerance, reserve_memory,
     },
+    lock::{lock, unpoisoned},
     render::{Control, Exact, RenderError, render_numbers},
     scene::Scene,
     tracer::World,
@@ -126,11 +127,11 @@ impl<'a> Reference<'a> {
         };
         let all = Mutex::new(Moments::zero(part.pixels() as usize));
         let exact = render_numbers(&integrator, part, control, &|tile, pixels| {
-            let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut all = lock(&all);
             let pixels = pixels.iter().map(moments::moments);
             all.put(part, tile, &Moments::exact(pixels));
         })?;
-        let moments = all.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let moments = unpoisoned(all.into_inner());
         let pixels = part.pixels() as usize;
         let work = work::of_exact(integrator.work(), scene.objects.len(), pixels);
         Ok(Self {

@@ -1,4 +1,4 @@
-//! What `inspect` says, as JSON: the object of the command line's contract.
+//! The output of `inspect` as JSON: the object of the command line's contract.
 
 use std::io::{self, Write};
 
@@ -7,14 +7,14 @@ use serde_json::{Value, json};
 use super::{AXES, Inspection, ObjectFacts};
 use crate::{
     numbers,
-    scene::{Checkerboard, Shape, Sphere},
-    seen::{LEAST, LISTED, Seen},
+    scene::{Checkerboard, Cuboid, Shape, Sphere, Triangle},
+    seen::{LISTED, MIN_AREA, Visibility},
     tracer::vertices,
 };
 
 impl Inspection {
-    /// Writes the JSON object and a line feed, object by object: as values, a million of them would
-    /// take more than a gigabyte.
+    /// Writes the JSON object and a line feed, object by object: as values in memory, a million
+    /// objects would take more than a gigabyte.
     ///
     /// # Errors
     ///
@@ -36,7 +36,7 @@ impl Inspection {
             let facts = json!({
                 "objects": rest.objects,
                 "seen": rest.seen,
-                "pixels": numbers::rounded(rest.pixels, LEAST),
+                "pixels": numbers::rounded(rest.pixels, MIN_AREA),
                 "outside": rest.outside,
             });
             write!(out, ",\"rest\":{facts}")?;
@@ -44,13 +44,11 @@ impl Inspection {
         writeln!(out, "}}")
     }
 
-    /// All that is not of the objects.
+    /// Returns the members that are not about objects.
     fn facts(&self) -> [(&'static str, Value); 4] {
         let camera = &self.camera;
-        let vanishing_points = AXES
-            .iter()
-            .zip(&self.vanishing_points)
-            .map(|(axis, pixel)| json!({ "axis": axis, "pixel": pixel }));
+        let point = |(axis, pixel)| json!({ "axis": axis, "pixel": pixel });
+        let points = AXES.iter().zip(&self.vanishing_points).map(point);
         let image = json!({ "width": self.size[0], "height": self.size[1] });
         let camera = json!({
             "eye": camera.eye.to_array(),
@@ -71,12 +69,11 @@ impl Inspection {
             "total": self.total,
             "seed": self.seed,
         });
-        let vanishing_points = vanishing_points.collect();
         [
             ("image", image),
             ("camera", camera),
             ("sampler", sampler),
-            ("vanishing_points", vanishing_points),
+            ("vanishing_points", points.collect()),
         ]
     }
 
@@ -99,23 +96,25 @@ impl Inspection {
         facts
     }
 
-    fn seen_facts(&self, seen: Seen) -> Value {
+    fn seen_facts(&self, seen: Visibility) -> Value {
         match seen {
-            Seen::Part(around, pixels) => {
+            Visibility::Part(around, pixels) => {
                 let corners = [around.x, around.y, around.width, around.height];
-                json!({ "box": corners, "pixels": numbers::rounded(pixels, LEAST) })
+                json!({ "box": corners, "pixels": numbers::rounded(pixels, MIN_AREA) })
             }
-            Seen::Outside(place) => json!({ "box": null, "pixels": 0.0, "outside": place.words() }),
-            Seen::HiddenBy(other) => {
+            Visibility::Outside(place) => {
+                json!({ "box": null, "pixels": 0.0, "outside": place.words() })
+            }
+            Visibility::HiddenBy(other) => {
                 let name = self.objects.get(other).and_then(|it| it.name.as_deref());
                 json!({ "box": null, "pixels": 0.0, "hidden_by": name, "hidden_by_index": other })
             }
-            Seen::Nothing => json!({ "box": null, "pixels": 0.0 }),
+            Visibility::Nothing => json!({ "box": null, "pixels": 0.0 }),
         }
     }
 }
 
-/// What is particular to a kind of object.
+/// Returns the members that depend on the kind of object.
 fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
     match shape {
         Shape::Sphere(Sphere {
@@ -127,15 +126,20 @@ fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
             ("radius", json!(radius)),
             ("color", json!(color.to_string())),
         ],
-        Shape::Triangle(triangle) => vec![
+        Shape::Triangle(triangle @ Triangle { outline: _, color }) => vec![
             ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
-            ("color", json!(triangle.color.to_string())),
+            ("color", json!(color.to_string())),
         ],
-        Shape::Box(cuboid) => vec![
-            ("min", json!(cuboid.min.to_array())),
-            ("max", json!(cuboid.max.to_array())),
-            match cuboid.faces {
-                None => ("color", json!(cuboid.color.to_string())),
+        Shape::Box(Cuboid {
+            min,
+            max,
+            color,
+            faces,
+        }) => vec![
+            ("min", json!(min.to_array())),
+            ("max", json!(max.to_array())),
+            match faces {
+                None => ("color", json!(color.to_string())),
                 Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
             },
         ],

@@ -1,25 +1,26 @@
-//! A place for one value, of which only the newest counts.
+//! A slot for one value, of which only the newest counts.
 
 use std::{
     sync::{
-        Condvar, Mutex, MutexGuard, PoisonError,
+        Condvar, Mutex,
         atomic::{AtomicBool, Ordering},
     },
     time::Duration,
 };
 
-/// What one thread puts and another one takes. A value that is put takes the place of one that
-/// nobody has taken.
+use crate::lock::{lock, unpoisoned};
+
+/// A slot from one thread to another. A new value replaces one that was not taken.
 #[derive(Debug)]
 pub struct Latest<T> {
-    state: Mutex<State<T>>,
+    state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Written while the state is locked, so that it fits it.
+    /// Written only while the state is locked, so that both agree.
     stale: AtomicBool,
 }
 
 #[derive(Debug)]
-struct State<T> {
+struct SlotState<T> {
     next: Option<T>,
     is_over: bool,
 }
@@ -27,7 +28,7 @@ struct State<T> {
 impl<T> Default for Latest<T> {
     fn default() -> Self {
         Self {
-            state: Mutex::new(State {
+            state: Mutex::new(SlotState {
                 next: None,
                 is_over: false,
             }),
@@ -38,21 +39,22 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T> Latest<T> {
-    /// The next value, if there is one.
+    /// Takes the next value, if there is one.
     pub fn try_take(&self) -> Option<T> {
-        let mut state = self.lock();
+        let mut state = lock(&self.state);
         self.stale.store(state.is_over, Ordering::SeqCst);
         state.next.take()
     }
 
-    /// Waits for the next value; `None` means that there will be no more.
+    /// Waits for the next value. Returns `None` after the end.
     pub fn take(&self) -> Option<T> {
         self.take_while(Duration::MAX, || {})
     }
 
-    /// The same, and does something whenever it has waited for so long again.
+    /// Waits for the next value as [`take`](Self::take) does, and calls `idle` after every `pause`
+    /// of waiting.
     pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
-        let mut state = self.lock();
+        let mut state = lock(&self.state);
         loop {
             if state.is_over {
                 return None;
@@ -61,22 +63,19 @@ impl<T> Latest<T> {
                 self.stale.store(false, Ordering::SeqCst);
                 return Some(value);
             }
-            let (waited, result) = self
-                .news
-                .wait_timeout(state, pause)
-                .unwrap_or_else(PoisonError::into_inner);
+            let (waited, result) = unpoisoned(self.news.wait_timeout(state, pause));
             state = waited;
             if result.timed_out() && state.next.is_none() {
-                // What is done may take its time: values can be put meanwhile.
+                // `idle` may take its time: values can be put meanwhile.
                 drop(state);
                 idle();
-                state = self.lock();
+                state = lock(&self.state);
             }
         }
     }
 
-    /// Set as soon as there is a newer value than the one that was taken, or nobody wants one any
-    /// more: for cancelling work on it.
+    /// Flag that is set as soon as there is a newer value than the one taken, or the slot has
+    /// ended: it cancels work on the old value.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }
@@ -86,25 +85,21 @@ impl<T> Latest<T> {
         self.change(|state| state.next = Some(value));
     }
 
-    /// From now on there are no values.
+    /// Ends the slot: from now on no values can be taken.
     pub fn end(&self) {
         self.change(|state| state.is_over = true);
     }
 
-    /// Whether it has ended.
+    /// Whether the slot has ended.
     pub fn is_over(&self) -> bool {
-        self.lock().is_over
+        lock(&self.state).is_over
     }
 
-    fn change(&self, change: impl FnOnce(&mut State<T>)) {
-        let mut state = self.lock();
+    fn change(&self, change: impl FnOnce(&mut SlotState<T>)) {
+        let mut state = lock(&self.state);
         change(&mut state);
         self.stale.store(true, Ordering::SeqCst);
         self.news.notify_all();
-    }
-
-    fn lock(&self) -> MutexGuard<'_, State<T>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

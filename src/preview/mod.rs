@@ -1,13 +1,13 @@
-//! A file that is being edited, as it is now.
+//! The current content of a file that is being edited.
 //!
 //! In: a path. Out: the file's content, at the start and whenever it has changed, and a flag that
-//! says when what was taken is no longer the newest. Nothing here knows of scenes or pictures: what
-//! is made of a content, and when it is given up, is for others.
+//! is set when the content that was taken is no longer the newest. This module knows nothing of
+//! scenes or pictures; its callers decide what to make of a content, and when to give it up.
 
 mod latest;
 mod watcher;
 
 pub use self::{
     latest::Latest,
-    watcher::{Content, watch},
+    watcher::{FileContent, watch},
 };

@@ -1,19 +1,18 @@
-//! Which content a file has, and when it changes.
+//! The content of a file, and its changes.
 //!
-//! It is the folder that is watched: many editors save by writing another file and renaming it, and
-//! the file that was there before is gone then, with whatever watched it. Of a symbolic link, the
-//! folder of the file at its end is watched as well.
+//! The folder is watched, not the file: many editors save by writing another file and renaming it,
+//! which removes the old file together with a watch on it. For a symbolic link, the folder of its
+//! target is watched as well.
 //!
-//! Events come in bursts, so the file is read once there was none for a moment. (notify's own
-//! debouncers do that too, but the small one forgets what kind an event is, and would be woken by
-//! our own reading, and the large one keeps books on files that were renamed, which nobody asks for
-//! here.) Once a second the file's time and length are looked at in any case, for folders without
-//! events, such as those on other machines, or where the system has no watch left, and for those
-//! that come and go.
+//! Events come in bursts, so the file is read after a short time without events. (notify's own
+//! debouncers do that, too; but the small one drops the kind of an event, and would be woken by our
+//! own reading, and the large one tracks renamed files, which is not needed here.) Once a second
+//! the file's time and length are checked in any case: for folders without events, such as those on
+//! other machines, for systems that have no watches left, and for folders that come and go.
 //!
-//! A save is told by the file's time, its length and which file it is, and not by the text alone:
-//! who saves the text that was there wants to see something happen. Whatever else an editor does to
-//! a file that it has written changes none of them.
+//! A save is recognised by the file's time, its length and its identity, and not by the text alone:
+//! people who save an unchanged text want to see something happen. Whatever else an editor does to
+//! a file after writing it changes none of these.
 
 use std::{
     collections::BTreeSet,
@@ -36,38 +35,42 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// A file is read when it was left alone for so long.
-const QUIET: Duration = Duration::from_millis(10);
+/// Time without events after which the file is read.
+const QUIET_TIME: Duration = Duration::from_millis(10);
 
-/// But no later than this, should it never be left alone.
+/// Maximum time from the first event to reading the file, if events do not stop.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// A file that is gone, or empty, is most likely being saved: it has so long to come back.
+/// Time within which a file that is gone or empty, which is probably being saved, is expected back.
 const ABSENCE: Duration = Duration::from_millis(300);
 
-/// How often the file is looked at without an event.
-const ANYWAY: Duration = Duration::from_secs(1);
+/// Time between two checks of the file without an event.
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Debug)]
-pub struct Content {
-    /// Its bytes, or why they cannot be had.
+pub struct FileContent {
+    /// The bytes, or why they cannot be read.
     pub bytes: io::Result<Vec<u8>>,
-    /// When it was seen to change.
+    /// When the change was noticed.
     pub since: Instant,
 }
 
-/// Watches a file, which is read by `read` without waiting for anybody ([`files::open`]), until
-/// what is returned ends or is dropped. The first content is there at once; after that there is one
-/// whenever the file was saved, be it with the text that it had.
+/// Watches a file until the returned slot ends or is dropped. `read` must not wait for other
+/// processes ([`files::open`]). The first content is available at once, and another one whenever
+/// the file was saved, even with unchanged text.
+///
+/// # Errors
+///
+/// The thread of the watcher cannot be started.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
-) -> notify::Result<Arc<Latest<Content>>> {
+) -> notify::Result<Arc<Latest<FileContent>>> {
     let (sender, events) = mpsc::channel();
     let own_sender = sender.clone();
     let notifier = notify::recommended_watcher(move |event| {
-        // Where nobody listens any more, there is nothing to tell.
+        // If nobody listens any more, the event is dropped.
         let _ = sender.send(event);
     });
     let mut watcher = Watcher {
@@ -79,7 +82,7 @@ pub fn watch(
         folders: BTreeSet::new(),
         names: Vec::new(),
         stamp: None,
-        seen: None,
+        last_read: None,
     };
     watcher.follow();
     let latest = Arc::new(Latest::default());
@@ -95,24 +98,24 @@ pub fn watch(
 struct Watcher<R> {
     path: PathBuf,
     read: R,
-    /// None where the system has none to give.
+    /// `None` if the system cannot watch.
     notifier: Option<RecommendedWatcher>,
     events: Receiver<notify::Result<Event>>,
-    /// It keeps the events open where nobody sends any.
+    /// Keeps the channel of events open if there is no notifier.
     _sender: Sender<notify::Result<Event>>,
-    /// The folders that are watched.
+    /// The watched folders.
     folders: BTreeSet<PathBuf>,
-    /// What the file is called in them.
+    /// Names of the file in these folders.
     names: Vec<OsString>,
-    /// What was seen of it from outside when it was read last.
+    /// Stamp of the file when it was last read.
     stamp: Option<Stamp>,
-    /// What was read last; of an error, its words.
-    seen: Option<Result<Vec<u8>, String>>,
+    /// Content that was last read; for an error, its message.
+    last_read: Option<Result<Vec<u8>, String>>,
 }
 
 impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
-    fn run(mut self, latest: &Weak<Latest<Content>>) {
-        let mut next_look = Instant::now() + ANYWAY;
+    fn run(mut self, latest: &Weak<Latest<FileContent>>) {
+        let mut next_look = Instant::now() + POLL_INTERVAL;
         loop {
             let left = next_look.saturating_duration_since(Instant::now());
             let event = self.events.recv_timeout(left);
@@ -122,17 +125,17 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // However much happens beside the file, it is looked at once a second.
+                // However many other events there are, the file is checked once a second.
                 Ok(_) if since < next_look => continue,
                 _ => {
-                    next_look = since + ANYWAY;
+                    next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // Perhaps a folder is back, or a link leads elsewhere.
+                        // A folder may be back, or a link may have a new target.
                         self.follow();
                         continue;
                     }
-                    // It has changed without an event: what was watched is no longer there, or
-                    // never told.
+                    // The file has changed without an event: a watched folder is gone, or reports
+                    // nothing.
                     self.forget_folders();
                 }
             }
@@ -148,7 +151,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         };
         let written = AccessKind::Close(AccessMode::Write);
         match event.kind {
-            // Also by ourselves.
+            // Reading, also by ourselves.
             EventKind::Access(access) if access != written => false,
             _ if event.need_rescan() => true,
             _ => event.paths.iter().any(|path| {
@@ -158,10 +161,10 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Waits until the file was left alone for a moment.
+    /// Waits until there was no event for a short time.
     fn settle(&self) {
         let start = Instant::now();
-        let mut quiet = start + QUIET;
+        let mut quiet = start + QUIET_TIME;
         loop {
             let now = Instant::now();
             if now >= quiet || now - start >= LONGEST_BURST {
@@ -170,12 +173,13 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             if let Ok(event) = self.events.recv_timeout(quiet - now)
                 && self.concerns(&event)
             {
-                quiet = Instant::now() + QUIET;
+                quiet = Instant::now() + QUIET_TIME;
             }
         }
     }
 
-    /// Watches the folders that matter now. One that cannot be watched is looked at once a second.
+    /// Watches the folders that matter now. A folder that cannot be watched is checked once a
+    /// second.
     fn follow(&mut self) {
         let (folders, names) = places(&self.path);
         self.names = names;
@@ -202,24 +206,23 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file, and hands its content on if it was saved since it was read last.
-    fn look(&mut self, since: Instant, latest: &Latest<Content>) {
+    /// Reads the file, and puts its content into the slot if it was saved since it was last read.
+    fn look(&mut self, since: Instant, latest: &Latest<FileContent>) {
         let (stamp, bytes) = self.read_when_still();
-        let seen = match &bytes {
+        let read = match &bytes {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        // Where a clock ticks slowly, or somebody sets a file's time back, the text alone tells.
-        if stamp != self.stamp || self.seen.as_ref() != Some(&seen) {
+        // If a clock ticks slowly, or a file's time was set back, only the text tells.
+        if stamp != self.stamp || self.last_read.as_ref() != Some(&read) {
             self.stamp = stamp;
-            self.seen = Some(seen);
-            latest.put(Content { bytes, since });
+            self.last_read = Some(read);
+            latest.put(FileContent { bytes, since });
         }
     }
 
-    /// The file's content, with the stamp that it has. What was written while it was read is read
-    /// again: with the stamp of before, a save that was read already would be taken for another
-    /// one.
+    /// Reads the file's content with its stamp. If the file was written meanwhile, it is read
+    /// again: with the old stamp, a save that was already read would be taken for another one.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -232,7 +235,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// The file's content, with the stamp that it had before it was read.
+    /// Reads the file's content, with the stamp that it had before.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + ABSENCE;
         loop {
@@ -243,10 +246,10 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                 Err(error) => error.kind() != io::ErrorKind::NotFound,
             };
             let left = end.saturating_duration_since(Instant::now());
-            if is_there || left.is_zero() || self.seen.is_none() {
+            if is_there || left.is_zero() || self.last_read.is_none() {
                 return (stamp, bytes);
             }
-            if let Ok(event) = self.events.recv_timeout(left.min(QUIET))
+            if let Ok(event) = self.events.recv_timeout(left.min(QUIET_TIME))
                 && self.concerns(&event)
             {
                 self.settle();
@@ -255,7 +258,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 }
 
-/// The folders that matter to a file, and what it is called in them.
+/// Returns the folders to watch for a file, and its names in them.
 fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     let mut folders = BTreeSet::new();
     let mut names = BTreeSet::new();
@@ -267,15 +270,15 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     (folders, names.into_iter().collect())
 }
 
-/// The folder of a file, by one name however the file is named: the system watches a folder once,
-/// so that with the watch of one of two names that of the other would end.
+/// Returns the folder of a file by its canonical name: the system watches a folder once, so that
+/// removing the watch of one of two names would remove that of the other.
 fn folder(path: &Path) -> PathBuf {
     let folder = files::folder(path);
-    // One that is gone is called as it was named.
+    // A folder that is gone keeps the name by which it was given.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// What changes when a file is saved: its time, its length, or which file it is.
+/// What changes when a file is saved: its time, its length, or its identity.
 type Stamp = (SystemTime, u64, files::FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {
@@ -289,7 +292,7 @@ mod tests {
 
     #[test]
     fn a_folder_has_one_name_whether_its_file_is_there_or_not() {
-        // The tests run in the folder of the package.
+        // Tests run in the folder of the package.
         let here = fs::canonicalize(".").unwrap();
         for path in [
             "Cargo.toml",

@@ -1,44 +1,44 @@
-//! A part of the picture without samples, and how far it may be from the true one.
+//! Renders a part of the picture without samples, with error bounds.
 //!
 //! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their
-//! bounds, rounded upwards.
+//! error bounds, rounded upwards.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
-use super::{Control, RenderError, finished, wanted};
+use super::{Control, RenderError, finished, tiles};
 use crate::{
     area::Area,
     exact::{ExactPixel, Integrator},
     film::{self, Encoder, Film},
+    lock::lock,
     threads::{self, prelude::*},
     tracer::{GRID, World},
 };
 
-/// The side of the tiles: so large that pixels of a checkerboard, which are computed in batches of
-/// eight that are alike, fill most of their batches (squares of the grid alone take a twentieth
-/// longer for figure 9.9), and so small that the threads end together.
+/// Side of the tiles, in pixels. It is so large that pixels of a checkerboard, which are computed
+/// in batches of eight similar ones, fill most of their batches (squares of the grid alone take a
+/// twentieth longer for figure 9.9), and so small that the threads end at about the same time.
 const TILE: u32 = 2 * GRID;
 
-/// A computed picture, and how far it may be from the true one.
+/// A computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exact<P = [f64; 3]> {
-    /// Its means, or their bytes.
+    /// The means, or another kind of pixel.
     pub film: Film<P>,
-    /// For each pixel, row by row, how far each channel of its mean may be from the true one.
+    /// Error bound of each pixel's mean, row by row, for every channel.
     pub bounds: Vec<f32>,
-    /// How many pixels of the film, rounded as files hold them, are certain to be those of the
-    /// true means.
+    /// Number of pixels that certainly equal those of the true means, rounded as in files.
     pub certain: u64,
 }
 
 impl<P> Exact<P> {
-    /// The greatest of the bounds.
+    /// Returns the greatest error bound.
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
 
-    /// The root of the mean of their squares, which is no less than the root of the mean squared
-    /// error of all pixels and channels.
+    /// Returns the root of the mean square of the error bounds, which is at least the root mean
+    /// square error over all pixels and channels.
     pub fn root_mean_square_bound(&self) -> f64 {
         let squares = self
             .bounds
@@ -48,7 +48,11 @@ impl<P> Exact<P> {
     }
 }
 
-/// Computes a part of the picture, which lies in it, without samples; progress counts pixels.
+/// Computes a part of the picture, which must lie in it, without samples. Progress counts pixels.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
     render_exact_as(world, part, control)
 }
@@ -61,8 +65,12 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture from an integrator of numbers of which the first three are the
-/// channels; `also` is shown all of them, tile by tile.
+/// Computes a part of the picture with an integrator of several numbers, of which the first three
+/// are the channels. Calls `also` with all numbers of each tile.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn render_numbers<P: film::Pixel, const N: usize>(
     integrator: &Integrator<N>,
     part: Area,
@@ -76,7 +84,7 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
     });
     let encoder = Encoder::default();
     threads::install(control.threads, || {
-        wanted(part, TILE, control).par_bridge().for_each(|tile| {
+        tiles(part, TILE, control).par_bridge().for_each(|tile| {
             let Some(pixels) = integrator.pixels(tile, control.cancel) else {
                 return;
             };
@@ -86,11 +94,11 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 .iter()
                 .map(|pixel| match pixel.bound {
                     0.0 => 0.0,
-                    // Rounded up; light is from 0 to 1.
+                    // Rounded up. Light is between 0 and 1.
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels are as the one before.
+            // Most pixels equal the one before.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()
@@ -106,7 +114,7 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 P::is_certain(channels(pixel), f64::from(**bound), &encoder)
             };
             let certain = pixels.iter().zip(&bounds).filter(is_certain).count();
-            let mut exact = exact.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut exact = lock(&exact);
             exact.film.put(tile.within(part), &means);
             let rows = bounds.chunks_exact(tile.width as usize);
             for (y, row) in (tile.y..).zip(rows) {

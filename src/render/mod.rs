@@ -1,12 +1,12 @@
-//! A world becomes a film: with samples, or exactly.
+//! Renders a world to a film, with samples or exactly.
 //!
 //! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the
-//! means of its pixels. The part is cut into tiles, which the threads take as they come; neither
-//! the number of threads nor the tiles nor the part asked for can change a bit of a pixel.
+//! means of its pixels. The part is divided into tiles, which the threads take in turn; neither the
+//! number of threads nor the tiles nor the part changes a bit of a pixel.
 //!
-//! `sampled` renders with samples, whose tiles `renderer` makes; `exact` renders without; `slices`
-//! makes a picture of either kind step by step. Which of them a scene asks for is decided here, and
-//! what both have in common is here.
+//! `sampled` renders with samples, with a `renderer` of tiles; `exact` renders without; `slices`
+//! renders either kind step by step. This file selects what a scene asks for, and contains what
+//! both have in common.
 
 mod exact;
 mod renderer;
@@ -18,7 +18,7 @@ mod tile;
 use std::{
     num::NonZero,
     sync::{
-        Mutex, PoisonError,
+        Mutex,
         atomic::{AtomicBool, Ordering},
     },
 };
@@ -29,6 +29,7 @@ use crate::{
     area::Area,
     cancel::{self, Cancelled},
     film::{Film, Pixel, TooLarge},
+    lock::unpoisoned,
     sampling::Sampling,
     threads,
     tracer::World,
@@ -40,17 +41,17 @@ pub use self::{
     slices::{SLICE, Slices, pixel_work},
 };
 
-/// How a render is watched, and by how many it is done.
+/// Control of a render: its threads, its progress, and its cancellation.
 pub struct Control<'a> {
-    /// How many threads; as many as there are processors if this is `None`.
+    /// Number of threads; `None` for one per processor.
     pub threads: Option<NonZero<usize>>,
-    /// Is told, from any thread, how many more samples are done, or how many more exact pixels.
+    /// Called, from any thread, with the number of further samples, or exact pixels, that are done.
     pub progress: &'a (dyn Fn(u64) + Sync),
-    /// Ends the render soon after it is set.
+    /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
 }
 
-/// As many threads as there are processors, nobody who is told, to the end.
+/// One thread per processor, no progress, no cancellation.
 impl Default for Control<'_> {
     fn default() -> Self {
         Self {
@@ -64,13 +65,13 @@ impl Default for Control<'_> {
 /// Why there is no picture.
 #[derive(Debug, Error)]
 pub enum RenderError {
-    /// There is no memory for it.
+    /// There is not enough memory for it.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
     /// The system starts no threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] threads::NoThreads),
-    /// It was not wanted any more.
+    /// The render was cancelled.
     #[error("interrupted")]
     Cancelled,
 }
@@ -83,21 +84,21 @@ impl From<Cancelled> for RenderError {
 
 /// A rendered part of the picture.
 pub enum Rendered<P = [f64; 3]> {
-    /// With samples.
+    /// A picture with samples.
     Sampled(Film<P>),
-    /// Without.
+    /// A picture without samples.
     Exact(Exact<P>),
 }
 
 impl<P> Rendered<P> {
-    /// Its pixels.
+    /// The pixels.
     pub fn film(&self) -> &Film<P> {
         match self {
             Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
         }
     }
 
-    /// Its pixels alone.
+    /// Returns the pixels without their error bounds.
     pub fn into_film(self) -> Film<P> {
         match self {
             Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
@@ -105,32 +106,37 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture, which lies in it, as its sampler asks for: with samples or
-/// exactly. The film keeps light, or the bytes of sRGB of which a PNG file is made: the same file,
-/// and less memory to touch.
+/// Renders a part of the picture, which must lie in it, as its sampler asks for: with samples or
+/// exactly. The film stores light, or the bytes of sRGB that a PNG file needs: the file is the
+/// same, and less memory is touched.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
 ) -> Result<Rendered<P>, RenderError> {
-    match sampling.is_exact() {
-        true => exact::render_exact_as(world, part, control).map(Rendered::Exact),
-        false => sampled::render_as(world, sampling, part, control).map(Rendered::Sampled),
+    if sampling.is_exact() {
+        return exact::render_exact_as(world, part, control).map(Rendered::Exact);
     }
+    sampled::render_as(world, sampling, part, control).map(Rendered::Sampled)
 }
 
-/// The tiles of a part of the picture, squares of this side from the picture's corner on, as long
-/// as they are wanted: to hand out millions that nobody renders would take a second.
-fn wanted(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
+/// Returns the tiles of a part of the picture, squares of this side in a grid from the picture's
+/// corner, until the render is cancelled: otherwise, iterating over millions of them that nobody
+/// renders would take a second.
+fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// What was made, if it was wanted to the end.
-fn finished<T>(made: Mutex<T>, control: &Control) -> Result<T, RenderError> {
+/// Returns a result unless the render was cancelled.
+fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);
     }
-    Ok(made.into_inner().unwrap_or_else(PoisonError::into_inner))
+    Ok(unpoisoned(result.into_inner()))
 }

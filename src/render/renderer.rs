@@ -1,9 +1,9 @@
-//! The tiles of a picture with samples.
+//! Renders the tiles of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, and counts know no order. Where it is certain that one
-//! colour is seen, samples are neither placed nor traced: the mean of equal colours is that colour.
-//! In the other pixels they are traced many at a time, and against those objects alone that may be
-//! seen there; or one by one, where to know more would cost more.
+//! A pixel's samples are counted by colour, and counts do not depend on an order. Where one colour
+//! is certain, samples are neither placed nor traced: the mean of equal colours is that colour. In
+//! other pixels, samples are traced many at a time, only against the objects that may be seen
+//! there; or one by one, where knowing these objects would cost more.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -12,41 +12,45 @@ use std::{
 
 use super::{
     Control,
-    tally::Tally,
-    tile::{Samples, Tile},
+    tally::PixelTally,
+    tile::{SampleCounts, Tile},
 };
 use crate::{
     area::Area,
     film::{self, Encoder},
     math::SimdWidth,
     sampling::Sampling,
-    tracer::{Candidate, Checks, Nearby, Part, Quartering, Scratch, World, nearby, samples},
+    tracer::{
+        BoundedObject, CheckerPixel, PicturePart, Quartering, Scratch, VisibilityCandidate, World,
+        nearby, samples,
+    },
 };
 
-/// Fewer samples than the widest vectors have numbers are placed and looked at by those that every
-/// processor has.
+/// Minimum number of samples for which the widest vectors are used: the number of lanes that they
+/// have.
 const WIDE_SAMPLES: u64 = 8;
 
-/// A pixel is prepared for its samples if it has more than so many for each candidate. Measured:
-/// with 1 or 4 a picture takes up to a fiftieth longer.
+/// Maximum number of samples per candidate in a pixel that is not prepared for its samples.
+/// Measured: with 1 or 4 a picture takes up to a fiftieth longer.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
-/// A pixel's samples are taken so many at a time, which takes 40 µs together and 0.3 ms one by one.
+/// Maximum number of a pixel's samples that are traced at a time: 40 µs of work if they are
+/// batched, and 0.3 ms one by one.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Where there are crowds, the objects nearby are found for squares of this side, in pixels.
+/// Side of the squares for which nearby objects are found in crowds, in pixels.
 const CROWD_SIDE: u32 = 4;
 
-/// With so many samples, a pixel's objects are told from those nearby before they are traced.
+/// Minimum number of samples for which the nearby objects are narrowed to those of a pixel.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
-/// What all tiles have in common.
+/// What all tiles of a picture have in common.
 pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
-    /// Of the palette, in linear light.
+    /// The palette in linear light.
     pub(super) colors: &'a [[f64; 3]],
-    /// The same as the film has them.
+    /// The palette as pixels of the film.
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
@@ -54,43 +58,38 @@ pub(super) struct Renderer<'a, P> {
 }
 
 impl<P: film::Pixel> Renderer<'_, P> {
-    /// The pixels of a tile, row by row; none once the render is cancelled.
+    /// Renders a tile, row by row. Returns `None` if the render was cancelled.
     pub(super) fn tile(
         &self,
         tile: Area,
-        tally: &mut Tally<P>,
+        tally: &mut PixelTally<P>,
         scratch: &mut Scratch,
     ) -> Option<Vec<P>> {
         let background = self.shown[self.world.background()];
         let mut film = Tile {
             area: tile,
             samples: match self.sampling.same_count() {
-                Some(count) => Samples::Same(count),
-                None => Samples::Each(self.sampling.counts(tile)),
+                Some(count) => SampleCounts::Same(count),
+                None => SampleCounts::Each(self.sampling.counts(tile)),
             },
             // A pixel without a sample shows the background.
             pixels: vec![background; tile.pixels() as usize],
             unreported: 0,
         };
-        let mut visit = |part: Part| match part {
-            Part::OneColor { area, slot } => {
+        let mut visit = |part: PicturePart| match part {
+            PicturePart::OneColor { area, slot } => {
                 film.fill(area, self.shown[slot]);
                 self.go_on()
             }
-            Part::Pixel {
+            PicturePart::Pixel {
                 x,
                 y,
                 candidates,
                 checks,
-            } => self.pixel(
-                [x, y],
-                Trace::Together(candidates, checks),
-                &mut film,
-                tally,
-            ),
-            Part::Crowded { area } => area.grid(CROWD_SIDE).try_for_each(|square| {
+            } => self.pixel([x, y], Trace::Batched(candidates, checks), &mut film, tally),
+            PicturePart::Crowded { area } => area.grid(CROWD_SIDE).try_for_each(|square| {
                 let nearby = nearby::nearby(self.world, square);
-                let trace = Trace::OneByOne(nearby.as_deref());
+                let trace = Trace::AmongNearby(nearby.as_deref());
                 let mut pixels = square.common(area).iter();
                 pixels.try_for_each(|(x, y)| self.pixel([x, y], trace, &mut film, tally))
             }),
@@ -100,21 +99,21 @@ impl<P: film::Pixel> Renderer<'_, P> {
         flow.is_continue().then_some(film.pixels)
     }
 
-    /// Whether anybody wants to see more.
+    /// Breaks if the render was cancelled.
     fn go_on(&self) -> ControlFlow<()> {
-        match self.control.cancel.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        if self.control.cancel.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
         }
+        ControlFlow::Continue(())
     }
 
-    /// Takes the samples of a pixel.
+    /// Traces the samples of a pixel.
     fn pixel(
         &self,
         [x, y]: [u32; 2],
         trace: Trace,
         film: &mut Tile<P>,
-        tally: &mut Tally<P>,
+        tally: &mut PixelTally<P>,
     ) -> ControlFlow<()> {
         let index = film.area.index(x, y);
         let samples = film.samples.of(index);
@@ -122,28 +121,28 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // To prepare the pixel would take longer.
-            Trace::Together(candidates, _)
+            // Preparing the pixel would take longer.
+            Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {
-                Trace::Among(candidates)
+                Trace::AmongCandidates(candidates)
             }
             _ => trace,
         };
         let mut narrowed = std::mem::take(&mut tally.narrowed);
         let trace = match trace {
-            Trace::OneByOne(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
+            Trace::AmongNearby(Some(nearby)) if samples >= SAMPLES_WORTH_A_LOOK => {
                 let pixel = Area::pixel(x, y);
                 if let Some(slot) = nearby::in_part(self.world, pixel, nearby, &mut narrowed) {
                     tally.narrowed = narrowed;
                     film.fill(pixel, self.shown[slot]);
                     return self.go_on();
                 }
-                Trace::OneByOne(Some(&narrowed))
+                Trace::AmongNearby(Some(&narrowed))
             }
             _ => trace,
         };
-        if let Trace::Together(candidates, checks) = trace {
+        if let Trace::Batched(candidates, checks) = trace {
             samples::prepare(self.world, [x, y], candidates, checks, &mut tally.pixel);
         }
         for first in (0..samples).step_by(SAMPLES_A_CHUNK as usize) {
@@ -156,37 +155,37 @@ impl<P: film::Pixel> Renderer<'_, P> {
             self.go_on()?;
         }
         tally.narrowed = narrowed;
-        let Tally { counts, means, .. } = tally;
+        let PixelTally { counts, means, .. } = tally;
         film.pixels[index] = means.take(counts, self.colors, self.encoder);
         self.go_on()
     }
 
-    /// Counts some of a pixel's samples.
+    /// Counts the colours of some of a pixel's samples.
     fn chunk(
         &self,
         [x, y]: [u32; 2],
         samples: u64,
         some: Range<u64>,
         trace: Trace,
-        tally: &mut Tally<P>,
+        tally: &mut PixelTally<P>,
     ) {
-        let Tally {
+        let PixelTally {
             counts,
             pixel,
             points,
             ..
         } = tally;
         let vectors = match trace {
-            Trace::Together(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // To choose others takes longer, and rays that are traced one by one afterwards are
-            // slower for it.
+            Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
+            // Wide vectors take longer for few samples, and they slow down rays that are traced one
+            // by one afterwards.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
-        // One by one, each may take its time.
+        // Cancellation is checked for every sample, since each may take long.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
-            Trace::Together(..) => samples::count(
+            Trace::Batched(..) => samples::count(
                 self.world,
                 pixel,
                 points.lanes(),
@@ -194,13 +193,13 @@ impl<P: film::Pixel> Renderer<'_, P> {
                 vectors,
                 |slot, samples| counts.add(slot, samples),
             ),
-            Trace::Among(candidates) => {
+            Trace::AmongCandidates(candidates) => {
                 let objects = candidates.iter().map(|candidate| candidate.object);
                 for offset in wanted {
                     counts.add(self.world.slot_among(x, y, offset, objects.clone()), 1);
                 }
             }
-            Trace::OneByOne(nearby) => {
+            Trace::AmongNearby(nearby) => {
                 for offset in wanted {
                     counts.add(self.world.slot_near(x, y, offset, nearby), 1);
                 }
@@ -212,11 +211,11 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// How the samples of a pixel are traced.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many at a time, against what may be seen in the pixel; and what it shows of a board, where
-    /// that is known.
-    Together(&'a [Candidate], Option<&'a Checks>),
-    /// One by one, against these.
-    Among(&'a [Candidate]),
-    /// One by one, against the objects nearby, or those that the quadtree knows on their way.
-    OneByOne(Option<&'a [Nearby]>),
+    /// Many at a time, against the objects that may be seen in the pixel; with the squares that it
+    /// shows of a board, if these are known.
+    Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
+    /// One by one, against the objects that may be seen in the pixel.
+    AmongCandidates(&'a [VisibilityCandidate]),
+    /// One by one, against the objects nearby, or those on their way down the quadtree.
+    AmongNearby(Option<&'a [BoundedObject]>),
 }

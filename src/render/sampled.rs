@@ -1,24 +1,29 @@
-//! A part of the picture with samples.
+//! Renders a part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is cut
-//! into tiles for the threads; `renderer` makes each.
+//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is
+//! divided into tiles for the threads; `renderer` renders each.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
-use super::{Control, RenderError, finished, renderer::Renderer, tally::Tally, wanted};
+use super::{Control, RenderError, finished, renderer::Renderer, tally::PixelTally, tiles};
 use crate::{
     area::Area,
     film::{self, Encoder, Film},
+    lock::lock,
     sampling::Sampling,
     threads::{self, prelude::*},
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// A tile has about so many samples, a few milliseconds' work: no thread waits longer for the
-/// others at the end.
+/// Approximate number of samples of a tile: a few milliseconds of work, so that no thread waits
+/// longer for the others at the end.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture, which lies in it, with samples.
+/// Renders a part of the picture, which must lie in it, with samples.
+///
+/// # Errors
+///
+/// There is not enough memory, no thread can be started, or the render was cancelled.
 pub fn render(
     world: &World,
     sampling: &Sampling,
@@ -53,13 +58,13 @@ pub(super) fn render_as<P: film::Pixel>(
     };
     let side = tile_side(sampling);
     threads::install(control.threads, || {
-        wanted(part, side, control).par_bridge().for_each_init(
-            || (Tally::new(colors.len()), Scratch::default()),
+        tiles(part, side, control).par_bridge().for_each_init(
+            || (PixelTally::new(colors.len()), Scratch::default()),
             |(tally, scratch), tile| {
                 let Some(pixels) = renderer.tile(tile, tally, scratch) else {
                     return;
                 };
-                let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut film = lock(&film);
                 film.put(tile.within(part), &pixels);
             },
         );
@@ -67,10 +72,10 @@ pub(super) fn render_as<P: film::Pixel>(
     finished(film, control)
 }
 
-/// The side of the tiles: smaller where pixels have many samples.
+/// Returns the side of the tiles, in pixels: smaller if pixels have many samples.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // A square root of a number that fits; and a power of two, so that no tile crosses a line of
+    // The root of at most 2^18 fits. The side is a power of two, so that no tile crosses a line of
     // the grid.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()

@@ -1,8 +1,7 @@
-//! A picture that is made in slices, so that whoever makes it can do something else in between.
+//! A picture that is rendered in slices, so that its caller can do something else in between.
 //!
-//! A slice is a rectangle of the picture with a fixed number of samples: what a pixel shows does
-//! not depend on the rectangle that is asked for, and no clock is needed, which a web worker's Rust
-//! does not have.
+//! A slice is a rectangle of the picture with a fixed number of samples. What a pixel shows does
+//! not depend on the rectangle, and no clock is needed, which Rust does not have in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{
@@ -12,60 +11,60 @@ use crate::{
     tracer::World,
 };
 
-/// Number of samples of a slice: some 10 ms of two processors for a few objects. A pixel with more
-/// of them is a slice by itself, since a pixel is not divided.
+/// Number of samples of a slice: about 10 ms of two processors for a few objects. A pixel with more
+/// samples is a slice of its own, since a pixel is not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// A pixel without samples takes as long as so many samples, for figure 9.9.
-const EXACT: u64 = 64;
+/// Work of a pixel without samples, in samples that take as long, for figure 9.9.
+const EXACT_PIXEL_WORK: u64 = 64;
 
-/// A picture, and how far it is made.
+/// A picture that is partly rendered.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
-    /// Takes no memory until there are pixels in it.
+    /// The film, which occupies no memory until pixels are written to it.
     film: Film<P>,
-    /// The side of a slice.
+    /// Side of a slice, in pixels.
     side: u32,
-    /// How many slices are made, row by row.
-    made: u32,
+    /// Number of rendered slices, row by row.
+    done: u32,
 }
 
 impl<P: Pixel> Slices<P> {
-    /// A picture of this size of which nothing is made.
+    /// Prepares a picture of this size, without rendering anything.
     ///
     /// # Errors
     ///
-    /// There is no memory for it.
+    /// There is not enough memory for it.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // A square with a power of two as its side: whole tiles of the tracer's grid, or a part of
+        // A square whose side is a power of two: whole tiles of the tracer's grid, or a part of
         // one.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
             sampling,
             side: 1 << (pixels.ilog2() / 2),
-            made: 0,
+            done: 0,
         })
     }
 
-    /// What is made of it.
+    /// The film, black where nothing is rendered yet.
     pub fn film(&self) -> &Film<P> {
         &self.film
     }
 
-    /// Which part of it is made, from 0 to 1.
+    /// Share of the slices that are rendered, 0 to 1.
     pub fn share(&self) -> f64 {
         let [columns, rows] =
             [self.film.width(), self.film.height()].map(|it| it.div_ceil(self.side));
-        f64::from(self.made) / (f64::from(columns) * f64::from(rows))
+        f64::from(self.done) / (f64::from(columns) * f64::from(rows))
     }
 
-    /// What is to be made next; nothing if nothing is left.
+    /// Returns the area of the next slice. Returns `None` after the last one.
     fn next(&self) -> Option<Area> {
         let (width, height, side) = (self.film.width(), self.film.height(), self.side);
         let columns = width.div_ceil(side);
-        let (x, y) = (self.made % columns * side, self.made / columns * side);
+        let (x, y) = (self.done % columns * side, self.done / columns * side);
         (y < height).then(|| Area {
             x,
             y,
@@ -74,25 +73,25 @@ impl<P: Pixel> Slices<P> {
         })
     }
 
-    /// Makes the next slice. Says whether none is left.
+    /// Renders the next slice. Returns whether it was the last one.
     ///
     /// # Errors
     ///
-    /// The system has no memory or no threads for it.
+    /// There is not enough memory, or no thread can be started.
     pub fn advance(&mut self, world: &World) -> Result<bool, RenderError> {
         if let Some(part) = self.next() {
-            let made = render_as_asked(world, &self.sampling, part, &Control::default())?;
-            self.film.put(part, made.film().pixels());
-            self.made += 1;
+            let slice = render_as_asked(world, &self.sampling, part, &Control::default())?;
+            self.film.put(part, slice.film().pixels());
+            self.done += 1;
         }
         Ok(self.next().is_none())
     }
 }
 
-/// How many samples a pixel takes, or as long as how many.
+/// Returns the work of one pixel, in samples.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
-    match sampling.is_exact() {
-        true => EXACT,
-        false => sampling.samples_per_pixel().max(1),
+    if sampling.is_exact() {
+        return EXACT_PIXEL_WORK;
     }
+    sampling.samples_per_pixel().max(1)
 }

@@ -1,25 +1,24 @@
-//! What a thread counts with: how often each colour was seen in a pixel, and the means that come of
-//! such counts.
+//! Counters of one thread: how often each colour was seen in a pixel, and the means of such counts.
 
 use crate::{
     film::{self, Encoder, mean},
     sampling::Points,
-    tracer::{Nearby, PreparedPixel},
+    tracer::{BoundedObject, PreparedPixel},
 };
 
-/// What a thread counts with.
-pub(super) struct Tally<P> {
+/// Counters and buffers of one thread.
+pub(super) struct PixelTally<P> {
     pub(super) counts: Counts,
     pub(super) means: Means<P>,
-    /// The pixel, prepared.
+    /// The current pixel, prepared.
     pub(super) pixel: PreparedPixel,
-    /// Scratch for the points.
+    /// Buffer for sample points.
     pub(super) points: Points,
-    /// Scratch for the objects that may be seen in a pixel, of those nearby.
-    pub(super) narrowed: Vec<Nearby>,
+    /// Buffer for the objects nearby that may be seen in a pixel.
+    pub(super) narrowed: Vec<BoundedObject>,
 }
 
-impl<P> Tally<P> {
+impl<P> PixelTally<P> {
     pub(super) fn new(slots: usize) -> Self {
         Self {
             counts: Counts::new(slots),
@@ -33,10 +32,10 @@ impl<P> Tally<P> {
 
 /// How often each colour was seen in a pixel.
 pub(super) struct Counts {
-    /// By slot of the palette.
+    /// Counts by slot of the palette.
     of: Vec<u64>,
-    /// The slots whose count is not 0, in any order. A palette may be long, and a pixel sees
-    /// little of it.
+    /// Slots whose count is not 0, in any order: a palette may be long, and a pixel sees little of
+    /// it.
     seen: Vec<usize>,
 }
 
@@ -55,7 +54,7 @@ impl Counts {
         self.of[slot] += count;
     }
 
-    /// The slots that were seen, in their order, and how often.
+    /// Returns the slots that were seen, in ascending order, and their counts.
     fn seen(&mut self) -> impl Iterator<Item = (usize, u64)> {
         self.seen.sort_unstable();
         self.seen.iter().map(|&slot| (slot, self.of[slot]))
@@ -68,15 +67,15 @@ impl Counts {
     }
 }
 
-/// Means of two colours, in the place that their counts choose: most pixels that see more than one
-/// see two, and most of these see them as often as some pixel before.
+/// A cache of means of two colours, indexed by a hash of their counts: most pixels with more than
+/// one colour have two, and most of these have the same counts as an earlier pixel.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// How many means are kept: 28 KiB of them, which fit into a first-level cache.
-const KEPT: usize = 512;
+/// Number of cached means: 28 KiB, which fit into a first-level cache.
+const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
-    /// The mean of what was counted, which is forgotten.
+    /// Returns the mean of the counts, and resets them.
     pub(super) fn take(
         &mut self,
         counts: &mut Counts,
@@ -104,20 +103,20 @@ impl<P: film::Pixel> Means<P> {
 
     fn of_two(&mut self, seen: [(usize, u64); 2], colors: &[[f64; 3]], encoder: &Encoder) -> P {
         if self.0.is_empty() {
-            // Nothing is seen 0 times.
-            self.0.resize(KEPT, ([(0, 0); 2], P::default()));
+            // No colour is counted 0 times, so an empty entry matches nothing.
+            self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        // Any hash will do; odd and prime factors spread counts and slots over the places.
+        // Any hash will do; odd and prime factors spread counts and slots over the entries.
         let place = (count as usize)
             .wrapping_add((other as usize).wrapping_mul(7))
             .wrapping_add(a * 67 + b * 131)
-            % KEPT;
-        let kept = &mut self.0[place];
-        if kept.0 != seen {
+            % CACHED_MEANS;
+        let cached = &mut self.0[place];
+        if cached.0 != seen {
             let light = mean(seen.into_iter().map(|(slot, count)| (count, colors[slot])));
-            *kept = (seen, P::of(light, encoder));
+            *cached = (seen, P::of(light, encoder));
         }
-        kept.1
+        cached.1
     }
 }

@@ -1,25 +1,25 @@
-//! A tile while it is rendered: its pixels so far, and how many samples each has.
+//! A tile while it is rendered: its pixels so far, and the number of samples of each.
 
 use crate::{area::Area, film::Pixel};
 
 /// The pixels of a tile, row by row.
 pub(super) struct Tile<P> {
     pub(super) area: Area,
-    pub(super) samples: Samples,
+    pub(super) samples: SampleCounts,
     pub(super) pixels: Vec<P>,
-    /// How many samples are done that progress has not been told of.
+    /// Number of finished samples that are not reported as progress yet.
     pub(super) unreported: u64,
 }
 
-/// How many samples the pixels of a tile have.
-pub(super) enum Samples {
-    /// All of them.
+/// Numbers of samples of the pixels of a tile.
+pub(super) enum SampleCounts {
+    /// The same number for all pixels.
     Same(u64),
-    /// Each of them, row by row.
+    /// A number for each pixel, row by row.
     Each(Vec<u64>),
 }
 
-impl Samples {
+impl SampleCounts {
     pub(super) fn of(&self, pixel: usize) -> u64 {
         match self {
             Self::Same(count) => *count,
@@ -29,19 +29,19 @@ impl Samples {
 }
 
 impl<P: Pixel> Tile<P> {
-    /// Fills a part with the mean of samples that all see one colour.
+    /// Fills a part in which all samples see one colour.
     pub(super) fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);
             let row = start..start + part.width as usize;
             let pixels = &mut self.pixels[row.clone()];
             match &self.samples {
-                Samples::Same(0) => {}
-                Samples::Same(count) => {
+                SampleCounts::Same(0) => {}
+                SampleCounts::Same(count) => {
                     pixels.fill(color);
                     self.unreported += count * u64::from(part.width);
                 }
-                Samples::Each(counts) => {
+                SampleCounts::Each(counts) => {
                     for (pixel, &count) in pixels.iter_mut().zip(&counts[row]) {
                         if count > 0 {
                             *pixel = color;

@@ -1,32 +1,30 @@
-//! Binomial random numbers: how many of n tries succeed, when each does with a probability p that
-//! is a fraction.
+//! Binomial random numbers: the number of successes in n trials, each with a probability p that is
+//! a fraction.
 //!
-//! A try succeeds where a random number is below p, and the first binary digit in which the two
-//! differ tells. So half of the tries that are open are decided at each digit, and all that is
-//! drawn is how many of some coins fall on heads. Of few coins these are random bits, counted;
-//! of many, transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
-//! variates"), exact but for the rounding of f64.
+//! A trial succeeds if a random number is below p, which the first differing binary digit of the
+//! two decides. At each digit, half of the undecided trials are decided, and the only draw is the
+//! number of heads of some coins. For few coins, random bits are counted; for many, the draw is
+//! transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random variates"),
+//! exact except for the rounding of f64.
 //!
-//! The binomials of `rand_distr` take the platform's `powf` and `ln`, of which the last bits differ
-//! between systems.
+//! The binomial distribution of `rand_distr` uses the platform's `powf` and `ln`, whose last bits
+//! differ between systems.
 
 use rand::{Rng, RngExt};
 
-/// Up to so many coins are tossed one by one, 64 to a random number.
-const COUNTED: u64 = 512;
+/// Maximum number of coins that are tossed one by one, 64 per random number.
+const MAX_COUNTED: u64 = 512;
 
-/// The number of successes among `n` ≤ 2^53 tries, each of which succeeds with the probability
-/// `part`/`whole`.
+/// Draws the number of successes in `n` ≤ 2^53 trials with the success probability `part`/`whole`.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // What is left of p behind the digits that were looked at, in units of 1/whole of the last
-    // digit.
+    // The digits of p that are not used yet, in units of 1/whole of the last used digit.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit is 0: a random 1 is above.
+            // The digit is 0, so trials with a random 1 are above p.
             open -= ones;
         } else {
             rest -= whole;
@@ -37,9 +35,9 @@ pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     successes
 }
 
-/// How many of `n` coins fall on heads.
+/// Draws the number of heads of `n` coins.
 fn heads(rng: &mut impl Rng, n: u64) -> u64 {
-    if n > COUNTED {
+    if n > MAX_COUNTED {
         return reject(rng, n as f64) as u64;
     }
     let groups = (0..n).step_by(64).map(|tossed| (n - tossed).min(64));
@@ -48,7 +46,7 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
         .sum()
 }
 
-/// BTRS for p = 1/2; n is large.
+/// Draws the number of heads of many coins by BTRS with p = 1/2.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;
@@ -60,7 +58,7 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
         let (u, v) = (rng.random::<f64>() - 0.5, rng.random::<f64>());
         let us = 0.5 - u.abs();
         let k = ((2.0 * a / us + b) * u + n / 2.0 + 0.5).floor();
-        // What is left out happens less than once in 10^27 times (Hoeffding 1963).
+        // The excluded values occur less than once in 10^27 draws (Hoeffding 1963).
         if (k - n / 2.0).abs() > n / 4.0 {
             continue;
         }
@@ -74,10 +72,10 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     }
 }
 
-/// The logarithm of the probability of k heads, but for a constant, by Stirling's formula for the
+/// Logarithm of the probability of k heads, up to a constant, by Stirling's formula for the
 /// factorials with its error (Loader 2000, "Fast and accurate computation of binomial
-/// probabilities"): no term is much larger than the result, so that nothing cancels even for n =
-/// 2^53. k lies within n/4 of n/2.
+/// probabilities"). No term is much larger than the result, so that nothing cancels even for n =
+/// 2^53. k must lie within n/4 of n/2.
 fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;
@@ -98,7 +96,7 @@ fn ln_weight(k: f64, n: f64) -> f64 {
 mod tests {
     use super::{super::rng::Key, *};
 
-    /// The mean and the variance of many draws, in standard errors from what they should be.
+    /// Checks that the mean and the variance of many draws are within 4 standard errors.
     fn check(n: u64, part: u64, whole: u64) {
         const DRAWS: u64 = 20_000;
         let p = part as f64 / whole as f64;
@@ -131,7 +129,7 @@ mod tests {
 
     #[test]
     fn draws_have_the_probabilities_of_the_distribution() {
-        // χ² over all outcomes of which at least 10 are expected.
+        // χ² over all outcomes whose expected number is at least 10.
         for (n, part, whole) in [
             (6_u64, 1_u32, 3_u32),
             (30, 1, 2),

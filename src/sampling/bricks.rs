@@ -1,43 +1,43 @@
-//! A pixel cut into n cells of equal area, for every n: rows of cells like bricks.
+//! A pixel divided into n cells of equal area, for every n: rows of cells like bricks.
 //!
-//! Row k has n_k cells of width 1/n_k, and its height is n_k/n, so that every cell has the area
-//! 1/n. The number of rows m is the whole number nearest to √n, or the nearest odd one where n is
-//! odd; n_k is ⌊n/m⌋ or ⌈n/m⌉, the longer rows are spread evenly, and the rows read the same from
-//! both ends: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n in an even number of
-//! rows cannot read the same from both ends.)
+//! Row k has n_k cells of width 1/n_k and the height n_k/n, so that every cell has the area 1/n.
+//! The number of rows m is the whole number nearest to √n, or the nearest odd one if n is odd; n_k
+//! is ⌊n/m⌋ or ⌈n/m⌉. The longer rows are spread evenly, and the rows are the same from both ends:
+//! 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n in an even number of rows
+//! cannot be the same from both ends.)
 
 use std::ops::Range;
 
-/// The cut of a pixel into n cells.
+/// The division of a pixel into n cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// How many rows, m.
+    /// Number of rows, m.
     rows: u64,
     /// ⌊n/m⌋.
     short: u64,
-    /// How many of the rows above the middle are longer by one.
+    /// Number of rows above the middle that are longer by one.
     longer: u64,
 }
 
 /// One row of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
-    /// How many cells lie in the rows above; it begins at the height `first`/n.
+pub struct BrickRow {
+    /// Number of cells in the rows above. The row begins at the height `first`/n.
     pub first: u64,
-    /// How many cells it has.
+    /// Number of cells in the row.
     pub cells: u64,
 }
 
 impl Bricks {
-    /// The cut into `n` cells, 1 ≤ n ≤ 2^53.
+    /// Divides a pixel into `n` cells, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
         let root = n.isqrt();
         let rows = if n % 2 == 1 {
-            // The odd one of ⌊√n⌋ and its successor is at most 1 away from √n.
+            // Of ⌊√n⌋ and its successor the odd one, which is within 1 of √n.
             root | 1
         } else if n - root * root > root {
-            // √n > root + 1/2, as n > root² + root + 1/4.
+            // √n > root + 1/2, since n > root² + root + 1/4.
             root + 1
         } else {
             root
@@ -50,19 +50,19 @@ impl Bricks {
         }
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub fn cells(&self) -> u64 {
         self.n
     }
 
-    /// The lengths of the shortest and of the longest rows.
+    /// Lengths of the shortest and of the longest rows.
     pub fn lengths(&self) -> [u64; 2] {
         [self.short, self.short + 1]
     }
 
-    /// The rows that hold the cells with these indices, counted row by row, and which columns of
-    /// each are meant.
-    pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (Row, Range<u64>)> {
+    /// Returns the rows that contain the cells with these indices, counted row by row, and the
+    /// range of columns in each.
+    pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (BrickRow, Range<u64>)> {
         let mut next = cells.start;
         let mut k = self.row_of_cell(next.min(self.n - 1));
         std::iter::from_fn(move || {
@@ -77,18 +77,18 @@ impl Bricks {
         })
     }
 
-    /// The row with index `k`, from the top.
-    fn row(&self, k: u64) -> Row {
+    /// Returns the row with index `k`, from the top.
+    fn row(&self, k: u64) -> BrickRow {
         let first = self.cells_above(k);
-        Row {
+        BrickRow {
             first,
             cells: self.cells_above(k + 1) - first,
         }
     }
 
-    /// The index of the row that holds the cell with index `i`, counted row by row.
+    /// Returns the index of the row that contains the cell with index `i`, counted row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate is off by a row or so; what it is off by is walked.
+        // The estimate is wrong by about one row, which is corrected step by step.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;
@@ -99,13 +99,13 @@ impl Bricks {
         k
     }
 
-    /// How many cells lie in the first `k` rows.
+    /// Number of cells in the first `k` rows.
     fn cells_above(&self, k: u64) -> u64 {
         if 2 * k > self.rows {
             return self.n - self.cells_above(self.rows - k);
         }
         let half = self.rows / 2;
-        // There are fewer than 2^27 rows, so nothing overflows; with one row, k is 0.
+        // There are fewer than 2^27 rows, so nothing overflows. With one row, k is 0.
         k * self.short + k * self.longer / half.max(1)
     }
 }

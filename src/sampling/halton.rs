@@ -1,30 +1,30 @@
 //! `halton`: the points (φ₂(i), φ₃(i)), shifted per pixel (Halton 1960; Cranley and Patterson 1976
 //! for the shift).
 //!
-//! φ_b is the radical inverse: the digits of i in base b, mirrored at the point. The sequence
+//! φ_b is the radical inverse: the digits of i in base b, mirrored at the radix point. The sequence
 //! begins at i = 0. The shift wraps around at the pixel's edge. Fractions are 64-bit integers,
-//! rounded up, so that they fall into the elementary interval that the true value lies in (or
-//! begins).
+//! rounded up, so that they fall into the elementary interval that contains the true value (or that
+//! begins with it).
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// So many radical inverses are stored.
-const STORED: u64 = 1 << 16;
+/// Maximum number of stored radical inverses.
+const MAX_STORED: u64 = 1 << 16;
 
-/// The first radical inverses in base 2, and in base 3.
+/// The first radical inverses in base 2 and in base 3.
 #[derive(Debug)]
 pub struct Halton {
     inverses: [Vec<u64>; 2],
 }
 
 impl Halton {
-    /// The points of a sequence of which `n` are wanted.
+    /// Prepares the first `n` points of the sequence.
     pub fn new(n: u64) -> Self {
         Self {
             inverses: [u64::reverse_bits, radical_inverse_3]
-                .map(|inverse: fn(u64) -> u64| (0..n.min(STORED)).map(inverse).collect()),
+                .map(|inverse: fn(u64) -> u64| (0..n.min(MAX_STORED)).map(inverse).collect()),
         }
     }
 
@@ -35,7 +35,7 @@ impl Halton {
         for (axis, (out, inverse)) in out.into_iter().zip(inverses).enumerate() {
             let shift = key.bits(axis as u64);
             let place = |inverse: u64| lattice::offset_of_bits(inverse.wrapping_add(shift));
-            // Both ends are at most `STORED` then, and fit any kind of index.
+            // Up to `MAX_STORED`, both ends fit any type of index.
             if range.end <= self.inverses[axis].len() as u64 {
                 let stored = &self.inverses[axis][range.start as usize..range.end as usize];
                 for (out, &inverse) in out.iter_mut().zip(stored) {
@@ -50,8 +50,8 @@ impl Halton {
     }
 }
 
-/// φ₃(i) in units of 2^−64, rounded up; i < 3^40. The mirrored digits are gathered as a whole
-/// number and divided once.
+/// φ₃(i) in units of 2^−64, rounded up, for i < 3^40. The mirrored digits are collected as a whole
+/// number, which is divided once.
 pub fn radical_inverse_3(i: u64) -> u64 {
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {

@@ -2,8 +2,8 @@
 //! 1976 for the shift).
 //!
 //! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x it is a
-//! whole number of strata and a place within a stratum, so that each of the n columns holds exactly
-//! one point, as before the shift; in y it is any.
+//! whole number of strata plus a place within a stratum, so that each of the n columns still
+//! contains exactly one point; in y it is arbitrary.
 
 use std::ops::Range;
 
@@ -12,19 +12,20 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The columns.
+/// The columns, with stored points for small n.
 #[derive(Debug)]
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The columns twice over, so that all n are in a row from any on, and the heights; nothing
-    /// where n is large.
+    /// The columns, repeated once, so that n successive columns can be read from any one on; empty
+    /// if n is large.
     turned: Vec<Stratum>,
+    /// The points' y before the shift, in units of 2^−64; empty if n is large.
     heights: Vec<u64>,
 }
 
 impl Hammersley {
-    /// The points of a set of `n`.
+    /// Prepares a set of `n` points.
     pub fn new(n: u64) -> Self {
         let columns = Strata::new(n);
         let stored = (0..n).take_while(|_| columns.stored().is_some());

@@ -1,25 +1,25 @@
-//! A fixed order of a picture's pixels that keeps neighbours together: Hilbert's curve, clipped.
+//! A fixed order of a picture's pixels that keeps neighbours together: a clipped Hilbert curve.
 //!
-//! The curve fills the smallest square of a power of two that holds the picture (Hilbert 1891);
-//! what lies outside is left out of the count. A pixel's rank is the number of the picture's pixels
-//! before it, summed quadrant by quadrant. Every aligned square of a power of two is one run of the
-//! order, so whatever is dealt out evenly along it is even in both directions.
+//! The curve fills the smallest square of a power of two that contains the picture (Hilbert 1891);
+//! pixels outside of the picture are not counted. A pixel's rank is the number of the picture's
+//! pixels before it, summed quadrant by quadrant. Every aligned square of a power of two is one run
+//! of the order, so whatever is distributed evenly along it is even in both directions.
 
 use crate::area::Area;
 
-/// How many pixels of a picture, each of whose sides is at most 2^20, come before this one.
+/// Rank of pixel (x, y) along the Hilbert curve. The picture's sides are at most 2^20.
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
     let mut side = picture.width.max(picture.height).next_power_of_two();
-    // The corner of the square that holds the pixel, and how the curve lies in it: mirrored at the
-    // main diagonal or not, turned by half or not.
+    // The corner of the square that contains the pixel, and the curve's orientation in it: whether
+    // it is mirrored at the main diagonal, and whether it is rotated by half a turn.
     let (mut left, mut top) = (0, 0);
     let (mut mirrored, mut turned) = (false, false);
     while side > 1 {
         side /= 2;
         let mut step = 0;
         loop {
-            // The four quadrants as an upright curve visits them: down, right, up.
+            // An upright curve visits the four quadrants in this order: down, right, up.
             let (right, lower) = (step >= 2, step == 1 || step == 2);
             let (right, lower) = if mirrored {
                 (lower, right)
@@ -33,13 +33,13 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
                 (left, top) = (quadrant_left, quadrant_top);
                 break;
             }
-            // How many of the picture's pixels the quadrant holds.
+            // The number of the picture's pixels in the quadrant.
             let columns = picture.width.saturating_sub(quadrant_left).min(side);
             let rows = picture.height.saturating_sub(quadrant_top).min(side);
             rank += u64::from(columns) * u64::from(rows);
             step += 1;
         }
-        // The curve enters the first quadrant and leaves the last one along its sides.
+        // The curve enters the first quadrant, and leaves the last one, along its sides.
         mirrored ^= step == 0 || step == 3;
         turned ^= step == 3;
     }

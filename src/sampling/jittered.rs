@@ -1,5 +1,5 @@
-//! `jittered`: one point at random in each of n cells of equal area (Cook, Porter and Carpenter
-//! 1984, "Distributed ray tracing"; the cells are [`Bricks`], so that every n has them).
+//! `jittered`: one random point in each of n cells of equal area (Cook, Porter and Carpenter 1984,
+//! "Distributed ray tracing"). The cells are [`Bricks`], so that every n is possible.
 
 use std::ops::Range;
 
@@ -13,14 +13,14 @@ use super::{
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Of the rows of either length.
+    /// Columns of the rows of either length.
     columns: [Strata; 2],
-    /// The pixel's height in n parts: a row of n_k cells is n_k of them tall.
+    /// The pixel's height in n parts; a row of n_k cells is n_k parts tall.
     rows: Strata,
 }
 
 impl Jittered {
-    /// The cells for `n` points.
+    /// Prepares the cells for `n` points.
     pub fn new(n: u64) -> Self {
         let bricks = Bricks::new(n);
         Self {

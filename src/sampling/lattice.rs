@@ -1,69 +1,69 @@
-//! The numbers that a random offset can be, and the strata that they fall into.
+//! The possible values of a random offset, and the strata that they are divided into.
 //!
 //! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an f64,
 //! none lies on a pixel's edge or on its middle, and they are symmetric about 0, so that a mean
-//! over all of them is exactly that of the pixel. An offset is handled as its place k, from 0 to
-//! 2^53 − 1, among them.
+//! over all of them is exactly that of the pixel. An offset is represented by its index among them,
+//! its place k, from 0 to 2^53 − 1.
 
 use super::rng::{scale, scale_by_parts};
 
-/// How many offsets there are.
+/// Number of offsets.
 const PLACES: u64 = 1 << 53;
 
-/// Strata of more parts than this are computed one by one instead of stored.
-pub const STORED: u64 = 1 << 16;
+/// Maximum number of strata that are stored; more are computed one by one.
+pub const MAX_STORED: u64 = 1 << 16;
 
-/// The offset at a place, 0 to 2^53 − 1.
+/// Returns the offset at a place, 0 to 2^53 − 1.
 #[inline(always)]
 pub fn offset(place: u64) -> f64 {
     debug_assert!(place < PLACES);
     const ONE: u64 = 1.0f64.to_bits();
     const FIRST: u64 = (0.5 / PLACES as f64).to_bits();
     const SECOND: u64 = (1.5 / PLACES as f64).to_bits();
-    // (2k + 1)/2^54 − 1/2, for k = 2i + b: i/2^52 − 1/2 as a difference of numbers from 1 to 2, and
-    // 1 or 3 of 2^54, all of them exact. Few processors make a vector of whole numbers one of
-    // f64; these steps they know.
+    // (2k + 1)/2^54 − 1/2 for k = 2i + b: i/2^52 − 1/2 as a difference of numbers from 1 to 2, and
+    // 1 or 3 of 2^54, all of them exact. Few processors convert vectors of whole numbers to f64;
+    // all have these operations.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
 }
 
-/// The offset that 64 bits, read as a fraction of the pixel from its left or top edge, fall on.
+/// Converts 64 bits, read as a fraction of the pixel from its left or top edge, to an offset.
 #[inline(always)]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// A pixel's width or height, cut into n equal strata: which places lie in which. Each holds at
-/// least one place, up to n = 2^53.
+/// The places along a pixel's width or height, divided into n equal strata. Up to n = 2^53, each
+/// contains at least one place.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
-    /// How many places each stratum has at least; some have one more.
+    /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All of them, and what would follow; nothing where n is large.
+    /// All strata, and the one that would follow; empty if n is large.
     stored: Vec<Stratum>,
 }
 
-/// One of n strata in a word: twice its first place, and one more where it has one place more than
-/// ⌊2^53/n⌋.
+/// One of n strata, packed into a word: twice its first place, plus one if it has one place more
+/// than ⌊2^53/n⌋.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
 impl Stratum {
-    /// Its first place.
+    /// First place.
     #[inline(always)]
     pub fn start(self) -> u64 {
         self.0 >> 1
     }
 
-    /// Its places beyond `least`, ⌊2^53/n⌋: one or none.
+    /// Number of places beyond ⌊2^53/n⌋: one or none.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1
     }
 
-    /// An offset chosen in it by random bits.
+    /// Chooses an offset in the stratum by random bits; `least` is ⌊2^53/n⌋.
     #[inline(always)]
     pub fn choose(self, least: u64, bits: u64) -> f64 {
         offset(self.start() + scale_by_parts(bits, least + self.more()))
@@ -71,9 +71,9 @@ impl Stratum {
 }
 
 impl Strata {
-    /// The cut into `n` strata, 1 ≤ n ≤ 2^53.
+    /// Divides the places into `n` strata, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
-        let stored = (0..=n).take_while(|_| n <= STORED);
+        let stored = (0..=n).take_while(|_| n <= MAX_STORED);
         Self {
             n,
             least: PLACES / n,
@@ -90,18 +90,18 @@ impl Strata {
         }
     }
 
-    /// All strata, where they are stored.
+    /// Returns all strata. Returns `None` if they are not stored.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[Stratum]> {
         (!self.stored.is_empty()).then(|| &self.stored[..self.n as usize])
     }
 
-    /// How many places each stratum has at least; some have one more.
+    /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     pub fn least(&self) -> u64 {
         self.least
     }
 
-    /// An offset chosen in one stratum by random bits.
+    /// Chooses an offset in the stratum with index `i` by random bits.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
         let stratum = self.get(i);
@@ -109,13 +109,13 @@ impl Strata {
     }
 }
 
-/// Stratum i of n, or for i = n what would follow.
+/// Computes stratum i of n; i = n gives the one that would follow.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)
 }
 
-/// The first place in stratum i of n: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
+/// Computes the first place in stratum i of n: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
 fn start(i: u64, n: u64) -> u64 {
     let (i, n) = (u128::from(i), u128::from(n));
     (i << 54).saturating_sub(n).div_ceil(2 * n) as u64
@@ -153,8 +153,8 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, and not for
-                // their neighbours.
+                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, but not for
+                // their outer neighbours.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

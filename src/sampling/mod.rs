@@ -1,13 +1,13 @@
-//! Where a picture's samples lie.
+//! The positions of a picture's samples.
 //!
 //! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and
-//! where in the pixel they lie. What is seen there is the tracer's business. A sample is a pure
-//! function of method, seed, pixel, index, the pixel's count and the picture's size: no generator
-//! has a state that would depend on what was asked before. So any part of a picture can be rendered
-//! in any order, on any number of threads, and comes out the same.
+//! where in the pixel they lie. A sample is a pure function of method, seed, pixel, index, the
+//! pixel's count and the picture's size: no generator has a state that depends on earlier requests.
+//! Any part of a picture can therefore be rendered in any order, on any number of threads, with the
+//! same result.
 //!
-//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2). A
-//! file per method:
+//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2).
+//! Each method has a file:
 //!
 //! | method | file | unbiased |
 //! | --- | --- | --- |
@@ -18,7 +18,7 @@
 //! | hammersley | `hammersley` | yes |
 //! | halton | `halton` | yes |
 //! | sobol | `sobol` | yes |
-//! | scatter | `scatter` and `random` | but for the pixels that it leaves empty |
+//! | scatter | `scatter` and `random` | yes, except in pixels that it leaves empty |
 
 mod binomial;
 mod bricks;
@@ -55,22 +55,23 @@ use crate::{
 #[derive(Debug)]
 pub struct Sampling {
     method: Method,
-    /// The key of seed and method; a pixel's own is a part of it.
+    /// Key of the seed and the method, from which a pixel's own key is derived.
     key: Key,
     total: u64,
     picture: Area,
-    /// How many samples each pixel has at least, and how many pixels have one more. Those of
-    /// `scatter` have as many as fall there.
+    /// Minimum number of samples of a pixel. With `scatter`, pixels have as many samples as fall
+    /// there.
     count: u64,
+    /// Number of pixels that have one sample more than the minimum.
     extra: u64,
-    /// How `count` points lie, and how one more; of `scatter`, how any number does.
-    patterns: Box<[Pattern; 2]>,
+    /// Patterns of `count` points and of one more; with `scatter`, of any number.
+    patterns: Box<[PointPattern; 2]>,
 }
 
-/// How a known number of points lie in a pixel.
+/// The arrangement of a known number of points in a pixel.
 #[derive(Debug)]
-enum Pattern {
-    /// No point at all.
+enum PointPattern {
+    /// No points.
     Empty,
     Regular(Bricks),
     Random,
@@ -82,10 +83,10 @@ enum Pattern {
 }
 
 impl Sampling {
-    /// The samples of a picture of this size; each side is at least 1 and at most 2^20. The exact
-    /// method has none.
+    /// Prepares the samples of a picture of this size; each side is at least 1 and at most 2^20.
+    /// The exact method has no samples.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // A method's place in the language's table, which must not change: pictures depend on it.
+        // The method's index in the language's table, which must not change: pictures depend on it.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
@@ -102,47 +103,47 @@ impl Sampling {
             picture: Area::whole(width, height),
             count,
             extra,
-            patterns: Box::new([count, more].map(|n| Pattern::new(sampler.method, n))),
+            patterns: Box::new([count, more].map(|n| PointPattern::new(sampler.method, n))),
         }
     }
 
-    /// Whether there are no samples, as the picture is computed.
+    /// Whether the picture is computed without samples.
     pub fn is_exact(&self) -> bool {
         self.method == Method::Exact
     }
 
-    /// How many samples the whole picture has.
+    /// Number of samples of the whole picture.
     pub fn total(&self) -> u64 {
         self.total
     }
 
-    /// How many samples a pixel has on average, rounded up.
+    /// Mean number of samples of a pixel, rounded up.
     pub fn samples_per_pixel(&self) -> u64 {
         self.total.div_ceil(self.picture.pixels())
     }
 
-    /// How many samples a pixel has on average.
+    /// Mean number of samples of a pixel.
     pub fn mean_count(&self) -> f64 {
         self.total as f64 / self.picture.pixels() as f64
     }
 
-    /// How many samples each pixel has, if all have the same number.
+    /// Returns the number of samples of each pixel, if all pixels have the same.
     pub fn same_count(&self) -> Option<u64> {
         (self.extra == 0 && self.method != Method::Scatter).then_some(self.count)
     }
 
-    /// How many samples a pixel has.
+    /// Returns the number of samples of a pixel.
     pub fn count(&self, x: u32, y: u32) -> u64 {
         self.counts(Area::pixel(x, y))[0]
     }
 
-    /// How many samples each pixel of a part of the picture has, row by row: much faster than
-    /// asking pixel by pixel.
+    /// Returns the number of samples of each pixel of a part of the picture, row by row: much
+    /// faster than pixel by pixel.
     pub fn counts(&self, part: Area) -> Vec<u64> {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // No pixel has this number.
+                // No pixel has this key.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }
@@ -150,23 +151,21 @@ impl Sampling {
         }
     }
 
-    /// Of N samples and P pixels the one with rank i along Hilbert's curve has ⌊(i + 1)N/P⌋ −
-    /// ⌊iN/P⌋.
+    /// Returns a pixel's share of N samples for P pixels, by its rank i along the Hilbert curve:
+    /// ⌊(i + 1)N/P⌋ − ⌊iN/P⌋.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // Of N = count·P + extra, only the extra ones make a difference: there is one more of ⌊(i +
-        // 1)·extra/P⌋ than of ⌊i·extra/P⌋ where the remainder of the latter is within extra
-        // of P.
+        // Of N = count·P + extra, only the extra samples vary: ⌊(i + 1)·extra/P⌋ exceeds
+        // ⌊i·extra/P⌋ by one where the remainder of i·extra/P is within extra of P.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)
     }
 
-    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before,
-    /// by vectors of either kind; `count` is what [`count`](Self::count) says of the pixel.
-    /// They take the place of the points that `out` had before.
+    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before;
+    /// `count` is the pixel's [`count`](Self::count). They replace the points in `out`.
     ///
-    /// What a pixel's points have in common is prepared anew in each call, so ask for a few
-    /// thousand at once.
+    /// Data shared by a pixel's points are prepared anew in each call, so calls should ask for a
+    /// few thousand points at once.
     pub fn place(
         &self,
         vectors: SimdWidth,
@@ -178,7 +177,7 @@ impl Sampling {
         debug_assert!(range.end <= count);
         let key = self.key.part(u64::from(y) << 32 | u64::from(x));
         let pattern = &self.patterns[usize::from(count != self.count)];
-        let out = out.room(range.clone().count());
+        let out = out.resized(range.clone().count());
         match vectors {
             SimdWidth::Widest if HAS_WIDER => place_simd(pattern, key, range, out),
             _ => pattern.place(key, range, out),
@@ -190,11 +189,11 @@ impl Sampling {
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
 ))]
-fn place_simd(pattern: &Pattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
+fn place_simd(pattern: &PointPattern, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
     pattern.place(key, range, out);
 }
 
-impl Pattern {
+impl PointPattern {
     fn new(method: Method, n: u64) -> Self {
         match method {
             Method::Random | Method::Scatter => Self::Random,
@@ -210,7 +209,7 @@ impl Pattern {
         }
     }
 
-    /// Fills two lists with the coordinates of the points with these indices.
+    /// Writes the coordinates of the points with these indices to two lists.
     #[inline(always)]
     fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {

@@ -1,42 +1,43 @@
-//! `multi_jittered`: one point in each cell of a grid and, at once, one in each of n columns and n
-//! rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the grid of one row,
-//! where only the second remains (McKay, Beckman and Conover 1979, Latin hypercube; Shirley 1991
-//! calls it n-rooks).
+//! `multi_jittered`: one point in each cell of a grid and, at the same time, one in each of n
+//! columns and n rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the grid
+//! of one row, for which only the second property remains (McKay, Beckman and Conover 1979, Latin
+//! hypercube; Shirley 1991 calls it n-rooks).
 //!
-//! n = a·b points have a grid of a columns and b rows, b the greatest divisor of n that is not
-//! above √n. The point of cell (i, j) lies in the fine column i·b + σ(j) and in the fine row j·a +
-//! τ(i), for two random permutations σ of the b rows and τ of the a columns. Both are the same for
-//! the whole pixel, and that is the correlation which Kensler adds to Chiu, Shirley and Wang 1994.
-//! A prime n has b = 1: the Latin hypercube.
+//! n = a·b points have a grid of a columns and b rows, where b is the greatest divisor of n up to
+//! √n. The point of cell (i, j) lies in the fine column i·b + σ(j) and in the fine row j·a + τ(i),
+//! for two random permutations σ of the b rows and τ of the a columns. Both are the same for the
+//! whole pixel, which is the correlation that Kensler adds to Chiu, Shirley and Wang 1994. A prime
+//! n has b = 1: the Latin hypercube.
 
 use std::ops::Range;
 
 use super::{
     lattice::{Strata, Stratum},
     rng::Key,
-    shuffle::{ROOM, Shuffle},
+    shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// So many points are placed at a time: most pixels have no more, and the room for them is cleared.
+/// Number of points that are placed at a time. Most pixels have no more, and the buffer is cleared
+/// for every pixel.
 const BATCH: usize = 16;
 
-/// A grid of cells, with the fine strata that they are made of.
+/// A grid of cells, with the fine strata that they consist of.
 #[derive(Debug)]
 pub struct MultiJittered {
     columns: u64,
     rows: u64,
-    /// The pixel's width, and its height, in n parts.
+    /// Division of the pixel's width, and of its height, into n strata.
     strata: Strata,
 }
 
 impl MultiJittered {
-    /// The grid for `n` points that is nearest to a square.
+    /// Prepares the grid for `n` points that is most nearly square.
     pub fn new(n: u64) -> Self {
         let rows = (1..=n.isqrt()).rev().find(|&b| n.is_multiple_of(b));
         Self::with_rows(n, rows.unwrap_or(1))
     }
 
-    /// The grid of one row: n-rooks.
+    /// Prepares the grid of one row: n-rooks.
     pub fn n_rooks(n: u64) -> Self {
         Self::with_rows(n, 1)
     }
@@ -52,8 +53,8 @@ impl MultiJittered {
     /// Places the points with these indices, row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
-        let mut rooms = [ROOM; 2];
-        let [sigma, tau] = &mut rooms;
+        let mut buffers = [EMPTY_BUFFER; 2];
+        let [sigma, tau] = &mut buffers;
         let sigma = Shuffle::new(self.rows, key.part(0), sigma);
         let tau = Shuffle::new(self.columns, key.part(1), tau);
         match (sigma.stored(), tau.stored(), self.strata.stored()) {
@@ -86,7 +87,7 @@ impl MultiJittered {
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // First the strata, which are looked up one by one.
+            // The strata first, which are looked up one by one.
             let [columns, rows] = &mut chosen;
             let mut points = columns.iter_mut().zip(rows).take(x.len());
             while points.len() > 0 {
@@ -102,7 +103,7 @@ impl MultiJittered {
                     (i, j) = (0, j + 1);
                 }
             }
-            // Then a place in each, by vectors.
+            // Then a place in each, in vectors.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));

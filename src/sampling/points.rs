@@ -1,12 +1,12 @@
-//! Points by coordinate.
+//! Sample points, by coordinate.
 
 use glam::DVec2;
 
-/// Lists of coordinates are filled up to a multiple of so many, the widest vectors' numbers.
+/// Number of lanes of the widest vectors, to a multiple of which lists of coordinates are padded.
 const LANES: usize = 8;
 
-/// Some points of a pixel, as a list of each coordinate: loops over them become vectors. Kept from
-/// pixel to pixel for their room.
+/// Points of a pixel, as one list per coordinate, so that loops over them are vectorized. It is
+/// reused from pixel to pixel, to keep its allocations.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     len: usize,
@@ -15,31 +15,30 @@ pub struct Points {
 }
 
 impl Points {
-    /// How many there are.
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there is none.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// All of them in their order.
+    /// All points in their order.
     pub fn iter(&self) -> impl Iterator<Item = DVec2> {
         let [x, y] = [&self.x, &self.y].map(|lane| lane[..self.len].iter());
         x.zip(y).map(|(&x, &y)| DVec2::new(x, y))
     }
 
-    /// Their coordinates. Behind the last there may be more, up to a multiple of eight, that lie
-    /// anywhere in the pixel.
+    /// The coordinates, padded to a multiple of eight by coordinates anywhere in the pixel.
     pub fn lanes(&self) -> [&[f64]; 2] {
         let end = self.len.next_multiple_of(LANES);
         [&self.x[..end], &self.y[..end]]
     }
 
-    /// The places of the coordinates of so many points, which take the place of those before.
-    pub(super) fn room(&mut self, count: usize) -> [&mut [f64]; 2] {
+    /// Returns the lists of coordinates for `count` new points, which replace the old ones.
+    pub(super) fn resized(&mut self, count: usize) -> [&mut [f64]; 2] {
         self.len = count;
         let needed = count.next_multiple_of(LANES);
         if self.x.len() < needed {

@@ -1,5 +1,4 @@
-//! `random`: independent, uniform points. `scatter` places its points within a pixel in the same
-//! way.
+//! `random`: independent, uniform points. `scatter` also places its points within a pixel so.
 
 use std::ops::Range;
 

@@ -1,11 +1,11 @@
-//! `regular`: the middles of equal cells.
+//! `regular`: the centres of equal cells.
 
 use std::ops::Range;
 
 use super::bricks::Bricks;
 
-/// Places the points with these indices: the middles of the cells of [`Bricks`], row by row. The
-/// same in every pixel.
+/// Places the points with these indices: the centres of the cells of [`Bricks`], row by row, in
+/// every pixel the same.
 ///
 /// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly
 /// the negative of that.
@@ -20,9 +20,9 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     }
 }
 
-/// The middle of the parts from `first` to before `first` + `parts` of `n`, relative to the middle
-/// of all.
+/// Returns the middle of the parts from `first` up to `first` + `parts` (exclusive) of `n` parts,
+/// relative to the middle of all.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
-    // The numerator is at most 2^53 in magnitude, so only the division rounds.
+    // The magnitude of the numerator is at most 2^53, so only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64
 }

@@ -1,9 +1,9 @@
-//! Random numbers that are counted: the i-th one is a function of i and of what it is for.
+//! Counter-based random numbers: the i-th number is a function of i and of its purpose.
 //!
-//! A [`Key`] names a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the i-th
-//! 64-bit number of that purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable
-//! pseudorandom number generators") with its state computed instead of carried. [`CounterRng`]
-//! gives the numbers of a key in turn, to whatever takes a generator of the crate `rand`.
+//! A [`Key`] identifies a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the
+//! i-th 64-bit number for that purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast
+//! splittable pseudorandom number generators") with its state computed instead of stored.
+//! [`CounterRng`] returns the numbers of a key in turn, as a generator of the crate `rand`.
 
 use std::{convert::Infallible, ops::Range};
 
@@ -12,26 +12,26 @@ use rand::{SeedableRng, TryRng};
 /// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// So many pairs are made at a time.
+/// Number of pairs that are generated at a time.
 const BATCH: usize = 64;
 
-/// What a number is for.
+/// The purpose of a random number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key(u64);
 
 impl Key {
-    /// The key of a seed and a method's own number.
+    /// Returns the key of a seed and a method's own number.
     pub fn new(seed: u64, method: u64) -> Self {
         Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
     }
 
-    /// The key of one part of this purpose, such as a pixel or an axis. Distinct parts have
+    /// Returns the key of one part of this purpose, such as a pixel or an axis. Distinct parts have
     /// distinct keys.
     pub fn part(self, part: u64) -> Self {
         Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
     }
 
-    /// The 64 random bits with this index.
+    /// Returns the 64 random bits with this index.
     #[inline(always)]
     pub fn bits(self, index: u64) -> u64 {
         mix(self
@@ -39,13 +39,13 @@ impl Key {
             .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
     }
 
-    /// Tells `each` two numbers for each of some points, with the indices 2i and 2i + 1: some at a
-    /// time, and the index of the first of them.
+    /// Calls `each` with pairs of numbers for some points, in batches: the index of the first
+    /// point, and for each point i the numbers with the indices 2i and 2i + 1.
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
-        let mut room = [[0; 2]; BATCH];
+        let mut batch = [[0; 2]; BATCH];
         for first in points.clone().step_by(BATCH) {
-            let pairs = &mut room[..(points.end - first).min(BATCH as u64) as usize];
+            let pairs = &mut batch[..(points.end - first).min(BATCH as u64) as usize];
             for (index, out) in (2 * first..).zip(pairs.as_flattened_mut()) {
                 *out = self.bits(index);
             }
@@ -53,7 +53,7 @@ impl Key {
         }
     }
 
-    /// A generator of these numbers, from the first one on.
+    /// Returns a generator of these numbers, from the first one on.
     pub fn rng(self) -> CounterRng {
         CounterRng { key: self, next: 0 }
     }
@@ -73,7 +73,7 @@ impl SeedableRng for CounterRng {
         Key(u64::from_le_bytes(seed)).rng()
     }
 
-    /// SplitMix64 that starts at this number.
+    /// Returns SplitMix64 that starts at this number.
     fn seed_from_u64(seed: u64) -> Self {
         Key(seed).rng()
     }
@@ -98,30 +98,30 @@ impl TryRng for CounterRng {
     }
 }
 
-/// The place of random bits, read as a fraction of 1, among `n`: a number from 0 to `n` − 1. Its
-/// bias is below n/2^64 (Lemire 2019, without the rejection).
+/// Scales random bits, read as a fraction of 1, to a number from 0 to `n` − 1. The bias is below
+/// n/2^64 (Lemire 2019, without the rejection).
 #[inline(always)]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
-/// The same for an `n` of at most 2^53, in steps that loops make vectors of.
+/// Computes [`scale`] for an `n` of at most 2^53, in steps that can be vectorized.
 ///
-/// Of the usual steps, by halves of 32 bits, compilers make the one product of 128 bits that
-/// vectors do not have.
+/// The usual steps, by halves of 32 bits, are recognised by compilers as a product of 128 bits,
+/// which vectors do not have.
 #[inline(always)]
 pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
     // The product is high·n_high 2^58 + high·n_low 2^32 + low·n_high 2^26 + low·n_low, none of the
-    // four above 2^59. What is cut off on the way is less than what is added next counts in.
+    // four above 2^59. The bits that are dropped on the way are below the unit of the next term.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6
 }
 
-/// The finaliser of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
+/// The finalizer of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
 #[inline(always)]
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn the_numbers_are_those_of_splitmix64() {
-        // Of Vigna's splitmix64.c, started at 1234567.
+        // From Vigna's splitmix64.c, started at 1234567.
         let mut rng = CounterRng::seed_from_u64(1_234_567);
         let expected = [
             6_457_827_717_110_365_317,

@@ -1,26 +1,25 @@
 //! `scatter`: points uniform over the whole picture, as a pure function of the pixel.
 //!
-//! How many of N uniform points fall into each pixel is multinomial, and a multinomial splits: of n
-//! points in a rectangle, the part that one half takes is binomial, and given that, the halves are
-//! independent. So N is split down a fixed binary tree of rectangles of pixels, each draw decided
-//! by its node. A rectangle's longer side (its width, if they are equal) is cut at the
-//! greatest power of two below it, so that nearly all cuts are into halves, whose draws count
-//! random bits. Where in its pixel a point lies is then uniform.
+//! The numbers of N uniform points that fall into each pixel are multinomial, and a multinomial
+//! distribution splits: of n points in a rectangle, the number in one half is binomial, and given
+//! that, the halves are independent. N is therefore split down a fixed binary tree of rectangles of
+//! pixels, with a draw per node. A rectangle's longer side (its width, if they are equal) is cut at
+//! the greatest power of two below it, so that nearly all cuts are into halves, whose draws count
+//! random bits. Within its pixel, a point is uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;
 
-/// A rectangle of the tree, and what fell into it.
+/// A rectangle of the tree, and the points that fell into it.
 #[derive(Clone, Copy)]
 struct Node {
-    /// The way to it from the root: a bit for each cut, behind a one.
+    /// Path from the root: one bit per cut, after a leading 1.
     path: u64,
     area: Area,
     points: u64,
 }
 
-/// How many of `total` points fall into each pixel of a part of the picture, row by row, as `key`
-/// decides.
+/// Draws how many of `total` points fall into each pixel of a part of the picture, row by row.
 pub fn counts(key: Key, total: u64, picture: Area, part: Area) -> Vec<u64> {
     let mut counts = vec![0; part.pixels() as usize];
     let root = Node {

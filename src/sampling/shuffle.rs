@@ -2,44 +2,44 @@
 
 use super::rng::Key;
 
-/// Up to this length a permutation is stored, and uniform among all; a longer one is computed entry
-/// by entry.
-const STORED: u64 = 1 << 12;
+/// Maximum length of a stored permutation, which is uniform among all permutations. Entries of a
+/// longer one are computed one by one.
+const MAX_STORED: u64 = 1 << 12;
 
-/// Lengths up to this need no allocation.
+/// Maximum length of a permutation that needs no allocation.
 const SHORT: usize = 64;
 
-/// Room for a short permutation. It stays where it is, since to move entries right after they are
-/// written makes processors wait.
-pub type Room = [u16; SHORT];
+/// Buffer for a short permutation. It is borrowed and not moved, since moving entries right after
+/// they are written stalls processors.
+pub type Buffer = [u16; SHORT];
 
-/// Room with nothing in it.
-pub const ROOM: Room = [0; SHORT];
+/// An empty buffer.
+pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
-/// A permutation of 0 … n − 1 that a key decides.
+/// A permutation of 0 … n − 1, decided by a key.
 #[derive(Debug)]
 pub enum Shuffle<'a> {
-    /// Short: its entries, and more behind them.
-    Short(&'a Room),
-    /// Of middling length: its entries.
+    /// A short one: its entries, followed by unused ones.
+    Short(&'a Buffer),
+    /// One of medium length: its entries.
     Stored(Vec<u16>),
-    /// Long: how to compute an entry.
+    /// A long one, whose entries are computed.
     Hashed {
-        /// How many entries.
+        /// Number of entries.
         n: u64,
-        /// Decides them.
+        /// Key that decides the entries.
         key: Key,
     },
 }
 
 impl<'a> Shuffle<'a> {
-    /// The permutation of 0 … n − 1 that `key` decides.
+    /// Returns the permutation of 0 … n − 1 that `key` decides.
     #[inline(always)]
-    pub fn new(n: u64, key: Key, room: &'a mut Room) -> Self {
+    pub fn new(n: u64, key: Key, buffer: &'a mut Buffer) -> Self {
         if n <= SHORT as u64 {
-            fisher_yates(&mut room[..n as usize], key);
-            Self::Short(room)
-        } else if n <= STORED {
+            fisher_yates(&mut buffer[..n as usize], key);
+            Self::Short(buffer)
+        } else if n <= MAX_STORED {
             let mut entries = vec![0; n as usize];
             fisher_yates(&mut entries, key);
             Self::Stored(entries)
@@ -48,7 +48,7 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// Its entries, where they are stored, and perhaps more behind them.
+    /// Returns the entries, perhaps followed by unused ones. Returns `None` if they are not stored.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[u16]> {
         match self {
@@ -58,7 +58,7 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// The entry at `index` < n.
+    /// Returns the entry at `index` < n.
     #[inline(always)]
     pub fn get(&self, index: u64) -> u64 {
         match self {
@@ -73,17 +73,17 @@ impl<'a> Shuffle<'a> {
 #[inline(always)]
 fn fisher_yates(entries: &mut [u16], key: Key) {
     for i in 0..entries.len() {
-        // 32 random bits favour no place by more than one in 2^20.
+        // With 32 random bits, no place is favoured by more than one in 2^20.
         let j = (((key.bits(i as u64) >> 32) * (i as u64 + 1)) >> 32) as usize;
         entries[i] = entries[j];
         entries[j] = i as u16;
     }
 }
 
-/// The entry at `index` of a permutation of 0 … n − 1, computed alone: a keyed bijection of the
-/// numbers of as many bits as n − 1 has, applied until the result is below n ("cycle walking",
-/// Black and Rogaway 2002, which makes of it a bijection of the numbers below n). At least half of
-/// the numbers of so many bits are, so twice is enough on average.
+/// Computes a single entry of a permutation of 0 … n − 1: a keyed bijection of the numbers with as
+/// many bits as n − 1, applied until the result is below n ("cycle walking", Black and Rogaway
+/// 2002, which turns it into a bijection of the numbers below n). At least half of these numbers
+/// are below n, so that two steps are enough on average.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;
@@ -92,8 +92,8 @@ fn permute(index: u64, n: u64, key: Key) -> u64 {
     loop {
         for round in 0..4 {
             let random = key.bits(round);
-            // Each step is a bijection modulo a power of two: times an odd number, plus a number,
-            // upper half onto lower half.
+            // Each step is a bijection modulo a power of two: multiplication by an odd number, an
+            // addition, and an exclusive or of the upper half onto the lower one.
             value = value.wrapping_mul(random | 1).wrapping_add(random >> 32) & mask;
             value ^= value >> half;
         }
@@ -111,8 +111,8 @@ mod tests {
     fn short_permutations_are_equally_likely() {
         let mut hits = std::collections::HashMap::new();
         for seed in 0..24_000 {
-            let mut room = ROOM;
-            let shuffle = Shuffle::new(4, Key::new(seed, 0), &mut room);
+            let mut buffer = EMPTY_BUFFER;
+            let shuffle = Shuffle::new(4, Key::new(seed, 0), &mut buffer);
             *hits
                 .entry([0, 1, 2, 3].map(|i| shuffle.get(i)))
                 .or_insert(0_u32) += 1;
@@ -127,8 +127,8 @@ mod tests {
         let n = 6007;
         let (mut sum, mut neighbours) = (0.0, 0);
         for seed in 0..2000 {
-            let mut room = ROOM;
-            let shuffle = Shuffle::new(n, Key::new(seed, 0), &mut room);
+            let mut buffer = EMPTY_BUFFER;
+            let shuffle = Shuffle::new(n, Key::new(seed, 0), &mut buffer);
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }

@@ -1,45 +1,45 @@
 //! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly
 //! permuted (t, m, s)-nets").
 //!
-//! The first coordinate of point i is its bits, mirrored; the second multiplies them by Pascal's
-//! triangle modulo 2 first. The sequence begins at i = 0, which must not be left out (Owen 2020).
-//! The first n = 2^m points have exactly one in every box of 2^−a by 2^(a−m), and so has every
-//! further block of 2^m.
+//! The first coordinate of point i is its bits, mirrored; for the second, the bits are first
+//! multiplied by Pascal's triangle modulo 2. The sequence begins at i = 0, which must not be left
+//! out (Owen 2020). The first n = 2^m points have exactly one in every box of 2^−a by 2^(a−m), and
+//! so has every further block of 2^m.
 //!
 //! Owen's nested uniform scrambling flips each bit of a coordinate by a random bit that belongs to
 //! all the bits above it. The n points differ in their first m = ⌈log₂ n⌉ bits on either axis.
-//! Below these, every point is alone in its part of the tree, and its bits are independent: random
-//! bits do. So this is the true scrambling, with m decisions a coordinate instead of 53; for the m
-//! a hash of 64 bits decides a subtree of six levels at a time. (Laine and Karras'
-//! one-multiplication scrambles were not tried: known to have weak bits, and no cheaper at the
+//! Below these, every point is alone in its part of the tree, so its bits are independent random
+//! bits. This is therefore the true scrambling, with m decisions per coordinate instead of 53; a
+//! 64-bit hash decides a subtree of six levels at a time. (The one-multiplication scrambles of
+//! Laine and Karras were not tried: they are known to have weak bits, and are no cheaper for the
 //! counts that pictures use.)
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// The levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
+/// Number of levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
 const LEVELS: u32 = 6;
 
-/// So many points are stored, unscrambled: two hashes decide the bits in which they differ.
-const STORED: u64 = 1 << (2 * LEVELS);
+/// Maximum number of points that are stored, unscrambled: two hashes decide the bits in which they
+/// differ.
+const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// A scrambled prefix of the sequence.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     /// The least m with n ≤ 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of the points, where there are not too many; else
-    /// nothing.
+    /// The m topmost bits of both coordinates of the points; empty if there are too many points.
     tops: Vec<[u16; 2]>,
 }
 
 impl Sobol {
-    /// The first `n` points.
+    /// Prepares the first `n` points.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
         let top = |fraction: u64| high_bits(fraction, depth) as u16;
-        let stored = if n <= STORED { n } else { 0 };
+        let stored = if n <= MAX_STORED { n } else { 0 };
         Self {
             depth,
             tops: (0..stored)
@@ -52,12 +52,12 @@ impl Sobol {
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let axes = [
-            Tree::new(key.part(0), self.depth),
-            Tree::new(key.part(1), self.depth),
+            Owen::new(key.part(0), self.depth),
+            Owen::new(key.part(1), self.depth),
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            // Lists of several lengths, as all of one is cleared before it is filled.
+            // Lists of several lengths, since a whole list is cleared before it is filled.
             return match self.depth {
                 0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
                 7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
@@ -71,9 +71,9 @@ impl Sobol {
     }
 }
 
-/// Places points by their topmost bits, of which there are `MOST` at most.
+/// Places points by their topmost bits, which have at most `MOST` values.
 #[inline(always)]
-fn at_leaves<const MOST: usize>(axes: &[Tree; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
+fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
     let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
     for (top, (x, y)) in tops.iter().zip(x.iter_mut().zip(y)) {
         *x = leaves[0][usize::from(top[0])];
@@ -82,8 +82,8 @@ fn at_leaves<const MOST: usize>(axes: &[Tree; 2], tops: &[[u16; 2]], [x, y]: [&m
 }
 
 /// Multiplies the bits of i by Pascal's triangle: bit j of the result is the sum modulo 2 of
-/// binomial(k, j) times bit k. That binomial is odd where the ones of j are among those of k, so
-/// one step for each bit of the *position* does it.
+/// binomial(k, j) times bit k. That binomial is odd if the ones of j are among those of k, so one
+/// step for each bit of the *position* is enough.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -94,16 +94,16 @@ fn pascal(mut bits: u64) -> u64 {
 }
 
 /// The scrambling of one axis of one pixel.
-struct Tree {
+struct Owen {
     key: Key,
     depth: u32,
-    /// How many levels the first hash decides.
+    /// Number of levels that the first hash decides.
     levels: u32,
-    /// What becomes of the bits on them.
+    /// Scrambled bits of every node on these levels.
     top: [u8; 1 << LEVELS],
 }
 
-impl Tree {
+impl Owen {
     fn new(key: Key, depth: u32) -> Self {
         let levels = depth.min(LEVELS);
         Self {
@@ -114,8 +114,8 @@ impl Tree {
         }
     }
 
-    /// The offsets of all fractions of which the topmost bits alone matter, scrambled, where two
-    /// hashes decide all of these.
+    /// Returns the scrambled offsets of all combinations of the topmost bits, if at most two hashes
+    /// decide them.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -139,16 +139,16 @@ impl Tree {
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
         for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
-            // Two steps, as the depth may be 0.
+            // Two shifts, since the depth may be 0.
             let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }
         leaves
     }
 
-    /// Scrambles a fraction, in units of 2^−64.
+    /// Scrambles a fraction in units of 2^−64.
     fn scramble(&self, fraction: u64) -> u64 {
-        // A node is named by the bits that lead to it, behind a one.
+        // A node is identified by the bits that lead to it, after a leading 1.
         let mut above = self.levels;
         let part = high_bits(fraction, above);
         let mut scrambled = u64::from(self.top[part as usize]);
@@ -162,18 +162,18 @@ impl Tree {
             flips = self.key.bits(node);
             above = below;
         }
-        // The remaining bits of a point are its own, so the last hash has them all.
+        // The remaining bits of a point are its own, so all of them come from the last hash.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 
-/// What becomes of the bits on some levels of a subtree whose nodes, in order of depth, have the
+/// Scrambles the bits on the first levels of a subtree whose nodes, in order of depth, have the
 /// bits 1, 2 … 63 of `flips`.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
     for level in 0..levels {
-        // Each node makes way for its two children, from the last on.
+        // Each node is replaced by its two children, from the last node on.
         for node in (0..1 << level).rev() {
             let scrambled = bits[node] << 1;
             let flip = (flips >> (1 << level | node) & 1) as u8;
@@ -183,8 +183,8 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// The random bits on the way down a subtree whose nodes, in order of depth, have the bits 1, 2 …
-/// 63 of `flips`.
+/// Returns the random bits on the way down a subtree whose nodes, in order of depth, have the bits
+/// 1, 2 … 63 of `flips`.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);
@@ -192,7 +192,7 @@ fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     })
 }
 
-/// The topmost bits of a number, `count` of them.
+/// Returns the `count` topmost bits of a number.
 fn high_bits(number: u64, count: u32) -> u64 {
     number.checked_shr(u64::BITS - count).unwrap_or(0)
 }
@@ -208,8 +208,8 @@ mod tests {
             2, 3, 17, 64, 65, 100, 128, 300, 512, 513, 1000, 4095, 4096, 5000,
         ] {
             let sobol = Sobol::new(n);
-            assert_eq!(sobol.tops.is_empty(), n > STORED);
-            let axes = [0, 1].map(|axis| Tree::new(key.part(axis), sobol.depth));
+            assert_eq!(sobol.tops.is_empty(), n > MAX_STORED);
+            let axes = [0, 1].map(|axis| Owen::new(key.part(axis), sobol.depth));
             let (mut x, mut y) = (vec![0.0; n as usize], vec![0.0; n as usize]);
             sobol.place(key, 0..n, [&mut x, &mut y]);
             for (i, place) in (0..n).zip(x.into_iter().zip(y)) {

@@ -8,7 +8,10 @@
 
 use glam::DVec3;
 
-use super::model::{Camera, Checkerboard, Image, Lens, Object, Outline, Shape, View};
+use super::{
+    model::{Camera, Checkerboard, Image, Object, Outline, Shape, View},
+    pixel_size::pixel_size,
+};
 use crate::math::{Angle, Big, trig};
 
 /// By so much of the lengths that are compared a comparison has to be clear. With up and the view
@@ -199,15 +202,11 @@ impl Frustum {
         let right = right.normalize();
         let top = right.cross(forward);
         let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
-        let aspect = f64::from(image.width) / f64::from(image.height);
-        let half = match camera.lens {
-            Lens::Distance(d) => camera.view_height / d / 2.0,
-            Lens::Fov(angle) => trig::tan(angle * 0.5),
-            Lens::HorizontalFov(angle) => trig::tan(angle * 0.5) / aspect,
-        };
+        let side = pixel_size(camera, image, |angle| trig::tan(angle * 0.5));
+        let [across, up] = [image.width, image.height].map(|pixels| side * 0.5 * f64::from(pixels));
         let window = [
-            (right * cos - top * sin) * (half * aspect),
-            (right * sin + top * cos) * half,
+            (right * cos - top * sin) * across,
+            (right * sin + top * cos) * up,
         ];
         let is_known = |axis: &DVec3| axis.is_finite() && *axis != DVec3::ZERO;
         window.iter().all(is_known).then_some(Self {

@@ -10,7 +10,7 @@
 use std::{
     io,
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex,
         atomic::{AtomicBool, Ordering},
     },
     time::{Duration, Instant},
@@ -21,6 +21,8 @@ use axum::http::{
     header::{HOST, HeaderName, ORIGIN},
 };
 use subtle::ConstantTimeEq as _;
+
+use crate::lock::lock;
 
 /// Path of the web socket.
 pub const SOCKET: &str = "/socket";
@@ -142,7 +144,7 @@ impl Access {
     /// Returns the token of the printed address, and that of the address that a browser is started
     /// with.
     pub fn tokens(&self) -> [String; 2] {
-        let started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
+        let started = lock(&self.started);
         [self.printed.clone(), started.once.clone()]
     }
 
@@ -152,7 +154,7 @@ impl Access {
     ///
     /// The token is not, or no longer, valid.
     pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
-        let mut started = self.started.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut started = lock(&self.started);
         if is_equal(token, &self.printed) {
             return Ok(Pass {
                 token: self.printed.clone(),

@@ -4,19 +4,19 @@
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
+    sync::{Arc, Mutex, MutexGuard, atomic::AtomicBool},
 };
 
 use super::draft::{Drafts, Read, Unsaved};
 use crate::{
     files::{self, Original, Purpose},
-    preview::{self, Content, Latest},
+    preview::{self, FileContent, Latest},
     source::Source,
 };
 
 /// Content at a path: a text, `None` if there is no file, or the reason why it cannot be read as a
 /// text, in which case it must not be overwritten.
-pub type FileContent = Result<Option<String>, String>;
+pub type FileText = Result<Option<String>, String>;
 
 /// A scene's file, or a new scene that has none yet.
 #[derive(Debug)]
@@ -26,11 +26,11 @@ pub struct SceneFile {
     folder: PathBuf,
     path: Option<PathBuf>,
     /// The content when the file was last read.
-    content: FileContent,
+    content: FileText,
     /// Number of different contents so far.
     version: u64,
     /// Notifies of changes of the file. Without it, a change is found only on saving.
-    watch: Option<Arc<Latest<Content>>>,
+    watch: Option<Arc<Latest<FileContent>>>,
     drafts: Drafts,
     /// New scenes beside the file that pages have saved, and may save again.
     beside: Vec<PathBuf>,
@@ -39,7 +39,7 @@ pub struct SceneFile {
 /// Locks the file that pages share. A lock that a panic has poisoned is used, too: no change is
 /// left half done.
 pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
-    file.lock().unwrap_or_else(PoisonError::into_inner)
+    crate::lock::lock(file)
 }
 
 /// Error: a text was not saved.
@@ -121,7 +121,7 @@ impl SceneFile {
     }
 
     /// Returns the content when the file was last read.
-    pub fn content(&self) -> &FileContent {
+    pub fn content(&self) -> &FileText {
         &self.content
     }
 
@@ -157,12 +157,12 @@ impl SceneFile {
         self.version
     }
 
-    fn set_content(&mut self, content: FileContent) {
+    fn set_content(&mut self, content: FileText) {
         self.version += u64::from(self.content != content);
         self.content = content;
     }
 
-    fn found(&self, path: &Path) -> FileContent {
+    fn found(&self, path: &Path) -> FileText {
         match text((self.read)(path)) {
             Ok(text) => Ok(Some(text)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),

@@ -1,15 +1,15 @@
-//! Where in the view plane an object may be seen, and how near it is at most.
+//! Bounds of an object in the view plane, and of its inverse depth.
 //!
-//! In: an object. Out: its bounds in X and Y, of which the quadtree is built, and a bound on its
-//! inverse depth. A sphere's are the tangents from the eye, those of a triangle and of a box the
-//! extremes of their corners.
+//! In: an object. Out: its bounds in X and Y, from which the quadtree is built, and the maximum of
+//! its inverse depth. The bounds of a sphere are its tangents from the eye, those of a triangle and
+//! of a box the extremes of their corners.
 //!
-//! The bounds are those of the object's convex hull, and wider than all roundings on the way by far
-//! more than the last precision cannot tell: outside of them every decision says for certain that
-//! the object is missed.
+//! The bounds are those of the object's convex hull, widened by far more than all roundings and
+//! than the last precision can distinguish: outside of them, every decision certainly says that the
+//! object is missed.
 
 use super::{
-    camera::Camera, convex::Convex, cuboid, interval::Range, local_form::Patch, object::Object,
+    camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
     sphere::Sphere, triangle,
 };
 use crate::{
@@ -20,22 +20,21 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Of X and of Y where rays meet it.
-    pub across: [Range; 2],
-    /// No inverse depth of it is greater.
+    /// Ranges of X and of Y where rays meet the object.
+    pub across: [Interval; 2],
+    /// Maximum of the object's inverse depth.
     pub nearest: f64,
 }
 
-/// By how much of its terms a quotient is widened: a few roundings count for 2^−50 of them.
+/// Relative widening of a quotient, in units of its terms: a few roundings amount to 2^−50 of them.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Below this, products with roundings, 2^−53 of a number, may lose digits to the range of an
-/// `f64`, which ends at 1e-308 for whole ones.
-const LEAST: f64 = 1e-280;
+/// Number below which rounding errors, 2^−53 of a number, may lose digits to the range of an `f64`,
+/// whose normal numbers end at 1e-308.
+const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or a face of a box, with its bounds if it may be seen at all through the
-    /// window.
+    /// Prepares an object, or a face of a box, and bounds it if it may be seen through the window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -55,8 +54,8 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape) {
-            // All but flat to the eye, where slopes are no numbers of an X.
-            _ if ahead < LEAST => Hull::Unbounded,
+            // The view is so wide that the slopes of X are out of the range of numbers.
+            _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
             _ => corners.map_or(Hull::Unbounded, |corners| of_corners(&corners, ahead)),
@@ -66,7 +65,7 @@ impl Object<f64> {
             Hull::Ahead(extent) if extent.is_sound() => Some(extent),
             Hull::Ahead(_) | Hull::Unbounded => {
                 object.cover(&Patch::window(fast)).map(|cover| Extent {
-                    across: [Range::ALL; 2],
+                    across: [Interval::ALL; 2],
                     nearest: cover.inverse_depth.or_all().high,
                 })
             }
@@ -77,24 +76,24 @@ impl Object<f64> {
 
 /// The bounds of a convex hull.
 enum Hull {
-    /// All of it is behind the eye.
+    /// All of the hull is behind the eye.
     Behind,
-    /// All of it is before the eye.
+    /// All of the hull is in front of the eye.
     Ahead(Extent),
-    /// It is on both sides, or endless, or out of the range of numbers.
+    /// The hull is on both sides, or endless, or out of the range of numbers.
     Unbounded,
 }
 
 impl Extent {
-    /// Whether no number in it comes from an overflow.
+    /// Whether no overflow has spoilt the numbers.
     fn is_sound(&self) -> bool {
         self.across.iter().all(|range| range.low <= range.high) && self.nearest >= 0.0
     }
 }
 
-/// Two planes through the eye and along an axis touch the ball: in the plane across that axis it is
-/// a disc with the centre (c, z), to which two lines through the origin are tangent. Their slopes
-/// are (cz ± R √(c² + z² − R²))/(z² − R²).
+/// Bounds a sphere. Two planes through the eye and parallel to an axis of the picture touch the
+/// ball. In the plane across that axis the ball is a disc with the centre (c, z), to which two
+/// lines through the origin are tangent. Their slopes are (cz ± R √(c² + z² − R²))/(z² − R²).
 fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     let Some(([x, y, z], radius)) = sphere.ball() else {
         return Hull::Unbounded;
@@ -102,16 +101,16 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R are rounded once, so that their product and what it is added to are good in
-    // all their digits.
+    // z − R and z + R are rounded once, so that their product has a small relative error, and so
+    // has the sum with it.
     let below = (z - radius) * (z + radius);
-    if !(z > radius && below > LEAST) {
+    if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;
     }
     let across = [x, y].map(|c| {
         let (middle, reach) = (c * z, radius * (c * c + below).sqrt());
         let slack = (middle.abs() + reach) * QUOTIENT_SLACK;
-        Range {
+        Interval {
             low: (middle - reach - slack) / below * ahead,
             high: (middle + reach + slack) / below * ahead,
         }
@@ -122,9 +121,9 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     })
 }
 
-/// The slopes of a hull lie between those of its corners.
+/// Bounds a hull by its corners: its slopes lie between theirs.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
-    let mut across = [Range {
+    let mut across = [Interval {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
     }; 2];
@@ -132,13 +131,13 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     for corner in corners {
         let [x, y, z] = corner.each_ref().map(|ball| {
             let middle = ball.mid.to_f64();
-            Range::about(
+            Interval::about(
                 middle,
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // A minimum leaves out what is no number.
-        let is_finite = |range: &Range| range.low.is_finite() && range.high.is_finite();
+        // `min` and `max` would ignore NaN.
+        let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;
         }
@@ -154,8 +153,8 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // Not so where a number was lost.
-    if !(least > LEAST && greatest >= least) {
+    // False if an overflow has left NaN.
+    if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }
     Hull::Ahead(Extent {

@@ -1,54 +1,54 @@
 //! The camera: from a sample point to a ray's direction.
 //!
 //! All rays share the eye, so the tracer works in the camera's own axes: right (u), down (−v) and
-//! ahead (−w). There a ray's direction is r = (X, Y, Z) with X and Y proportional to the distance
-//! in pixels from the picture's centre, and Z = 1 but for the widest angles, where a power of two
-//! keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
+//! ahead (−w). In these axes a ray's direction is r = (X, Y, Z), where X and Y are proportional to
+//! the distance in pixels from the picture's centre. Z is 1, except in the widest views, where a
+//! power of two keeps X and Y within [−1, 1]. A point at λr has the depth λZ.
 
 use glam::{DVec2, DVec3};
 
 use crate::{
     area::Area,
     math::{Ball, Ball3, Big, Dyadic, Dyadic3, Radius, Real, UP},
-    scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View},
+    scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View, pixel_size},
 };
 
-/// The camera's axes and scale as real arithmetic makes them of the scene's numbers, rounded only
-/// at the end.
+/// The camera's axes and scale, computed exactly from the scene's numbers and rounded only at the
+/// end.
 #[derive(Clone, Debug)]
 pub struct Basis {
-    /// The picture's right.
+    /// Unit vector to the picture's right.
     pub u: [Big; 3],
-    /// The picture's top.
+    /// Unit vector to the picture's top.
     pub v: [Big; 3],
-    /// Against the view direction.
+    /// Unit vector against the view direction.
     pub w: [Big; 3],
     /// The side of a pixel at depth 1: view_height / (height · d).
     pub pitch: Big,
     /// Distance from the eye to the view plane, in metres.
     pub d: Big,
-    /// The exact sign of the view direction's y.
+    /// Exact sign of the view direction's y.
     pub looks: std::cmp::Ordering,
 }
 
-/// v/|v|, each component to the last bits of a [`Big`].
+/// Returns v/|v|, each component to the last bits of a [`Big`].
 fn normalized(v: &Dyadic3) -> [Big; 3] {
     let length = Dyadic::dot(v, v).to_big().sqrt();
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// a + b, which is nothing where no more is left of them than their roundings, at most four in
-/// each: a roll by 45 degrees takes equal numbers from each other.
+/// Returns a + b, or 0 if the sum is no larger than the terms' roundings, at most four in each: in
+/// a roll by 45 degrees, equal numbers cancel.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
-    match sum.magnitude() <= lost {
-        true => Big::from_f64(0.0),
-        false => sum,
+    if sum.magnitude() <= lost {
+        return Big::from_f64(0.0);
     }
+    sum
 }
 
-/// lookat − eye, or the direction, as it is.
+/// Returns lookat − eye, or the direction as it is written.
 fn view_direction(camera: &scene::Camera) -> Dyadic3 {
     match camera.view {
         View::Lookat(lookat) => Dyadic::between(camera.eye, lookat),
@@ -57,12 +57,12 @@ fn view_direction(camera: &scene::Camera) -> Dyadic3 {
 }
 
 impl Basis {
-    /// The basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
+    /// Computes the basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
     ///
     /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view
-    /// direction are. Where they are parallel, u = (h × up)/|h × up| with the [level
-    /// direction](scene::level_direction) h: that of the camera which looks along h and has the
-    /// same up.
+    /// direction are. If they are parallel, u = (h × up)/|h × up| with the [level
+    /// direction](scene::level_direction) h: the u of a camera that looks along h and has the same
+    /// up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = Dyadic::vector(camera.up);
@@ -83,45 +83,36 @@ impl Basis {
         };
         let turned = [0, 1, 2].map(|i| turned(&u[i], &v[i]));
 
-        let view_height = Big::from_f64(camera.view_height);
-        let slope = |angle| Big::from_f64(2.0).times(&Big::tan_half(angle));
-        let slope = match camera.lens {
-            Lens::Distance(d) => view_height.over(&Big::from_f64(d)),
-            Lens::Fov(angle) => slope(angle),
-            Lens::HorizontalFov(angle) => {
-                let [width, height] =
-                    [image.width, image.height].map(|pixels| Big::from_f64(f64::from(pixels)));
-                slope(angle).times(&height).over(&width)
-            }
-        };
+        let pitch = pixel_size(camera, image, Big::tan_half);
         let d = match camera.lens {
             Lens::Distance(d) => Big::from_f64(d),
-            _ => view_height.over(&slope),
+            Lens::Fov(_) | Lens::HorizontalFov(_) => Big::from_f64(camera.view_height)
+                .over(&Big::from_f64(image.height.into()).times(&pitch)),
         };
         Self {
             u: turned.each_ref().map(|(u, _)| u.clone()),
             v: turned.each_ref().map(|(_, v)| v.clone()),
             w,
-            pitch: slope.over(&Big::from_f64(f64::from(image.height))),
+            pitch,
             d,
             looks: forward[1].sign(),
         }
     }
 }
 
-/// The part of the picture's plane that sample points come from, as bounds on a ray's direction.
+/// Bounds on the directions of rays through sample points.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<R> {
-    /// Greatest |X|.
+    /// Maximum of |X|.
     pub x: R,
-    /// Greatest |Y|.
+    /// Maximum of |Y|.
     pub y: R,
-    /// Z.
+    /// The value of Z.
     pub z: R,
 }
 
 impl<R: Copy> Window<R> {
-    /// The three bounds.
+    /// Returns all three bounds.
     pub fn sizes(&self) -> [R; 3] {
         [self.x, self.y, self.z]
     }
@@ -130,59 +121,57 @@ impl<R: Copy> Window<R> {
 /// The camera in one precision.
 #[derive(Clone, Debug)]
 pub struct Camera<T: Real> {
-    /// Its eye, in the world.
+    /// The eye, in the world.
     pub eye: DVec3,
-    /// Lengths of the world are multiplied by two to this power, so that very large and very small
-    /// worlds stay within the range of `f64`; 0 for any other.
+    /// Binary logarithm of the factor by which lengths of the world are multiplied, so that very
+    /// large and very small worlds stay within the range of `f64`; 0 for all others.
     pub exponent: i32,
-    /// Right, down and ahead, in the world.
+    /// Unit vectors to the right, down and ahead, in the world.
     pub axes: [Ball3<T>; 3],
-    /// The side of a pixel, in units of X and Y.
+    /// Side of a pixel, in units of X and Y.
     pub pitch: T,
-    /// Z.
+    /// The Z of all directions.
     pub z: T,
     /// Half the picture's width and height, in pixels.
     pub half: DVec2,
-    /// Bounds on X and Y.
+    /// Bounds on the directions' X and Y.
     pub window: Window<T::Radius>,
 }
 
-/// A ray's direction (X, Y, Z) with its square; each of X and Y is off by at most 5
-/// [`UNIT`](Real::UNIT) of itself.
+/// A ray's direction (X, Y, Z) and its square. The relative error of X and of Y is at most 5
+/// [`UNIT`](Real::UNIT).
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
-    /// To the right.
+    /// X, to the right.
     pub x: T,
-    /// Down.
+    /// Y, down.
     pub y: T,
-    /// Ahead.
+    /// Z, ahead.
     pub z: T,
     /// X² + Y² + Z².
     pub square: T,
 }
 
-/// A point of the picture, in pixels from its centre, x to the right and y down; each coordinate is
-/// the exact sum of two numbers, since a pixel's centre and an offset from it do not always have an
-/// `f64` sum.
+/// A point of the picture, in pixels from its centre, x to the right and y down. Each coordinate is
+/// the exact sum of two numbers, since the sum of a pixel's centre and an offset from it need not
+/// be an `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// x.
+pub struct PicturePoint {
+    /// The coordinate x, as two summands.
     pub x: (f64, f64),
-    /// y.
+    /// The coordinate y, as two summands.
     pub y: (f64, f64),
 }
 
 impl<T: Real> Camera<T> {
-    /// The camera of a scene for sample points at most `reach` pixels from the picture's centre in
-    /// x and y.
+    /// Prepares the camera of a scene for sample points at most `reach` pixels from the picture's
+    /// centre in x and y.
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
-        // The power of two that brings the widest X or Y below 1; a narrow view needs none.
-        let exponent = match widest.to_f64() <= 1.0 {
-            true => 0,
-            false => widest.magnitude().exponent(),
-        };
+        // The power of two that brings the greatest X or Y below 1; a narrow view needs none.
+        let exponent = widest.magnitude().exponent();
+        let exponent = if widest.to_f64() <= 1.0 { 0 } else { exponent };
         let pitch = basis.pitch.scaled(-exponent);
         let z = Big::from_f64(1.0).scaled(-exponent);
         let extent = |pixels: f64| {
@@ -209,18 +198,18 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// The point at an offset from the centre of the pixel in column `x` and row `y`.
+    /// Returns the point at an offset from the centre of the pixel in column `x` and row `y`.
     #[inline]
-    pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> Point {
-        // Half-integers below 2^21: exact.
-        Point {
+    pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> PicturePoint {
+        // Half-integers below 2^21 are exact.
+        PicturePoint {
             x: (f64::from(x) + 0.5 - self.half.x, offset.x),
             y: (f64::from(y) + 0.5 - self.half.y, offset.y),
         }
     }
 
-    /// The middle of some pixels.
-    pub fn middle(&self, area: Area) -> Point {
+    /// Returns the centre of an area of pixels.
+    pub fn middle(&self, area: Area) -> PicturePoint {
         let middle = |start: u32, length: u32| f64::from(start) + 0.5 * f64::from(length);
         self.picture_point(DVec2::new(
             middle(area.x, area.width),
@@ -228,17 +217,17 @@ impl<T: Real> Camera<T> {
         ))
     }
 
-    /// The point so many pixels to the right of the picture's top left corner, and below it.
-    pub fn picture_point(&self, pixels: DVec2) -> Point {
-        Point {
+    /// Converts a point in pixels from the picture's top left corner, x to the right and y down.
+    pub fn picture_point(&self, pixels: DVec2) -> PicturePoint {
+        PicturePoint {
             x: (pixels.x, -self.half.x),
             y: (pixels.y, -self.half.y),
         }
     }
 
-    /// The direction of the ray through a point of the picture.
+    /// Returns the direction of the ray through a point of the picture.
     #[inline]
-    pub fn direction(&self, point: &Point) -> Direction<T> {
+    pub fn direction(&self, point: &PicturePoint) -> Direction<T> {
         let coordinate = |(a, b): (f64, f64)| T::difference(a, -b).times(&self.pitch);
         let (x, y) = (coordinate(point.x), coordinate(point.y));
         let square = x.times(&x).plus(&y.times(&y)).plus(&self.z.times(&self.z));
@@ -250,35 +239,34 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// A vector of the world in the camera's axes.
+    /// Rotates a vector of the world into the camera's axes.
     pub fn turned(&self, v: &Ball3<T>) -> Ball3<T> {
         self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
     }
 
-    /// A point of the world as seen from the eye: point − eye, formed without loss, in the world's
-    /// axes and scaled.
+    /// Returns point − eye, computed without loss, in the world's axes and scaled.
     pub fn relative(&self, point: DVec3) -> Ball3<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
 
-    /// One coordinate of such a point.
+    /// Returns one coordinate of a point as seen from the eye, scaled.
     pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
         Ball::difference(at, self.eye[axis]).scaled(self.exponent)
     }
 
-    /// A length of the world, scaled.
+    /// Scales a length of the world.
     pub fn length(&self, length: f64) -> Ball<T> {
         Ball::exact(length).scaled(self.exponent)
     }
 }
 
-/// Binary exponents between which lengths are left as they are: squares of lengths up to the
-/// greatest, and of all that are at least 2^−200 of the least, are well within the range of `f64`,
-/// which is 2^−1022 to 2^1024.
+/// Binary exponents of lengths that are not scaled. Squares of lengths up to the greatest of them,
+/// and of lengths down to 2^−200 of the least, are well within the range of `f64`, which is 2^−1022
+/// to 2^1024.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
-/// The power of two that brings the farthest lengths of a scene between those of [`LENGTHS`], 0 if
-/// they are.
+/// Returns the power of two that brings the greatest length of a scene into [`LENGTHS`]; 0 if it
+/// lies there already.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let far = |point: DVec3| (point - scene.camera.eye).abs().max_element();
     let farthest = scene.objects.iter().map(|object| match object.shape {

@@ -1,9 +1,9 @@
-//! What may be seen in a part of the picture.
+//! Conservative visibility: which objects may be seen in a part of the picture.
 //!
-//! In: the world, and a rectangle of its view plane. Out: the objects that are not certain to be
-//! missed or hidden there. The method is interval arithmetic: the range of each object's forms over
-//! the rectangle, widened by the errors of its decisions. An object that every ray of the rectangle
-//! meets hides all whose greatest inverse depth is below its least one.
+//! In: the world, and a rectangle of its view plane. Out: the objects that are not certainly missed
+//! or hidden there. The method is interval arithmetic: the range of each object's forms over the
+//! rectangle, widened by the error bounds of its decisions. An object that every ray of the
+//! rectangle meets hides all objects whose greatest inverse depth is below its own least one.
 
 use glam::DVec2;
 
@@ -11,8 +11,9 @@ use crate::area::Area;
 
 use super::{
     curve::Crossings,
-    interval::Range,
+    interval::Interval,
     local_form::Patch,
+    object::SurfaceKind,
     quadtree::{Nearness, Rectangle},
     sub_pixel::SubPixel,
     world::{Precision, World, depth_order},
@@ -20,28 +21,34 @@ use super::{
 
 /// An object that may be seen in a part of the picture.
 #[derive(Clone, Copy, Debug)]
-pub struct Candidate {
-    /// Its index in the file.
+pub struct VisibilityCandidate {
+    /// The object's index in the file.
     pub object: usize,
-    /// Whether every ray through the part meets it, between the near and the far plane.
+    /// Whether every ray through the part meets the object between the near and the far plane.
     pub is_whole: bool,
-    /// Holds the inverse depths of what may be seen of it.
-    pub(crate) inverse_depth: Range,
-    /// Where it may be seen: not only where rays meet it first if the near plane may cut it there.
+    /// Interval that contains the inverse depths of everything that may be seen of the object.
+    pub(crate) inverse_depth: Interval,
+    /// Crossings at which the object may be seen: not only the first if the near plane may cut the
+    /// object.
     pub(crate) crossings: Crossings,
-    /// Bounds of the object in the view plane: a patch beside them need not ask for more.
+    /// Bounds of the object in the view plane. Beside them a patch need not be examined.
     pub(super) bounds: Rectangle,
 }
 
-impl Candidate {
-    /// Whether the near plane may cut it.
+impl VisibilityCandidate {
+    /// Whether the near plane may cut the object.
     pub(crate) fn is_cut(&self) -> bool {
         self.crossings != Crossings::First
     }
 }
 
-/// Of some candidates, in file order, those that may be seen in a part of the picture.
-pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Candidate>) {
+/// Narrows a list of candidates, in file order, to those that may be seen in a part of the picture.
+pub fn narrowed(
+    world: &World,
+    part: Area,
+    among: &[VisibilityCandidate],
+    out: &mut Vec<VisibilityCandidate>,
+) {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch).unwrap_or(Rectangle::ALL);
     let near = among.iter().filter(|among| among.bounds.meets(&rectangle));
@@ -49,16 +56,16 @@ pub fn narrowed(world: &World, part: Area, among: &[Candidate], out: &mut Vec<Ca
     visible_of(world, &patch, objects, out);
 }
 
-/// All that may be seen in a part of the picture; whether that is so. It is not known of more than
-/// `most`, nor of those that are not worth it: of so many objects, and so many whose bounds a ray
-/// meets there, on average.
+/// Finds all objects that may be seen in a part of the picture. Returns `false`, and leaves `out`
+/// as it was, if there seem to be more than `most`, or if `is_worth` rejects them: it is given the
+/// number of objects, and the mean number whose bounds contain a ray through the part.
 #[must_use]
 pub fn within(
     world: &World,
     part: Area,
     most: usize,
     is_worth: impl FnOnce(usize, f64) -> bool,
-    out: &mut Vec<Candidate>,
+    out: &mut Vec<VisibilityCandidate>,
 ) -> bool {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let [near, far] = clips_over(world, &patch);
@@ -81,18 +88,19 @@ pub fn within(
     true
 }
 
-/// The inverse depths of the near and the far plane over a patch, where there are any.
-pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Range>; 2] {
+/// Returns the inverse depths of the near and the far plane over a patch; `None` for a plane that
+/// the scene does not have.
+pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Interval>; 2] {
     [&world.geometry.fast.near, &world.geometry.fast.far]
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-/// Of some objects, in file order, those that may be seen in a patch.
+/// Finds the objects that may be seen in a patch, among the given ones, which are in file order.
 pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = usize>,
-    out: &mut Vec<Candidate>,
+    out: &mut Vec<VisibilityCandidate>,
 ) {
     visible_of(
         world,
@@ -102,16 +110,17 @@ pub(crate) fn visible_among(
     );
 }
 
-/// The same of objects whose bounds are known.
+/// Finds the objects that may be seen in a patch, among the given ones with their bounds, in file
+/// order.
 fn visible_of(
     world: &World,
     patch: &Patch,
     among: impl Iterator<Item = (usize, Rectangle)>,
-    out: &mut Vec<Candidate>,
+    out: &mut Vec<VisibilityCandidate>,
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // The nearest of what is met everywhere hides what is farther.
+    // The nearest object that is met everywhere hides whatever is farther.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -132,17 +141,17 @@ fn visible_of(
     }
 }
 
-/// The object in a part of the picture, if it may be seen there.
+/// Returns an object as a candidate for a patch. Returns `None` if it is certainly not seen there.
 pub(super) fn cover(
     world: &World,
     index: usize,
     patch: &Patch,
-    near: Option<Range>,
-    far: Option<Range>,
-) -> Option<Candidate> {
+    near: Option<Interval>,
+    far: Option<Interval>,
+) -> Option<VisibilityCandidate> {
     let object = f64::object(&world.geometry, index);
     let cover = object.cover(patch)?;
-    let mut candidate = Candidate {
+    let mut candidate = VisibilityCandidate {
         object: index,
         is_whole: cover.is_whole,
         inverse_depth: cover.inverse_depth.or_all(),
@@ -154,7 +163,7 @@ pub(super) fn cover(
     {
         let behind = match object.behind(patch) {
             Some(behind) => behind.or_all(),
-            // It has but one surface, which the near plane takes away as a whole or in part.
+            // The object has a single surface, which the near plane removes wholly or in part.
             None if candidate.inverse_depth.low > near.high => return None,
             None => candidate.inverse_depth,
         };
@@ -180,15 +189,18 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that lie behind the nearest one all over the patch, though their depths
-/// there overlap, or in the same plane as one that comes before them in the file. Of layers the
-/// nearest one hides all others; of those in one plane it is the first.
-fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
-    let is_flat = |candidate: &&Candidate| {
+/// Removes flat objects that lie behind the nearest one all over the patch although their depths
+/// there overlap, and those in one plane with an object earlier in the file. Of parallel layers the
+/// nearest hides all others; of objects in one plane the first in the file does.
+fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
+    let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);
-        object.convex().is_ok()
+        match object.surface_kind() {
+            SurfaceKind::Flat(_) => true,
+            SurfaceKind::Round(_) => false,
+        }
     };
-    let may_cover = |candidate: &&Candidate| candidate.is_whole && !candidate.is_cut();
+    let may_cover = |candidate: &&VisibilityCandidate| candidate.is_whole && !candidate.is_cut();
     let fronts = candidates.iter().filter(may_cover).filter(is_flat);
     let nearest = fronts.max_by(|a, b| {
         let nearer = a.inverse_depth.low.total_cmp(&b.inverse_depth.low);
@@ -201,41 +213,46 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<Candidate>) {
     }
 }
 
-/// Whether an object that every ray through a patch meets hides another there by the forms of their
-/// planes.
+/// Whether an object that every ray through a patch meets hides another one there, decided by the
+/// forms of their planes.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
-    let (Ok(a), Ok(b)) = (a.convex(), b.convex()) else {
-        return false;
+    let (a, b) = match (a.surface_kind(), b.surface_kind()) {
+        (SurfaceKind::Flat(a), SurfaceKind::Flat(b)) => (a, b),
+        (SurfaceKind::Round(_), _) | (SurfaceKind::Flat(_), SurfaceKind::Round(_)) => return false,
     };
     let ahead = |i: usize, j: usize| {
         let (front_face, back_face) = (&a.firsts()[i], &b.firsts()[j]);
         front_face.minus(back_face).over(patch).low > 0.0
-            // Only planes that are equal in `f64` can be one.
+            // Only planes whose forms are equal in `f64` can be the same plane.
             || front < back && front_face.equals(back_face) && {
                 let parts = ((front, a.part(i)), (back, b.part(j)));
                 depth_order::is_one_plane(&world.geometry, parts.0, parts.1)
             }
     };
     let fronts = 0..a.firsts().len();
-    let is_behind = |j: usize| match a.is_inside() {
-        true => fronts.clone().any(|i| ahead(i, j)),
-        false => fronts.clone().all(|i| ahead(i, j)),
+    let is_behind = |j: usize| {
+        if a.is_inside() {
+            fronts.clone().any(|i| ahead(i, j))
+        } else {
+            fronts.clone().all(|i| ahead(i, j))
+        }
     };
     let mut backs = 0..b.firsts().len();
-    match b.is_inside() {
-        true => backs.all(is_behind),
-        false => backs.any(is_behind),
+    if b.is_inside() {
+        return backs.all(is_behind);
     }
+    backs.any(is_behind)
 }
 
-/// The object that is seen at a point of a sub-pixel, of some that may be; and whether the last
-/// precision was not asked, in which what it does not tell apart counts as equal.
+/// Returns the object that is seen at a point of a sub-pixel, among the candidates; and whether the
+/// answer was found before the last precision, in which inverse depths that cannot be told apart
+/// count as equal.
 pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,
     at: DVec2,
-    candidates: impl Iterator<Item = &'a Candidate> + Clone,
+    candidates: impl Iterator<Item = &'a VisibilityCandidate> + Clone,
 ) -> (Option<usize>, bool) {
     let offset = sub_pixel.offset(at);
     let camera = &world.geometry.fast.camera;

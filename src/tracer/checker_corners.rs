@@ -1,13 +1,13 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
-//! In: a block of pixels in which a board is all that is seen. Out: runs of pixels that show one
-//! colour, and the squares that each other pixel shows.
+//! In: a block of pixels in which nothing but one board is seen. Out: runs of pixels that show one
+//! colour, and for every other pixel the squares that it shows.
 //!
-//! Where a board alone is seen, most parts of the picture end as pixels, which have their corners
-//! in common. So the squares that the corners of a block lie in are computed row by row, in plain
-//! arrays, which the compiler makes vectors of: a ratio of linear forms is the greatest and the
-//! least at corners, and a pixel whose corners lie in one square, each farther from its edge than
-//! errors reach, shows nothing else.
+//! Where only a board is seen, quartering mostly ends at single pixels, and neighbouring pixels
+//! share corners. The squares that contain the corners of a block are therefore computed row by row
+//! in plain arrays, which the compiler vectorizes. A ratio of linear forms takes its extremes at
+//! corners, so a pixel whose corners lie in one square, each farther from the square's edge than
+//! the error bound, shows nothing else.
 
 use std::{array, ops::ControlFlow};
 
@@ -24,68 +24,69 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// The form below a quotient is at least so many times as great as its error: then (a ± e)/(l ± f)
-/// is within 4/3 of (e + f·|a/l|)/l of a/l, and this takes the place of the 4/3.
-const CLEAR: f64 = 4.0;
+/// Minimum ratio of a quotient's denominator to the denominator's error. From 4 on, (a ± e)/(l ± f)
+/// is within 4/3 of (e + f·|a/l|)/l of a/l; the number itself is used instead of the 4/3.
+const MIN_CLEARANCE: f64 = 4.0;
 
-/// Places that are off by more than this, in squares, tell nothing worth having: only the half of
-/// each square that is away from its lines would be certain.
-const UNSURE: f64 = 0.25;
+/// Error of a board coordinate, in squares, from which on it is useless: at 1/4, only the half of
+/// each square that is away from its edges would be certain.
+const MAX_ERROR: f64 = 0.25;
 
-/// The greatest side of a block, in pixels: that of the squares that quartering begins with.
+/// Maximum side of a block, in pixels: the side of the squares that quartering begins with.
 pub(super) const SIDE: usize = 32;
 
-/// Its corners in a row, 33, and so many more that vectors of eight make them up.
+/// Number of corners in a row: 33 are needed, rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
-/// The squares of a board that a pixel shows.
+/// The squares of a board that one pixel shows.
 #[derive(Clone, Copy, Debug)]
-pub struct Checks {
-    pub(crate) squares: Squares,
-    /// The squares of its corners, in x and in z: above on the left and on the right, and below.
+pub struct CheckerPixel {
+    pub(crate) squares: CheckerForms,
+    /// The squares of the four corners, in x and in z: top left, top right, bottom left, bottom
+    /// right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the corners are certain to lie in these squares. If not, lines of the board
-    /// displaced by no more than the forms of `squares` may be off have the corners in them.
+    /// Whether the corners certainly lie in these squares. If not, they do so for lines of the
+    /// board that are displaced by no more than the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
 /// A block of pixels in which nothing but one board is seen.
-struct Mesh {
+struct BoardBlock {
     block: Area,
-    squares: Squares,
-    /// How far from the edges of squares corners must lie, in x and in z.
+    squares: CheckerForms,
+    /// Minimum distance of a corner from the edges of its square, in x and in z, in squares.
     slack: [f64; 2],
-    /// The corners' columns, in units of the block's width from its centre.
+    /// The columns of the corners, in units of the block's width from its centre.
     columns: [f64; LANES],
 }
 
-/// A row of corners.
+/// One row of corners.
 struct CornerRow {
-    /// Their squares in x and in z; NaN where that is not certain.
+    /// The square of each corner, in x and in z; NaN if it is uncertain.
     squares: [[f64; LANES]; 2],
-    /// 1, or −1 in the squares of the second colour, if the board begins with the first.
+    /// The sign of each corner's square: 1, or −1 for squares of the other parity.
     sign: [f64; LANES],
 }
 
-/// What pixels show of a board.
+/// What some pixels show of a board.
 #[derive(Clone, Copy, Debug)]
-pub enum Shown<'a> {
-    /// One square, or squares of one colour side by side; whether that is the second.
+pub enum ShownSquares<'a> {
+    /// One square, or adjacent squares of one colour; `true` for the second colour.
     One(bool),
-    /// A few squares of one pixel.
-    Squares(&'a Checks),
-    /// One pixel, of which that is not known.
+    /// A few squares, in one pixel.
+    Squares(&'a CheckerPixel),
+    /// One pixel in which the squares are not known.
     Unknown,
 }
 
-/// Tells `each` what the pixels of a part of the picture, in which a checkerboard is all that is
-/// seen, show of it: in runs of one colour and singly. `None` if the object is none or the board
-/// too far. The part's sides are at most [`SIDE`].
+/// Calls `each` with what the pixels of a part of the picture show of a checkerboard, in runs of
+/// one colour and pixel by pixel. Nothing else may be seen in the part, whose sides are at most
+/// [`SIDE`]. Returns `None` if the object is no checkerboard, or if the board is too far away.
 pub fn show(
     world: &World,
     part: Area,
     object: usize,
-    each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
+    each: &mut impl FnMut(Area, ShownSquares) -> ControlFlow<()>,
 ) -> Option<ControlFlow<()>> {
     let Object::Checkerboard(board) = &*Double::object(&world.geometry, object) else {
         return None;
@@ -94,12 +95,12 @@ pub fn show(
     let sides = [part.width, part.height]
         .map(|pixels| camera.pitch.times(&Double::from_f64(f64::from(pixels))));
     let board = board.local(&camera.direction(&camera.middle(part)), &sides);
-    let mesh = Mesh::new(Squares::new(&board), part)?;
+    let board_block = BoardBlock::new(CheckerForms::new(&board), part)?;
     let [mut above, mut below] = [CornerRow::new(), CornerRow::new()];
-    mesh.corners(0, &mut above);
+    board_block.corners(0, &mut above);
     for row in 0..part.height {
-        mesh.corners(row + 1, &mut below);
-        let flow = mesh.row(row, &above, &below, each);
+        board_block.corners(row + 1, &mut below);
+        let flow = board_block.row(row, &above, &below, each);
         if flow.is_break() {
             return Some(flow);
         }
@@ -116,22 +117,23 @@ impl CornerRow {
         }
     }
 
-    /// The squares of a corner.
+    /// Returns the squares of a corner.
     fn at(&self, column: usize) -> [f64; 2] {
         [self.squares[0][column], self.squares[1][column]]
     }
 }
 
-impl Mesh {
-    /// `None` if the board is too far for its squares to be told apart so.
-    fn new(squares: Squares, block: Area) -> Option<Self> {
-        let Squares { across, .. } = squares;
+impl BoardBlock {
+    /// Prepares a block. Returns `None` if the board is too far away for its squares to be told
+    /// apart.
+    fn new(squares: CheckerForms, block: Area) -> Option<Self> {
+        let CheckerForms { across, .. } = squares;
         let least = squares.least()?;
         let slack = across.map(|across| {
             let greatest = (across.factors[2].abs() + across.spread() + across.rad) / least;
             squares.slack(&across, greatest, least)
         });
-        if !slack.iter().all(|&slack| slack < UNSURE) {
+        if !slack.iter().all(|&slack| slack < MAX_ERROR) {
             return None;
         }
         let mut columns = [0.0; LANES];
@@ -155,7 +157,7 @@ impl Mesh {
     #[inline(always)]
     fn evaluate(&self, y: f64, length: usize, out: &mut CornerRow) {
         const ONE: u64 = 1.0f64.to_bits();
-        let Squares { across, below, .. } = &self.squares;
+        let CheckerForms { across, below, .. } = &self.squares;
         let [n0, n1, l] = [&across[0], &across[1], below].map(|local| {
             let [a, b, c] = local.factors;
             (a, b * y + c)
@@ -186,13 +188,13 @@ impl Mesh {
         }
     }
 
-    /// Tells `each` the pixels of a row between two rows of corners.
+    /// Calls `each` with the pixels of a row that lies between two rows of corners.
     fn row(
         &self,
         row: u32,
         above: &CornerRow,
         below: &CornerRow,
-        each: &mut impl FnMut(Area, Shown) -> ControlFlow<()>,
+        each: &mut impl FnMut(Area, ShownSquares) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let mut shown = [0.0; SIDE];
         compare_simd(above, below, &mut shown);
@@ -208,8 +210,8 @@ impl Mesh {
             };
             if sign == 0.0 {
                 match self.checks(row, first, above, below) {
-                    Some(checks) => each(area, Shown::Squares(&checks))?,
-                    None => each(area, Shown::Unknown)?,
+                    Some(checks) => each(area, ShownSquares::Squares(&checks))?,
+                    None => each(area, ShownSquares::Unknown)?,
                 }
                 first += 1;
                 continue;
@@ -217,20 +219,20 @@ impl Mesh {
             let rest = shown[first..].iter();
             let length = rest.take_while(|&&other| other == sign).count();
             area.width = length as u32;
-            each(area, Shown::One((sign < 0.0) ^ self.squares.odd))?;
+            each(area, ShownSquares::One((sign < 0.0) ^ self.squares.odd))?;
             first += length;
         }
         ControlFlow::Continue(())
     }
 
-    /// What a pixel shows: the squares in which its corners lie, or probably lie.
+    /// Returns the squares in which the corners of a pixel certainly or probably lie.
     fn checks(
         &self,
         row: u32,
         column: usize,
         above: &CornerRow,
         below: &CornerRow,
-    ) -> Option<Checks> {
+    ) -> Option<CheckerPixel> {
         let certain = [
             above.at(column),
             above.at(column + 1),
@@ -238,9 +240,10 @@ impl Mesh {
             below.at(column + 1),
         ];
         let is_certain = !certain.as_flattened().iter().any(|square| square.is_nan());
-        let (corners, doubt) = match is_certain {
-            true => (certain, [0.0; 2]),
-            false => self.probable(certain, column, row)?,
+        let (corners, doubt) = if is_certain {
+            (certain, [0.0; 2])
+        } else {
+            self.probable(certain, column, row)?
         };
         let Area { width, height, .. } = self.block;
         let x = middle(2 * column as u32 + 1, width);
@@ -248,11 +251,11 @@ impl Mesh {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The form of the block is off by its error, and the value at the pixel's centre by as
-            // much again.
+            // The error of the block's form counts once for the factors and once for the value at
+            // the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
-        let Squares { across, below, odd } = &self.squares;
+        let CheckerForms { across, below, odd } = &self.squares;
         let below = local(below);
         let mut across = across.each_ref().map(local);
         if !is_certain {
@@ -261,8 +264,8 @@ impl Mesh {
                 across.rad += doubt * greatest * UP;
             }
         }
-        Some(Checks {
-            squares: Squares {
+        Some(CheckerPixel {
+            squares: CheckerForms {
                 across,
                 below,
                 odd: *odd,
@@ -272,9 +275,9 @@ impl Mesh {
         })
     }
 
-    /// Fills in the squares in which a pixel's corners probably lie, and returns how far any of
-    /// them may lie from the line next to it, in squares. Returns `None` if a quotient is no
-    /// number.
+    /// Fills in the squares in which a pixel's corners probably lie, and returns the maximum
+    /// distance, in squares, of such a corner from the nearest line. Returns `None` if a quotient
+    /// is not finite.
     #[cold]
     fn probable(
         &self,
@@ -303,8 +306,8 @@ impl Mesh {
     }
 }
 
-impl Checks {
-    /// From which to which square there are any in the pixel, in x and in z.
+impl CheckerPixel {
+    /// Returns the first and the last square in the pixel, in x and in z.
     pub(crate) fn ranges(&self) -> [(f64, f64); 2] {
         self.corners.map(|squares| {
             let low = squares.into_iter().fold(f64::INFINITY, f64::min);
@@ -314,8 +317,8 @@ impl Checks {
     }
 }
 
-/// Where so many half pixels lie from the left or from the top, in units of the block's side from
-/// its centre.
+/// Position of `halves` half pixels from the left or the top, in units of the block's side from its
+/// centre.
 fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
@@ -324,11 +327,11 @@ fn middle(halves: u32, pixels: u32) -> f64 {
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
 ))]
-fn corners_simd(mesh: &Mesh, y: f64, length: usize, out: &mut CornerRow) {
-    mesh.evaluate(y, length, out);
+fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut CornerRow) {
+    board_block.evaluate(y, length, out);
 }
 
-/// The sign of each pixel whose corners lie in one square, and 0 for all others.
+/// Writes the sign of each pixel whose corners all lie in one square, and 0 for all other pixels.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -343,18 +346,19 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     }
 }
 
-/// Squares of a checkerboard: N₀/ℓ and N₁/ℓ, rounded down.
+/// The position on a checkerboard as ratios of forms: x = N₀/ℓ and z = N₁/ℓ, in squares. Rounded
+/// down, they are the indices of a square.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Squares {
+pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
     pub(crate) below: LocalForm,
     pub(crate) odd: bool,
 }
 
-/// The corners of a pixel, or of a part of the picture, from its middle.
+/// Offsets of the corners of a pixel, or of another rectangle, from its centre.
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
-impl Squares {
+impl CheckerForms {
     pub(super) fn new(board: &LocalBoard) -> Self {
         let [a, b, below] = board.rads;
         Self {
@@ -367,25 +371,25 @@ impl Squares {
         }
     }
 
-    /// The least value of ℓ in the pixel, if it is clearly positive.
+    /// Returns the least value of ℓ over the pixel. Returns `None` if it is not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
-        (least > CLEAR * self.below.rad).then_some(least)
+        (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// How far a computed quotient may be from the true one, if it is no greater than this.
+    /// Bounds the error of a computed quotient whose magnitude is at most `greatest`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
-        let inherited = (across.rad + greatest * self.below.rad) * CLEAR / least;
+        let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
-    /// From which to which square there are any in the pixel, in x and in z: perhaps one square
-    /// more than there are. `None` if that is not certain.
+    /// Returns the first and the last square in the pixel, in x and in z, with at most one square
+    /// too many at each end. Returns `None` if they are uncertain.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms is the greatest and the least at corners.
+            // A ratio of linear forms takes its extremes at corners.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]
@@ -394,13 +398,13 @@ impl Squares {
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let size = low.abs().max(high.abs());
             let slack = self.slack(across, size, least);
-            (slack < UNSURE).then(|| (floor(low - slack), floor(high + slack)))
+            (slack < MAX_ERROR).then(|| (floor(low - slack), floor(high + slack)))
         });
         Some([x?, z?])
     }
 }
 
 pub(super) fn is_odd(whole: f64) -> bool {
-    // `ranges` answers for numbers far below 2^53.
+    // `ranges` returns only numbers far below 2^53.
     whole as i64 & 1 == 1
 }

@@ -2,9 +2,9 @@
 //!
 //! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour
 //! there. Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of
-//! linear forms, N/ℓ. The eye's whole squares are kept apart, since only their parity matters: far
-//! from the origin they would cost N its precision. Errors: those of the forms; a ratio whose error
-//! reaches a whole number is in doubt.
+//! linear forms, N/ℓ. Of the eye's position in whole squares only the parity matters, and it is
+//! kept apart: far from the origin the whole number would cost N its precision. Errors: those of
+//! the forms; a ratio whose error interval contains a whole number is in doubt.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -16,43 +16,42 @@ use crate::{
     scene,
 };
 
-/// From how many squares on a board is not moved nearer: from 2^52 on a rounded quotient may not be
-/// the nearest whole number.
+/// Number of squares from which on the origin of a board is not moved: a rounded quotient of 2^52
+/// or more need not be the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Real> {
-    /// Its plane, which a ray meets where ℓ, its inverse depth, is positive.
+    /// The board's plane, which a ray meets where ℓ, the plane's inverse depth, is positive.
     pub plane: Convex<T>,
-    /// ℓ in the unit of N, a power of two that is right for the eye's height.
+    /// ℓ in the unit of N: scaled by a power of two that suits the eye's height.
     pub below: Form<T>,
-    /// N for x and for z, each measured from the whole square nearest to the eye.
+    /// N for x and for z, each measured from the line between squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether those two whole squares' sum is odd.
+    /// Whether the sum of these two lines' indices is odd.
     pub odd: bool,
 }
 
-/// A checkerboard in a pixel, a part of one, or a rectangle of pixels: the point (x, y), from its
-/// centre in units of its sides, shows the board's point (N₀/ℓ, N₁/ℓ), in squares from a corner of
-/// squares nearby, where ℓ > 0.
+/// A checkerboard in a pixel, in a part of one, or in a rectangle of pixels. The point (x, y), from
+/// the centre and in units of the sides, shows the point (N₀/ℓ, N₁/ℓ) of the board, in squares from
+/// a nearby corner of squares, where ℓ > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// The factors of x, y and 1 in N₀ and N₁; in the last precision, whose numbers `f64` need not
-    /// hold, all forms are scaled to be about 1.
+    /// Factors of x, y and 1 in N₀ and N₁. In the last precision, whose numbers may exceed the
+    /// range of `f64`, all forms are scaled to about 1.
     pub across: [[f64; 3]; 2],
-    /// Those of ℓ.
+    /// Factors of x, y and 1 in ℓ.
     pub below: [f64; 3],
-    /// How far a value of each of these forms may be from the true one, but for the rounding of
-    /// the factors.
+    /// Error bounds of the values of N₀, N₁ and ℓ, except for the rounding of the factors.
     pub rads: [f64; 3],
     /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
 }
 
 impl<T: Real> Checkerboard<T> {
-    /// Prepares a checkerboard; `None` if its plane holds the eye, which sees it edge-on: not at
-    /// all.
+    /// Prepares a checkerboard. Returns `None` if its plane contains the eye, which sees nothing of
+    /// it.
     pub fn new(camera: &Camera<T>, shape: &scene::Checkerboard) -> Option<Self> {
         let scene::Checkerboard { y, square, .. } = *shape;
         if y == camera.eye.y {
@@ -98,9 +97,9 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// The board about a ray, in units of the sides of what lies there of the picture. A multiple
-    /// of ℓ is subtracted from N₀ and N₁, which moves the origin near: the one that makes them
-    /// small at the corner where ℓ is largest (elsewhere it may be next to 0).
+    /// Expands the board about a ray, in units of the sides of a rectangle of the picture. A
+    /// multiple of ℓ is subtracted from N₀ and N₁, which moves the origin nearby. It is the one
+    /// that makes N₀ and N₁ small at the corner where ℓ is greatest; elsewhere ℓ may be almost 0.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
@@ -119,36 +118,34 @@ impl<T: Real> Checkerboard<T> {
                 return (factors, own_rad);
             }
             odd ^= times as i64 & 1 == 1;
-            let often = T::from_f64(times);
-            let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&often)));
-            // The error of ℓ is at least 12 roundings of it, so that twice as much is enough for
-            // those of the product and the difference, too.
+            let multiple = T::from_f64(times);
+            let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
+            // The error of ℓ is at least 12 of its roundings, so that twice as much also covers the
+            // roundings of the product and the difference.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
-        let forms = [a, b, (below, rad)];
-        let sizes = forms.iter().flat_map(|(factors, _)| factors);
-        let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
-        let scaled = |c: &T| match T::LAST {
-            true => c.scaled(-size.exponent()).to_f64(),
-            false => c.to_f64(),
-        };
-        let [a, b, below] = forms
-            .each_ref()
-            .map(|(factors, _)| factors.each_ref().map(scaled));
+        let mut forms = [a, b, (below, rad)];
+        if T::LAST {
+            let sizes = forms.iter().flat_map(|(factors, _)| factors);
+            let size = sizes.fold(T::Radius::ZERO, |size, factor| size.max(factor.magnitude()));
+            for (factors, rad) in &mut forms {
+                *factors = factors.each_ref().map(|c| c.scaled(-size.exponent()));
+                *rad = rad.scaled(-size.exponent());
+            }
+        }
+        let rads = forms.each_ref().map(|(_, rad)| rad.to_f64());
+        let [a, b, below] = forms.map(|(factors, _)| factors.each_ref().map(Real::to_f64));
         LocalBoard {
             across: [a, b],
             below,
-            rads: forms.map(|(_, rad)| match T::LAST {
-                true => rad.scaled(-size.exponent()).to_f64(),
-                false => rad.to_f64(),
-            }),
+            rads,
             odd,
         }
     }
 }
 
 impl Checkerboard<Double> {
-    /// The same checkerboard for `f64`.
+    /// Rounds the checkerboard to `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Checkerboard<f64> {
         Checkerboard {
             plane: self.plane.narrowed(window),
@@ -159,9 +156,9 @@ impl Checkerboard<Double> {
     }
 }
 
-/// A coordinate of the eye as whole squares and a rest.
+/// A coordinate of the eye as a whole number of squares and a remainder.
 struct EyeOffset {
-    /// The rest, at most half a square either way.
+    /// The remainder, at most half a square in magnitude.
     rest: f64,
     /// Whether the number of whole squares is odd.
     odd: bool,
@@ -170,8 +167,8 @@ struct EyeOffset {
 impl EyeOffset {
     /// Splits a coordinate without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // The remainder of f64 is exact, by infinity too, and so are the differences of numbers
-        // within a factor of two (Sterbenz).
+        // The remainder operation of f64 is exact, also by infinity, and so are differences of
+        // numbers within a factor of two of each other (Sterbenz).
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {
             size if size < square * 0.5 => 0,

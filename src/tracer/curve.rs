@@ -1,71 +1,72 @@
-//! The curves that bound what is seen in a pixel, or in a part of one: lines and conics.
+//! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and where
-//! they cross each other, as curves in the coordinates of that sub-pixel. Outlines of spheres are Q
-//! = 0 (`sphere`); two planes cross where their inverse depths are equal, a plane and a
-//! sphere in the circle's cone, two spheres in their radical plane.
+//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and the
+//! curves where their depths are equal, in the coordinates of that sub-pixel. The outline of a
+//! sphere is Q = 0 (`sphere`). Two planes cross where their inverse depths are equal, a plane and a
+//! sphere in the cone of a circle, two spheres in their radical plane.
 //!
-//! Errors: each form is prepared anew in the sub-pixel's coordinates and in high precision, with a
-//! bound on its values there, so that what is left is good to the last bit of an `f64` however far
-//! the sub-pixel is from the picture's centre.
+//! Errors: each form is computed anew in the sub-pixel's coordinates and in high precision, with an
+//! error bound for its values there. The result is therefore right to the last bits of an `f64`,
+//! however far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
-use super::{camera::Camera, form::Form, interval::Range, sphere::Sphere, sub_pixel::SubPixel};
+use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// The error of a line's form, in units of its greatest slope, from which on double-double was not
-/// enough: eight roundings of an `f64`, more than the three of its factors come to.
+/// Error of a line's form, in units of its greatest slope, from which on double-double was not
+/// precise enough: eight roundings of an `f64`, more than the three of its factors amount to.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
-/// A boundary in a pixel.
+/// A curve that separates objects in a pixel.
 #[derive(Clone, Debug)]
-pub enum Curve {
+pub enum Boundary {
     /// A line.
-    Line(Line),
+    Line(BoundaryLine),
     /// A conic.
     Conic(Conic),
 }
 
 /// The line ax + by + c = 0, the greater of |a| and |b| being 1.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
-    /// a, b and c.
+pub struct BoundaryLine {
+    /// The factors a, b and c.
     pub factors: [f64; 3],
-    /// How far a value of the form may be from the true one, in the pixel.
+    /// Error bound of the form's values in the pixel.
     pub rad: f64,
 }
 
-/// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, the greatest of its factors being about 1.
+/// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0; the greatest factor is about 1 in magnitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Conic {
-    /// A, B, C, D, E and F.
+    /// The factors A, B, C, D, E and F.
     pub factors: [Double; 6],
-    /// How far a value of the form may be from the true one, in the pixel.
+    /// Error bound of the form's values in the pixel.
     pub rad: f64,
 }
 
-/// A surface, as far as it matters where it crosses another one.
+/// The inverse depth of a surface, as a function of the point of the picture.
 #[derive(Debug)]
-pub enum Surface<'a, T: Real> {
-    /// The plane with an inverse depth.
+pub enum InverseDepth<'a, T: Real> {
+    /// A plane's: a linear form.
     Plane(&'a Form<T>),
-    /// A sphere.
+    /// A sphere's: linear plus the root of a quadratic form.
     Sphere(&'a Sphere<T>),
 }
 
-/// Which crossings of a ray with an object.
+/// The crossings of a ray with an object that are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossings {
-    /// The first one.
+    /// The first crossing.
     First,
-    /// The second one.
+    /// The second crossing.
     Second,
-    /// Both.
+    /// Both crossings.
     Both,
 }
 
-/// A linear form of x, y and 1, and a quadratic one of x², 2xy, y², 2x, 2y and 1.
+/// A linear form: factors of x, y and 1.
 type Linear<T> = [Ball<T>; 3];
+/// A quadratic form: factors of x², 2xy, y², 2x, 2y and 1.
 type Quadratic<T> = [Ball<T>; 6];
 
 /// A sub-pixel in one precision.
@@ -73,15 +74,15 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction through its centre.
     center: Ball3<T>,
-    /// Its side.
+    /// Its side, in units of X and Y.
     pitch: Ball<T>,
 }
 
 impl<T: Real> SubPixelFrame<T> {
-    /// The place of a sub-pixel.
+    /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // Five roundings in a coordinate, and its pitch.
+        // Five roundings in a coordinate, and those of the pitch.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -92,8 +93,8 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// A form's zero line.
-    pub fn line(&self, form: &Form<T>) -> Curve {
+    /// Returns the zero line of a form.
+    pub fn line(&self, form: &Form<T>) -> Boundary {
         let (factors, rad) = self.local(form);
         line(&factors, rad)
     }
@@ -106,14 +107,13 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// The outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface the line c·r =
-    /// 0 that bounds it then.
+    /// Returns the outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface, the
+    /// line c·r = 0 instead.
     ///
-    /// For one outside that line comes as well. No ray on it meets the sphere; but of the conic's
-    /// two branches, in front of the eye and behind it, which lie on either side of it, no
-    /// precision tells the one from the other where the sphere is a plane but for its 1e-200th
-    /// part.
-    pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Curve> {
+    /// For an eye outside, the line c·r = 0 is returned as well. No ray on it meets the sphere, but
+    /// it separates the conic's two branches, in front of the eye and behind it. If the sphere is a
+    /// plane except for a 1e-200th part, no precision tells these branches apart.
+    pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -130,30 +130,30 @@ impl<T: Real> SubPixelFrame<T> {
         curves
     }
 
-    /// Where two surfaces cross, if it is on a curve: rays that meet both at the same depth.
-    pub fn crossing(&self, a: &Surface<T>, b: &Surface<T>) -> Option<Curve> {
+    /// Returns the curve of rays that meet two surfaces at the same depth, if there is one.
+    pub fn crossing(&self, a: &InverseDepth<T>, b: &InverseDepth<T>) -> Option<Boundary> {
         match (a, b) {
-            (Surface::Plane(a), Surface::Plane(b)) if a.equals(b) => None,
-            (Surface::Plane(a), Surface::Plane(b)) => Some(self.line(&a.minus(b))),
-            (Surface::Plane(plane), Surface::Sphere(sphere))
-            | (Surface::Sphere(sphere), Surface::Plane(plane)) => {
+            (InverseDepth::Plane(a), InverseDepth::Plane(b)) if a.equals(b) => None,
+            (InverseDepth::Plane(a), InverseDepth::Plane(b)) => Some(self.line(&a.minus(b))),
+            (InverseDepth::Plane(plane), InverseDepth::Sphere(sphere))
+            | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // In the sphere's unit of inverse depth. Its scale is within the range of an f64,
-                // its inverse need not be.
+                // In the sphere's unit of inverse depth. Its scale is within the range of an f64;
+                // the inverse of the scale need not be.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
             }
-            (Surface::Sphere(a), Surface::Sphere(b)) => self.spheres(a, b),
+            (InverseDepth::Sphere(a), InverseDepth::Sphere(b)) => self.spheres(a, b),
         }
     }
 
     /// Two spheres cross in their radical plane: |q − c|² − R² is the same for both where 2 (c' −
     /// c)·q = C' − C.
-    fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Curve> {
+    fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // To one unit.
+        // Both spheres in one unit.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -171,12 +171,12 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// The circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r, |hr − (n·r)c|² = R²
-    /// (n·r)².
+    /// Returns the cone of the circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r,
+    /// |hr − (n·r)c|² = R² (n·r)².
     ///
-    /// Written so, it is a sum of squares that are small where the circle is, and does not cancel
-    /// for a small and far sphere.
-    fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Curve {
+    /// In this form it is a sum of squares that are small where the circle is, so it does not
+    /// cancel for a small and far sphere.
+    fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -184,7 +184,7 @@ impl<T: Real> SubPixelFrame<T> {
         conic(&[0, 1, 2, 3, 4, 5].map(|i| &outside[i] - square * &inside[i]))
     }
 
-    /// The components of r as linear forms.
+    /// Returns the components of r as linear forms.
     fn directions(&self) -> [Linear<T>; 3] {
         let [x, y, z] = self.center.clone();
         let zero = || Ball::exact(0.0);
@@ -195,7 +195,7 @@ impl<T: Real> SubPixelFrame<T> {
         ]
     }
 
-    /// v·r as a linear form.
+    /// Returns v·r as a linear form.
     fn along(&self, v: &Ball3<T>) -> Linear<T> {
         [
             &v[0] * &self.pitch,
@@ -205,41 +205,39 @@ impl<T: Real> SubPixelFrame<T> {
     }
 }
 
-fn line_of<T: Real>(linear: &Linear<T>) -> Curve {
+fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     let factors = linear.each_ref().map(|x| x.mid.clone());
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// A linear form's zero line. Its greater slope becomes 1, so that forms of one line, as those of
-/// the horizons of parallel planes are, have the same factors.
-fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Curve {
+/// Returns the zero line of a linear form. Its greater slope becomes 1, so that forms of the same
+/// line, such as the horizon of parallel planes, get the same factors.
+fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
-    let greatest = match a.magnitude() < b.magnitude() {
-        true => b,
-        false => a,
-    };
-    // A form without slope has no zero line; any power of two will do.
+    let greatest = if a.magnitude() < b.magnitude() { b } else { a };
+    // A form without slope has no zero line, and any power of two will do.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
-    let slope = match greatest.is_zero() {
-        true => T::from_f64(1.0),
-        false => greatest,
+    let slope = if greatest.is_zero() {
+        T::from_f64(1.0)
+    } else {
+        greatest
     };
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // Of the quotients, and of these in `f64`.
+    // The roundings of the quotients, and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // Its own quotient, and that of the slope in `f64`, are rounded, too.
+    // The error's own quotient, and the slope's conversion to `f64`, are rounded, too.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
-    Curve::Line(Line {
+    Boundary::Line(BoundaryLine {
         factors,
         rad: rad + rounding,
     })
 }
 
-/// The product of two linear forms.
+/// Returns the product of two linear forms.
 fn product<T: Real>(a: &Linear<T>, b: &Linear<T>) -> Quadratic<T> {
     let half = |i: usize, j: usize| (&a[i] * &b[j] + &a[j] * &b[i]).times_power(0.5);
     [
@@ -256,15 +254,15 @@ fn sum<T: Real>([a, b, c]: [Quadratic<T>; 3]) -> Quadratic<T> {
     [0, 1, 2, 3, 4, 5].map(|i| &a[i] + &b[i] + &c[i])
 }
 
-/// A quadratic form's conic.
-fn conic<T: Real>(factors: &Quadratic<T>) -> Curve {
+/// Returns the conic of a quadratic form.
+fn conic<T: Real>(factors: &Quadratic<T>) -> Boundary {
     let size = factors
         .iter()
         .fold(T::Radius::ZERO, |size, x| size.max(x.size()));
     let exponent = -size.exponent();
     // |x| and |y| are at most 1/2.
     let rad = factors.iter().fold(T::Radius::ZERO, |rad, x| rad + x.rad);
-    Curve::Conic(Conic {
+    Boundary::Conic(Conic {
         factors: factors.each_ref().map(|x| double(&x.mid.scaled(exponent))),
         rad: rad.scaled(exponent).to_f64() + Double::UNIT,
     })
@@ -277,12 +275,13 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// How much of the pixel's area may lie between the true conic and the computed one: at most
-    /// that of the points where |F| ≤ ε, the form's error. Three bounds of it hold, and the least counts:
+    /// Bounds the part of the pixel's area between the true conic and the computed one, by the area
+    /// of the points where |F| ≤ ε, the form's error. Three bounds of it hold, and the least is
+    /// returned:
     ///
-    /// - By the coarea formula 2ε · length / least gradient; a conic is no longer in the pixel than
+    /// - By the coarea formula 2ε · length / least gradient; a conic in the pixel is no longer than
     ///   twice the perimeter.
-    /// - About an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
+    /// - For an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
     /// - In any case 4 · 2 · √(ε / greatest |F|), by the inequality of Brudnyi and Ganzburg (1973)
     ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
     ///   least 1/16, since a factor of at least 1/2 is a combination of values of F: A of three
@@ -296,7 +295,7 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The difference of products is off by two roundings of them.
+        // The difference of products has an error of two of their roundings.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());
@@ -304,16 +303,15 @@ impl Conic {
         area
     }
 
-    /// The range of its form over the pixel.
+    /// Returns the range of the form over the pixel.
     ///
-    /// It is least and greatest at corners, or where it is level along a side or in all directions.
-    /// Of such a place that is not known well nothing much depends: to another one in the pixel
-    /// the form rises by half the product of the way and of its gradient, which is
-    /// next to none.
-    pub fn over_pixel(&self) -> Range {
+    /// Its extremes lie at corners, or where a derivative vanishes along a side or in all
+    /// directions. An inaccurate position of such an extreme hardly matters: the form differs there
+    /// by half the product of the distance and the gradient, which is almost 0.
+    pub fn over_pixel(&self) -> Interval {
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
-        let mut range = Range {
+        let mut range = Interval {
             low: f64::INFINITY,
             high: f64::NEG_INFINITY,
         };
@@ -333,19 +331,19 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
-        // Six terms of three roundings, which are summed; no extreme lies between them.
+        // Six terms of three roundings each are summed; no extreme lies between these points.
         let rad = self.rad + 16.0 * f64::UNIT * size;
-        Range {
+        Interval {
             low: range.low - rad,
             high: range.high + rad,
         }
     }
 }
 
-impl Line {
-    /// The range of its form over the pixel.
-    pub fn over_pixel(&self) -> Range {
+impl BoundaryLine {
+    /// Returns the range of the form over the pixel.
+    pub fn over_pixel(&self) -> Interval {
         let [a, b, c] = self.factors;
-        Range::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
+        Interval::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
     }
 }

@@ -1,33 +1,32 @@
-//! Linear forms: the boundaries and depths of everything flat.
+//! Linear forms: the boundaries and inverse depths of everything flat.
 //!
-//! In: a vector in the camera's axes. Out: the form aX + bY + c over the view plane that it makes.
-//! Every edge of a flat surface is the zero line of one, and the inverse depth of its plane is one.
-//! Errors: one bound for all values in the window, of its factors' own errors and the roundings of
-//! its evaluation.
+//! In: a vector in the camera's axes. Out: the linear form aX + bY + c over the view plane that it
+//! defines. Every edge of a flat surface is the zero line of such a form, and the inverse depth of
+//! its plane is one. Errors: one bound for all values in the window, from the errors of the factors
+//! and the roundings of the evaluation.
 
 use super::camera::{Camera, Direction, Window};
 use crate::math::{Ball, Ball3, Double, Real, UP};
 
-/// A linear form over the view plane with one bound on the error of its values, whatever the sample
-/// point.
+/// A linear form over the view plane with one error bound for all its values.
 #[derive(Clone, Debug)]
 pub struct Form<T: Real> {
     /// Factors of X, Y and 1.
     factors: [T; 3],
-    /// How far a computed value may be from the true one.
+    /// Error bound of a computed value.
     rad: T::Radius,
-    /// The same by |X|, |Y| and |Z|, in the last precision. None follows it, so that there the
-    /// error is bounded for each ray: in the middle of the widest views values are far smaller
-    /// than elsewhere.
+    /// Error bounds in units of |X|, |Y| and |Z|; in the last precision only. No precision follows
+    /// it, so the error is bounded for each ray: in the middle of the widest views, values are far
+    /// smaller than elsewhere.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Roundings that a value passes through: five in a coordinate, one in its product, two in the sum;
-/// half as many again to cover their products.
+/// Number of roundings in a value: five in a coordinate, one in its product, two in the sum; half
+/// as many again cover the products of roundings.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
-    /// The form v·r for a vector in the camera's axes.
+    /// Returns the form v·r of a vector in the camera's axes.
     pub fn new(camera: &Camera<T>, v: &Ball3<T>) -> Self {
         let window = &camera.window;
         let factors = [
@@ -36,7 +35,7 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        // In the widest views of all Z is below the normal numbers, and rounded.
+        // In the widest views, Z is below the normal numbers, and rounded.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
         let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
@@ -47,7 +46,7 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// The value at a direction.
+    /// Returns the value at a direction.
     #[inline]
     pub fn at(&self, r: &Direction<T>) -> Ball<T> {
         let [a, b, c] = &self.factors;
@@ -68,12 +67,12 @@ impl<T: Real> Form<T> {
         &self.factors
     }
 
-    /// How far a computed value may be from the true one.
+    /// The error bound of a computed value.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }
 
-    /// The difference of two forms.
+    /// Returns the difference of two forms.
     pub fn minus(&self, other: &Self) -> Self {
         let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
         let sum = sizes[0] + sizes[1] + sizes[2];
@@ -81,7 +80,8 @@ impl<T: Real> Form<T> {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
             // X and Y are at most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
-            // Each has as many roundings of its own factors as their difference has.
+            // Each error bound contains as many roundings of its own factors as their difference
+            // has.
             rads: self
                 .rads
                 .as_ref()
@@ -92,7 +92,7 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// Whether two forms have the same factors, as the forms of one plane have.
+    /// Whether two forms have equal factors, as all forms of one plane have.
     pub fn equals(&self, other: &Self) -> bool {
         let equal = |(a, b): (&T, &T)| a.minus(b).is_zero();
         self.factors.iter().zip(&other.factors).all(equal)
@@ -100,7 +100,7 @@ impl<T: Real> Form<T> {
 }
 
 impl Form<Double> {
-    /// The same form for `f64`.
+    /// Rounds the form to `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Form<f64> {
         let factors = self.factors.map(|factor| factor.hi);
         Form {
@@ -111,23 +111,24 @@ impl Form<Double> {
     }
 }
 
-/// What rounding adds to the error of a form's values.
+/// Bounds what rounding adds to the error of a form's values.
 fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius {
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // A product below the normal numbers loses up to half of the least number; there are fewer than 16.
+        // A product below the normal numbers loses at most half of the least number; there are
+        // fewer than 16.
         + T::TINY * 8.0
 }
 
-/// The inverse depth of the plane n·q = h as a form, for n in the world's axes and points q as seen
-/// from the eye.
+/// Returns the inverse depth of the plane n·q = h as a form: n in the world's axes, points q as
+/// seen from the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)
 }
 
-/// The unit vector along an axis of the world.
+/// Returns the unit vector along an axis of the world.
 pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
     [0, 1, 2].map(|i| Ball::exact(if i == axis { 1.0 } else { 0.0 }))
 }

@@ -1,43 +1,43 @@
-//! Intervals: what is certain of numbers all over a rectangle of the picture.
+//! Intervals of numbers over a rectangle of the picture.
 
 use crate::math::UP;
 
 /// The numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// The least.
+pub struct Interval {
+    /// The least number.
     pub low: f64,
-    /// The greatest.
+    /// The greatest number.
     pub high: f64,
 }
 
-/// How an object that may be seen in a rectangle stands to it.
+/// How an object covers a rectangle in which it may be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
     /// Whether every ray through the rectangle meets the object.
     pub is_whole: bool,
-    /// Holds the inverse depths of what is met of it, seen or hidden.
-    pub inverse_depth: Range,
+    /// Interval that contains the inverse depths of all crossings with the object, seen or hidden.
+    pub inverse_depth: Interval,
 }
 
-/// Where all numbers of a range stand to 0.
+/// Position of an interval relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Side {
     Above,
     Below,
     Both,
-    /// It has overflowed.
+    /// An end of the interval overflowed.
     Unknown,
 }
 
-impl Range {
+impl Interval {
     /// All numbers.
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
     };
 
-    /// The numbers that are no farther from `middle` than `reach`.
+    /// Returns the numbers at a distance of at most `reach` from `middle`.
     pub fn about(middle: f64, reach: f64) -> Self {
         let reach = reach * UP + f64::MIN_POSITIVE;
         Self {
@@ -46,7 +46,7 @@ impl Range {
         }
     }
 
-    /// Itself, or all numbers where an overflow left none.
+    /// Returns the interval itself, or all numbers if an overflow has left NaN or no numbers in it.
     pub fn or_all(self) -> Self {
         if self.low <= self.high {
             self
@@ -67,21 +67,22 @@ impl Range {
         }
     }
 
-    /// Whether it holds 0, as far as is known: NaN holds everything.
+    /// Whether 0 may lie in the interval: NaN contains everything.
     pub fn holds_zero(self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
     }
 
-    /// The greatest (or least) of some numbers, one of each range.
+    /// Returns the interval of the greatest (or the least) of several numbers, one from each
+    /// interval.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        // Not so NaN, of which the greater would be the other.
+        // NaN is replaced first, since `max` and `min` would return the other operand.
         ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),
         })
     }
 
-    /// Times a power of two.
+    /// Multiplies both ends by a power of two.
     pub fn times_power(self, power: f64) -> Self {
         Self {
             low: self.low * power,

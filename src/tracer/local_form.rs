@@ -2,14 +2,14 @@
 //!
 //! In: a form over the view plane, and the rectangle. Out: the same form as a function of the
 //! offset from the rectangle's centre, in units of its sides, and the range of its values. Errors:
-//! one bound for all values there, of what the form's factors and its value at the centre are off
-//! and of the roundings of its evaluation; so what a range says of the rectangle, every sample in
-//! it says.
+//! one bound for all values there, from the errors of the form's factors and of its value at the
+//! centre, and from the roundings of the evaluation. What the range proves for the rectangle
+//! therefore holds for every sample in it.
 
 use super::{
     camera::{Camera, Direction},
     form::Form,
-    interval::Range,
+    interval::Interval,
     sub_pixel::SubPixel,
 };
 use crate::{
@@ -17,26 +17,27 @@ use crate::{
     math::{Real, UP},
 };
 
-/// Roundings on the way to a value of a local form, of the sum of its factors' sizes: of a linear
-/// one each factor has one, and so has its quotient by the error; products and sums, where offsets
-/// are at most ½, have two. Of a quadratic one each of six terms has five at most, generously
-/// counted.
+/// Rounding error of a value of a linear local form, relative to the sum of its factors'
+/// magnitudes: one for each factor, one for its quotient by the error bound, and two for products
+/// and sums, since offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
+/// Rounding error of a value of a quadratic local form, relative to the sum of its factors'
+/// magnitudes: at most five for each of six terms, generously counted.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Products below the normal numbers lose up to half of the least number each, of which there are
-/// at most 16.
-const LOST: f64 = 16.0 * f64::TINY;
+/// Error bound of products below the normal numbers: each of at most 16 loses up to half of the
+/// least number.
+const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
 #[derive(Clone, Debug)]
 pub struct Patch {
     /// The direction through its centre.
     pub center: Direction<f64>,
-    /// Its sides in units of X and Y.
+    /// The sides in units of X and Y.
     pub sides: [f64; 2],
 }
 
-/// A linear form of the offset, and a bound on the error of its computed values.
+/// A linear form of the offset, with an error bound of its computed values.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalForm {
     /// Factors of x, y and 1.
@@ -44,11 +45,11 @@ pub struct LocalForm {
     pub rad: f64,
 }
 
-/// A linear form in units of its error.
+/// A linear form in units of its error bound.
 pub type ScaledLine = [f64; 3];
 
-/// A quadratic form of the offset: factors of 1, x, y, x², xy and y²; and a bound on the error of
-/// its values.
+/// A quadratic form of the offset: factors of 1, x, y, x², xy and y², with an error bound of its
+/// values.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalQuadratic {
     pub factors: [f64; 6],
@@ -56,7 +57,7 @@ pub struct LocalQuadratic {
 }
 
 impl Patch {
-    /// The rectangle of some pixels.
+    /// The rectangle of an area of pixels.
     pub fn new(camera: &Camera<f64>, area: Area) -> Self {
         Self {
             center: camera.direction(&camera.middle(area)),
@@ -72,7 +73,7 @@ impl Patch {
         }
     }
 
-    /// All that a camera sees.
+    /// The whole window of a camera.
     pub fn window(camera: &Camera<f64>) -> Self {
         let window = camera.window;
         Self {
@@ -88,8 +89,8 @@ impl Patch {
 }
 
 impl Form<f64> {
-    /// The form over a rectangle. Its own error bound counts twice: for its factors, and for its
-    /// value at the centre.
+    /// Expands the form about a rectangle. Its error bound counts twice: for its factors, and for
+    /// its value at the centre.
     #[inline]
     pub fn local(&self, patch: &Patch) -> LocalForm {
         let [a, b, _] = *self.factors();
@@ -98,31 +99,32 @@ impl Form<f64> {
         LocalForm::new(factors, 2.0 * self.rad())
     }
 
-    /// The range of its values over a rectangle.
+    /// Returns the range of the form over a rectangle.
     #[inline]
-    pub fn over(&self, patch: &Patch) -> Range {
+    pub fn over(&self, patch: &Patch) -> Interval {
         self.local(patch).range()
     }
 }
 
 impl LocalForm {
-    /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
+    /// Builds a form from its factors and their error bound, to which the roundings of the
+    /// evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
-        let rad = (inherited + (a + b + c) * LINEAR_ROUNDING + LOST) * UP;
+        let rad = (inherited + (a + b + c) * LINEAR_ROUNDING + UNDERFLOW_ERROR) * UP;
         Self { factors, rad }
     }
 
-    /// Half the difference between its greatest and its least value.
+    /// Half the difference between the greatest and the least value.
     pub fn spread(&self) -> f64 {
         let [a, b, _] = self.factors;
         0.5 * (a.abs() + b.abs())
     }
 
-    /// The range of its values.
-    pub fn range(&self) -> Range {
-        Range::about(self.factors[2], self.spread() + self.rad)
+    /// Returns the range of the values.
+    pub fn range(&self) -> Interval {
+        Interval::about(self.factors[2], self.spread() + self.rad)
     }
 
     pub fn line(&self) -> ScaledLine {
@@ -135,28 +137,30 @@ impl LocalForm {
         a * x + b * y + c
     }
 
-    /// self − k · other, for a whole number k.
+    /// Returns self − k · other for a whole number k.
     pub fn less(&self, k: f64, other: &Self) -> Self {
         let sizes: f64 = (0..3)
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        // Of a product and a difference.
+        // One rounding of the product, one of the difference.
         let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
     }
 }
 
 impl LocalQuadratic {
-    /// From its factors, and a bound on what it is off but for the roundings of its evaluation.
+    /// Builds a form from its factors and their error bound, to which the roundings of the
+    /// evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
-        let rad = (inherited + sizes * LOCAL_ROUNDING + LOST) * UP;
+        let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;
         Self { factors, rad }
     }
 
-    /// The range of its values, by the extremes along each axis and a bound on what is mixed.
-    pub fn range(&self) -> Range {
+    /// Returns the range of the values, from the extremes along each axis and a bound of the mixed
+    /// term.
+    pub fn range(&self) -> Interval {
         let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
         let c = 4.0 * c;
         let slack = xy.abs() + self.rad;
@@ -164,13 +168,13 @@ impl LocalQuadratic {
             let along = greatest(x.abs(), sign * xx) + greatest(y.abs(), sign * yy);
             (along + slack) * UP
         };
-        Range {
+        Interval {
             low: c - reach(-1.0),
             high: c + reach(1.0),
         }
     }
 
-    /// The same in units of its error.
+    /// Returns the form in units of its error bound.
     pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),
@@ -185,8 +189,8 @@ impl LocalQuadratic {
     }
 }
 
-/// The greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at the end, or where it is level
-/// before that.
+/// Returns the greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at an end, or where the
+/// derivative vanishes before it.
 fn greatest(a: f64, b: f64) -> f64 {
     if a < -b { a * a / -b } else { 2.0 * a + b }
 }

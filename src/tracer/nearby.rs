@@ -1,27 +1,32 @@
 //! The objects near a small part of the picture, by their bounds alone.
 //!
-//! In: a part in which too many objects lie for all of them to be told apart. Out: those that rays
-//! through it may meet, the nearest first, and of these those that rays through a pixel may. To
-//! find them once takes less time than each ray's way down the quadtree.
+//! In: a part with too many objects to tell all of them apart. Out: the objects that rays through
+//! it may meet, the nearest first, and from these the objects that rays through one pixel may meet.
+//! Finding them once takes less time than the way of each ray down the quadtree.
 
 use super::{
     candidates,
     local_form::Patch,
-    quadtree::{Item, Nearness},
+    quadtree::{BoundedObject, Nearness},
     world::World,
 };
 use crate::area::Area;
 
-/// The objects that rays through a part of the picture may meet, the nearest first; none if they
-/// are so many that the quadtree finds a ray's objects sooner.
-pub fn nearby(world: &World, part: Area) -> Option<Vec<Item>> {
+/// Returns the objects that rays through a part of the picture may meet, the nearest first. Returns
+/// `None` if they are so many that the quadtree finds a ray's objects sooner.
+pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     world.quadtree.nearby(&patch)
 }
 
-/// Keeps of the objects near an area those that rays through a part of that area may meet, in the
-/// same order. Answers the colour's slot if it is certain that one is seen in the part.
-pub fn in_part(world: &World, part: Area, nearby: &[Item], out: &mut Vec<Item>) -> Option<usize> {
+/// Narrows the objects near an area to those that rays through a part of that area may meet, in the
+/// same order. Returns a palette slot if that colour is certainly seen all over the part.
+pub fn in_part(
+    world: &World,
+    part: Area,
+    nearby: &[BoundedObject],
+    out: &mut Vec<BoundedObject>,
+) -> Option<usize> {
     out.clear();
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch)?;

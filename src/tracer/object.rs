@@ -1,8 +1,8 @@
 //! Any object, prepared for one picture.
 //!
 //! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer
-//! asks of every kind of object: crossings of a ray, intervals over a rectangle, the curves that
-//! bound it. Each kind answers for itself; here is only the choice between them.
+//! asks of every kind of object: crossings of a ray, intervals over a rectangle, and the curves
+//! that bound it. Each kind answers for itself; this file only selects among the kinds.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -10,9 +10,9 @@ use super::{
     convex::Convex,
     crossing::{Crossing, SurfacePart},
     cuboid,
-    curve::{Crossings, Curve, SubPixelFrame, Surface},
+    curve::{Boundary, Crossings, InverseDepth, SubPixelFrame},
     form::Form,
-    interval::{Cover, Range},
+    interval::{Cover, Interval},
     local_form::Patch,
     sphere::Sphere,
     triangle,
@@ -22,12 +22,22 @@ use crate::{
     scene::{self, Shape},
 };
 
-/// An object prepared for one picture: a sphere in place, since of spheres there may be very many.
+/// An object by the geometry of its surface. Matches on it name every kind, so that the compiler
+/// lists the places to complete when a kind is added.
+pub enum SurfaceKind<'a, T: Real> {
+    /// Flat faces.
+    Flat(&'a Convex<T>),
+    /// A sphere.
+    Round(&'a Sphere<T>),
+}
+
+/// An object prepared for one picture. A sphere is stored in place, since scenes may have very many
+/// spheres.
 #[derive(Clone, Debug)]
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle or a box; nothing where the eye lies in a flat object's plane.
+    /// A triangle or a box; empty if the eye lies in a flat object's plane.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),
@@ -52,30 +62,30 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// The faces of any object but a sphere.
+    /// Returns the object by the geometry of its surface.
     #[inline]
-    pub fn convex(&self) -> Result<&Convex<T>, &Sphere<T>> {
+    pub fn surface_kind(&self) -> SurfaceKind<'_, T> {
         match self {
-            Self::Sphere(sphere) => Err(sphere),
-            Self::Convex(convex) => Ok(convex),
-            Self::Checkerboard(board) => Ok(&board.plane),
+            Self::Sphere(sphere) => SurfaceKind::Round(sphere),
+            Self::Convex(convex) => SurfaceKind::Flat(convex),
+            Self::Checkerboard(board) => SurfaceKind::Flat(&board.plane),
         }
     }
 
-    /// The nearest crossing in front of the eye.
+    /// Returns the nearest crossing in front of the eye.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        match self.convex() {
-            Ok(convex) => convex.first(r),
-            Err(sphere) => sphere.first(r),
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.first(r),
+            SurfaceKind::Round(sphere) => sphere.first(r),
         }
     }
 
-    /// The crossing behind the first one, where the ray has one.
+    /// Returns the crossing behind the first one, if the ray has one.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
-        match self.convex() {
-            Ok(convex) => convex.second(r),
-            Err(sphere) => sphere.second(r),
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.second(r),
+            SurfaceKind::Round(sphere) => sphere.second(r),
         }
     }
 
@@ -84,59 +94,67 @@ impl<T: Real> Object<T> {
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         match self {
             Self::Checkerboard(checkerboard) => checkerboard.is_odd(r),
-            _ => Ok(false),
+            Self::Sphere(_) | Self::Convex(_) => Ok(false),
         }
     }
 
-    /// The form of the inverse depth of a flat part.
+    /// Returns the inverse depth of a flat part as a form.
     pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
-        self.convex().ok()?.face(part)
-    }
-
-    /// What bounds the rays that meet it; each line's form is not negative where it is met.
-    pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Curve> {
-        match self.convex() {
-            Ok(convex) => convex.bounds().iter().map(|f| frame.line(f)).collect(),
-            Err(sphere) => frame.silhouette(sphere),
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.face(part),
+            SurfaceKind::Round(_) => None,
         }
     }
 
-    /// The surfaces where rays meet it: those of their first crossings, of their second ones, or of
-    /// both.
-    pub fn surfaces(&self, which: Crossings) -> Vec<Surface<'_, T>> {
-        let convex = match self.convex() {
-            Ok(convex) => convex,
-            Err(sphere) => return vec![Surface::Sphere(sphere)],
+    /// Returns the boundary of the rays that meet the object. The form of each line is ≥ 0 on the
+    /// object's side.
+    pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Boundary> {
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.bounds().iter().map(|f| frame.line(f)).collect(),
+            SurfaceKind::Round(sphere) => frame.silhouette(sphere),
+        }
+    }
+
+    /// Returns the inverse depths of the surfaces where rays meet the object: those of their first
+    /// crossings, of their second ones, or of both.
+    pub fn inverse_depths(&self, which: Crossings) -> Vec<InverseDepth<'_, T>> {
+        let convex = match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex,
+            SurfaceKind::Round(sphere) => return vec![InverseDepth::Sphere(sphere)],
         };
         let (firsts, seconds) = match which {
             Crossings::First => (convex.firsts(), &[][..]),
             Crossings::Second => (&[][..], convex.seconds()),
             Crossings::Both => (convex.firsts(), convex.seconds()),
         };
-        firsts.iter().chain(seconds).map(Surface::Plane).collect()
+        firsts
+            .iter()
+            .chain(seconds)
+            .map(InverseDepth::Plane)
+            .collect()
     }
 }
 
 impl Object<f64> {
-    /// How it stands to a rectangle; `None` if no ray through it meets the object.
+    /// Relates the object to a rectangle. Returns `None` if no ray through the rectangle meets it.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
-        match self.convex() {
-            Ok(convex) => convex.cover(patch),
-            Err(sphere) => sphere.cover(patch),
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.cover(patch),
+            SurfaceKind::Round(sphere) => sphere.cover(patch),
         }
     }
 
-    /// The inverse depths of its second crossings, where it has any.
-    pub fn behind(&self, patch: &Patch) -> Option<Range> {
-        match self.convex() {
-            Ok(convex) => convex.behind(patch),
-            Err(sphere) => sphere.behind(patch),
+    /// Returns the inverse depths of the second crossings, if there are any.
+    pub fn behind(&self, patch: &Patch) -> Option<Interval> {
+        match self.surface_kind() {
+            SurfaceKind::Flat(convex) => convex.behind(patch),
+            SurfaceKind::Round(sphere) => sphere.behind(patch),
         }
     }
 }
 
 impl Object<Double> {
-    /// The same object for `f64`.
+    /// Rounds the object to `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Object<f64> {
         match self {
             Self::Sphere(sphere) => Object::Sphere(sphere.narrowed(window)),

@@ -1,8 +1,8 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
-//! In: a scene. Out: the scene with an object for each face that may be seen in the place of each
-//! such box, and which face of which object each of them is. To a ray a face is a flat object, and
-//! two that share an edge have the same line for it, so that no ray slips through between them.
+//! In: a scene. Out: the scene in which every such box is replaced by one object for each face that
+//! may be seen, and the origin of each object. To a ray a face is a flat object. Two faces that
+//! share an edge have the same line for it, so that no ray slips through between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 
@@ -10,16 +10,17 @@ use glam::DVec3;
 
 use crate::scene::{Cuboid, Object, Scene, Shape};
 
-/// Which faces become objects.
+/// The faces of a box that become objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Faces {
-    /// Those that may be seen: it is for a picture.
+    /// The faces that may be seen, for a picture.
     Seen,
-    /// All of them: every crossing of a ray is asked for.
+    /// All faces, for every crossing of a ray.
     All,
 }
 
-/// What the objects of a scene that was taken apart are; nothing where each is an object.
+/// For each object of a scene that was taken apart, its index in the file and its face. Empty if
+/// every object of the scene is one object here, too.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
@@ -33,7 +34,7 @@ impl Pieces {
         if scene.objects.iter().all(|object| faces(object).is_none()) {
             return (Cow::Borrowed(scene), Self::default());
         }
-        // The near plane may cut the front faces off, so that those behind them are seen.
+        // The near plane may cut off front faces, so that the faces behind them are seen.
         let only_fronts = which == Faces::Seen && scene.camera.near == 0.0;
         let (mut objects, mut pieces) = (Vec::new(), Vec::new());
         for (owner, object) in scene.objects.iter().enumerate() {
@@ -44,7 +45,7 @@ impl Pieces {
             };
             cuboid.faces = None;
             let fronts = fronts(&cuboid, scene.camera.eye);
-            // From inside there are none, and the faces behind are seen first.
+            // From inside there are no front faces, and rays first meet the back faces.
             let only_fronts = only_fronts && fronts.contains(&true);
             for (face, is_front) in (0..).zip(fronts) {
                 if only_fronts && !is_front {
@@ -65,18 +66,19 @@ impl Pieces {
         (Cow::Owned(Scene { objects, ..scene }), Self(pieces))
     }
 
-    /// The index in the file of what a piece is of.
+    /// Returns the index in the file of the object that a piece belongs to.
     pub fn owner(&self, piece: usize) -> usize {
         self.0.get(piece).map_or(piece, |(owner, _)| *owner)
     }
 
-    /// The number of the face that a piece is, if it is one.
+    /// Returns the number of the face that a piece is. Returns `None` if it is a whole object.
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }
 }
 
-/// Which faces the eye looks at from outside; their numbers are as in [`cuboid`](super::cuboid).
+/// Whether the eye is on the outer side of each face; faces are numbered as in
+/// [`cuboid`](super::cuboid).
 fn fronts(cuboid: &Cuboid, eye: DVec3) -> [bool; 6] {
     array::from_fn(|face| match (face / 2, face % 2) {
         (axis, 0) => eye[axis] < cuboid.min[axis],

@@ -1,7 +1,8 @@
 //! All crossings of one ray, for people.
 //!
 //! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the
-//! nearest first, computed in big numbers, so that each number printed is the true one rounded.
+//! nearest first, computed in big numbers, so that each printed number is the correctly rounded
+//! true one.
 
 use std::cmp::Ordering;
 
@@ -16,26 +17,27 @@ use crate::{
     math::{Ball, Ball3, Big, Real},
 };
 
-/// A crossing of a ray with a surface, for people: numbers are right to the last bit.
+/// A crossing of a ray with a surface, for people. Each number is correctly rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The object's index in the file.
     pub object: usize,
-    /// The distance from the eye, in metres.
+    /// Distance from the eye, in metres.
     pub t: f64,
-    /// The distance along the view direction, in metres.
+    /// Distance along the view direction, in metres.
     pub depth: f64,
-    /// The point, in the world.
+    /// The point in the world.
     pub point: DVec3,
-    /// The colour there.
+    /// The colour at the point.
     pub color: Color,
-    /// Whether it is the one that is seen.
+    /// Whether this crossing is the one that is seen.
     pub visible: bool,
 }
 
-/// The ray through a point of the picture plane, in pixels from the picture's top left corner: its
-/// direction, of length 1, and all its crossings in front of the eye, the nearest first, equal ones
-/// in file order. The point must lie within the reach that the world was made for.
+/// Follows the ray through a point of the picture plane, in pixels from the picture's top left
+/// corner. Returns its direction, of length 1, and all its crossings in front of the eye, the
+/// nearest first, equal ones in file order. The point must lie within the reach that the world was
+/// prepared for.
 pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     let camera = &world.geometry.big.camera;
     let point = camera.picture_point(pixels);
@@ -79,9 +81,10 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     (direction, crossings.into_iter().map(hit).collect())
 }
 
-/// Sorts by depth; what cannot be told apart stands in file order.
+/// Sorts crossings by depth; those that cannot be told apart are in file order.
 fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
-    // First by the computed depths, which is an order; then by pairs, as the tracer compares them.
+    // First by the computed depths, which are totally ordered; then pair by pair, as the tracer
+    // compares them.
     crossings.sort_by(|(.., a), (.., b)| {
         let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
         difference.to_f64().total_cmp(&0.0)
@@ -99,8 +102,8 @@ fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     }
 }
 
-/// A coordinate or the square of a ray's direction, with what its roundings may have cost, which
-/// are fewer than 32.
+/// Wraps a coordinate of a ray's direction, or its square, in a ball whose radius covers up to 32
+/// roundings.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
         rad: x.magnitude() * (32.0 * Big::UNIT),
@@ -108,8 +111,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// The nearest `f64`, and 0 for what cannot be told from it: a point on the plane y = 0 has no
-/// height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be told from 0: a point on the plane y = 0
+/// must not get a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

@@ -4,9 +4,9 @@
 //! intervals. With c the centre as seen from the eye, R the radius and C = c·c − R² (the power of
 //! the eye), the ray λr meets the sphere where λ² r·r − 2λ c·r + C = 0. A quarter of the
 //! discriminant is Q = R² r·r − |c × r|² by Lagrange's identity, which unlike (c·r)² − r·r C does
-//! not subtract large squares where the sphere is small and far.
+//! not subtract large squares if the sphere is small and far.
 //!
-//! Errors: Q and c·r have one bound each over the whole window, their roundings counted; C is
+//! Errors: Q and c·r have one bound each over the whole window, their roundings included; C is
 //! computed exactly where it is small.
 
 use std::cmp::Ordering;
@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::{
     camera::{Camera, Direction, Window},
     crossing::{Crossing, SurfacePart},
-    interval::{Cover, Range},
+    interval::{Cover, Interval},
     local_form::{LocalForm, LocalQuadratic, Patch},
 };
 use crate::math::{Ball, Ball3, Double, Doubt, Dyadic, Radius, Real, UP, dot};
@@ -26,16 +26,17 @@ use crate::math::{Ball, Ball3, Double, Doubt, Dyadic, Radius, Real, UP, dot};
 pub struct Sphere<T: Real> {
     /// The centre in the camera's axes.
     center: [T; 3],
-    /// Error bound of each of its coordinates.
+    /// Error bound of each coordinate of the centre.
     rad_c: T::Radius,
-    /// R², and its error bound.
+    /// The square R².
     square: T,
+    /// Error bound of R².
     rad_square: T::Radius,
-    /// C, each bit of it right however close the eye is to the surface.
+    /// C with a small relative error, however close the eye is to the surface.
     power: Ball<T>,
-    /// The sign of C: the eye is outside, on the surface, or inside.
+    /// The exact sign of C: the eye is outside, on the surface, or inside.
     side: Ordering,
-    /// What a scaled inverse depth is to be multiplied by: a power of two.
+    /// Factor from a scaled inverse depth to an unscaled one: a power of two.
     scale: f64,
     /// Error bound of Q.
     rad_q: T::Radius,
@@ -43,8 +44,8 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's, twice over for squares,
-/// and eight for their sum.
+/// Number of roundings of a value, in units of [`Real::UNIT`]: twelve as in a form's value, twice
+/// for squares, and eight for their sum.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -56,7 +57,7 @@ impl<T: Real> Sphere<T> {
             .iter()
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
-        // Within what powers of two an f64 holds; a factor of 2^74 more or less does no harm.
+        // Powers of two in the range of f64; a factor of 2^74 more or less does no harm.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -100,17 +101,18 @@ impl<T: Real> Sphere<T> {
         let l = cz.times(&r.x).minus(&cx.times(&r.z));
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
-        let (rad_q, rad_b) = match T::LAST {
-            // No precision follows it, so that the error is bounded for this ray: in the middle of
-            // the widest views it is far smaller than elsewhere.
-            true => radii::<T>(
+        let (rad_q, rad_b) = if T::LAST {
+            // No precision follows, so the error is bounded for this ray: in the middle of the
+            // widest views it is far smaller than elsewhere.
+            radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
                 self.square.magnitude(),
                 self.rad_square,
                 [&r.x, &r.y, &r.z].map(Real::magnitude),
-            ),
-            false => (self.rad_q, self.rad_b),
+            )
+        } else {
+            (self.rad_q, self.rad_b)
         };
         let q = Ball {
             mid: self.square.times(&r.square).minus(&cross),
@@ -123,7 +125,8 @@ impl<T: Real> Sphere<T> {
         (q, b)
     }
 
-    /// The nearest crossing in front of the eye. A ray that only touches the sphere misses it.
+    /// Returns the nearest crossing in front of the eye. A ray that only touches the sphere misses
+    /// it.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         let (q, b) = self.discriminant(r);
@@ -143,7 +146,7 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// The crossing behind the first one.
+    /// Returns the crossing behind the first one.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         if self.side != Ordering::Greater {
             return None;
@@ -152,22 +155,21 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Where the ray leaves the sphere: of the two forms of the root the one that does not cancel.
+    /// Returns the crossing where the ray leaves the sphere, by the form of the root that does not
+    /// cancel.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close above the inside of a huge sphere, Q is much smaller than R² r·r, and this form of
-        // it is the sharper one.
+        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r, and this form
+        // of it is more accurate.
         let other = b * b - &self.power * &square;
-        let root = match other.rad < q.rad {
-            true => other.sqrt(),
-            false => q.sqrt(),
-        };
-        let inverse = match b.mid.is_negative() {
-            true => (b - root) / &self.power,
-            false => square / (b + root),
+        let root = if other.rad < q.rad { &other } else { q }.sqrt();
+        let inverse = if b.mid.is_negative() {
+            (b - root) / &self.power
+        } else {
+            square / (b + root)
         };
         self.crossing(&inverse, SurfacePart::Exit)
     }
@@ -182,8 +184,8 @@ impl<T: Real> Sphere<T> {
 }
 
 impl Sphere<f64> {
-    /// The centre and the radius of a ball that holds it, errors included, in its own unit; none
-    /// for an eye that is not outside.
+    /// Returns the centre and the radius of a ball that contains the sphere, errors included, in
+    /// the sphere's own unit. Returns `None` if the eye is not outside.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
         // Three roundings of 2^−53.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
@@ -191,15 +193,15 @@ impl Sphere<f64> {
         (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
     }
 
-    /// How it stands to a rectangle; `None` if no ray through it meets the sphere.
+    /// Relates the sphere to a rectangle. Returns `None` if no ray through the rectangle meets it.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
-        // Not so only after an overflow.
+        // False only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
                 is_whole: false,
-                inverse_depth: Range::ALL,
+                inverse_depth: Interval::ALL,
             });
         }
         let (is_whole, inverse_depth) = match self.side {
@@ -209,7 +211,7 @@ impl Sphere<f64> {
                 }
                 let power = self.power.size();
                 let inverse = |b: f64, q: f64| (b.max(0.0) + q.max(0.0).sqrt()) / power;
-                let range = Range {
+                let range = Interval {
                     low: inverse(b.low, q.low),
                     high: inverse(b.high, q.high),
                 };
@@ -225,8 +227,8 @@ impl Sphere<f64> {
         })
     }
 
-    /// The inverse depths where rays leave it that enter it.
-    pub fn behind(&self, patch: &Patch) -> Option<Range> {
+    /// Returns the inverse depths of the crossings where rays from outside leave the sphere.
+    pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let exits = || {
             let (q, b) = self.local(patch);
             self.exits(q.range(), b.range(), patch)
@@ -234,16 +236,16 @@ impl Sphere<f64> {
         self.is_outside().then(|| self.widened(exits()))
     }
 
-    /// The inverse depths of exits. With 1/λ = r·r/(b + √Q), which is (√Q − b)/(−C), it falls as b
-    /// grows; for an eye inside the second way of writing it bounds it where b ≤ 0.
-    fn exits(&self, q: Range, b: Range, patch: &Patch) -> Range {
+    /// Returns the inverse depths of exits. 1/λ = r·r/(b + √Q) = (√Q − b)/(−C) falls as b grows;
+    /// for an eye inside, the second form bounds it where b ≤ 0.
+    fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
         };
         let (x, y) = (reach(0, patch.center.x), reach(1, patch.center.y));
         let z = patch.center.z;
-        let square = Range {
+        let square = Interval {
             low: x.1 * x.1 + y.1 * y.1 + z * z,
             high: x.0 * x.0 + y.0 * y.0 + z * z + f64::MIN_POSITIVE,
         };
@@ -251,7 +253,7 @@ impl Sphere<f64> {
         let power = self.power.size();
         let low = square.low / (b.high + q.1);
         let high = square.high / (b.low + q.0);
-        Range {
+        Interval {
             low: if b.high + q.1 > 0.0 { low } else { 0.0 },
             high: if b.low > 0.0 {
                 high
@@ -263,10 +265,10 @@ impl Sphere<f64> {
         }
     }
 
-    /// Q and c·r over a rectangle, Q by its expansion about the centre.
+    /// Expands Q and c·r over a rectangle; Q about the rectangle's centre.
     ///
-    /// Its factors are made of the same products as Q, and the rectangle is within the window, so
-    /// that Q's bound counts once for the value at the centre, twice for each gradient and once
+    /// The factors consist of the same products as Q, and the rectangle is within the window, so
+    /// Q's error bound counts once for the value at the centre, twice for each gradient and once
     /// for each of the three second derivatives.
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 8.0;
@@ -292,27 +294,27 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// What b + √Q is to be multiplied by to be the inverse depth of the near side, and the
-    /// relative error of that; `None` for an eye that is not outside, or not known to a
-    /// quarter: up to there twice the error of a number covers that of its inverse.
+    /// Returns the factor from b + √Q to the inverse depth of the near side, and the factor's
+    /// relative error. Returns `None` if the eye is not outside, or if C has a relative error of
+    /// 1/4 or more: below that, twice the error of a number covers the error of its inverse.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
     }
 
-    /// In the world's unit, and wider than all the roundings on the way.
-    fn widened(&self, range: Range) -> Range {
-        // A few roundings of 2^−53, and what the power is off, which is compared with it below.
+    /// Converts a range to the world's unit and widens it by more than all roundings so far.
+    fn widened(&self, range: Interval) -> Interval {
+        // A few roundings of 2^−53, and the error of C, which is compared with it below.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
-        // A power that is not known well is that of an eye on the surface.
+        // A power with a large error is that of an eye on the surface.
         if power < WIDER - 1.0 || self.side == Ordering::Equal {
-            Range {
+            Interval {
                 low: range.low / WIDER / WIDER * self.scale,
                 high: range.high * WIDER * WIDER * self.scale,
             }
         } else {
-            Range::ALL
+            Interval::ALL
         }
     }
 }
@@ -331,7 +333,7 @@ impl<T: Real> Sphere<T> {
         (self.center.each_ref().map(ball), square)
     }
 
-    /// What a number in the sphere's unit of inverse depth is to be multiplied by: a power of two.
+    /// Factor from the sphere's own unit of inverse depth to the world's: a power of two.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -348,7 +350,7 @@ impl<T: Real> Sphere<T> {
 }
 
 impl Sphere<Double> {
-    /// The same sphere for `f64`.
+    /// Rounds the sphere to `f64`.
     pub fn narrowed(&self, window: &Window<f64>) -> Sphere<f64> {
         let center = self.center.map(|x| x.hi);
         let (rad_q, rad_b) = radii::<f64>(
@@ -375,7 +377,7 @@ impl Sphere<Double> {
     }
 }
 
-/// C = c·c − R², scaled, with a small relative error, and its exact sign.
+/// Computes C = c·c − R², scaled, with a small relative error, and its exact sign.
 fn power<T: Real>(
     eye: DVec3,
     center: DVec3,
@@ -397,8 +399,8 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Error bounds of Q and c·r for |X|, |Y| and |Z| up to some, from the sizes of the centre's
-/// coordinates, their error, R² and its error.
+/// Bounds the errors of Q and c·r for |X|, |Y| and |Z| up to the given ones, from the sizes of the
+/// centre's coordinates, their error, R² and its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
@@ -409,7 +411,7 @@ fn radii<T: Real>(
     let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
-    // The components of c × r: each a difference of two products.
+    // The components of c × r, each a difference of two products.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),
@@ -422,7 +424,7 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // No coordinate of the centre is greater than 2, and Z may be off by as much as that.
+    // No coordinate of the centre is greater than 2, and Z may be off by as much.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

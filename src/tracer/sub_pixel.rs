@@ -1,7 +1,7 @@
 //! A pixel, or a square part of one: where exact pictures are computed.
 //!
 //! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre,
-//! without error: sides are powers of two.
+//! without error, since sides are powers of two.
 
 use glam::DVec2;
 
@@ -16,9 +16,9 @@ pub struct SubPixel {
     pub x: u32,
     /// The pixel's row.
     pub y: u32,
-    /// Its centre, as an offset from the pixel's.
+    /// Offset of its centre from the pixel's.
     center: DVec2,
-    /// Its side, in pixels: a power of two.
+    /// Side in pixels: a power of two.
     pub side: f64,
 }
 
@@ -33,7 +33,7 @@ impl SubPixel {
         }
     }
 
-    /// Its four quarters.
+    /// Returns the four quarters.
     pub fn quarters(self) -> [Self; 4] {
         [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)].map(|(x, y)| Self {
             center: self.offset(DVec2::new(x, y)),
@@ -42,12 +42,12 @@ impl SubPixel {
         })
     }
 
-    /// The ray through its centre.
+    /// Returns the ray through the centre.
     pub(crate) fn middle<T: Real>(&self, camera: &Camera<T>) -> Direction<T> {
         camera.direction(&camera.sample_point(self.x, self.y, self.center))
     }
 
-    /// A point of it as an offset from the pixel's centre.
+    /// Converts a point of the part to an offset from the pixel's centre.
     pub(crate) fn offset(&self, at: DVec2) -> DVec2 {
         self.center + at * self.side
     }

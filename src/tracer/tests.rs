@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use rand::{Rng, RngExt, SeedableRng};
 
 use super::{
-    Candidate, World,
+    VisibilityCandidate, World,
     bounds2d::Extent,
     candidates,
     local_form::Patch,
@@ -21,10 +21,10 @@ use crate::{
     scene::{self, Camera, Scene, Shape},
 };
 
-/// Numbers that are the same in each run.
-struct Random(CounterRng);
+/// A generator of random scenes and points, the same in each run.
+struct SceneGenerator(CounterRng);
 
-impl Random {
+impl SceneGenerator {
     fn new(seed: u64) -> Self {
         Self(CounterRng::seed_from_u64(seed))
     }
@@ -42,12 +42,12 @@ impl Random {
         dvec3(one(), one(), one())
     }
 
-    /// From very small to very large.
+    /// Returns a length from very small to very large.
     fn length(&mut self) -> f64 {
         libm::exp2(self.within(-12.0, 4.0))
     }
 
-    /// An object somewhere around the eye, behind it, about it, or touching it.
+    /// Returns an object somewhere around the eye, behind it, about it, or touching it.
     fn shape(&mut self, eye: DVec3) -> Shape {
         let at = eye + self.vector(12.0);
         let size = dvec3(self.length(), self.length(), self.length());
@@ -59,7 +59,7 @@ impl Random {
                 DVec3::splat(size.x),
                 self.within(0.0, 360.0),
             ),
-            // In the eye's own plane, and about parallel to the rays.
+            // In a plane that contains the eye, and about parallel to the rays.
             2 => triangle(
                 eye + dvec3(1.0, 0.0, -2.0),
                 dvec3(0.0, 1.0, 0.0),
@@ -67,7 +67,7 @@ impl Random {
             ),
             3 | 4 => triangle(at, self.vector(1.0), dvec3(2.0, 2.0, 1.0) * size.x),
             5 | 6 => cuboid(at - size, at + size),
-            // The eye in a face's plane, on the surface, and inside.
+            // The eye lies in a face's plane; on the surface; inside.
             7 => cuboid(dvec3(eye.x, at.y, at.z), dvec3(eye.x, at.y, at.z) + size),
             8 => sphere(eye + dvec3(0.0, 0.0, -size.x), size.x),
             9 => sphere(eye + size * 0.25, size.max_element()),
@@ -75,7 +75,7 @@ impl Random {
         }
     }
 
-    /// Such objects, some of them twice, in a picture of some pixels.
+    /// Returns a picture of such objects, some of them twice.
     fn scene(&mut self, objects: usize) -> Scene {
         let eye = self.vector(2.0);
         let mut shapes: Vec<Shape> = Vec::new();
@@ -84,7 +84,8 @@ impl Random {
                 0 if !shapes.is_empty() => shapes[self.below(shapes.len())],
                 _ => self.shape(eye),
             };
-            // Most of what hides all the others would leave nothing to decide.
+            // Most objects that hide everything else are left out: they would leave nothing to
+            // decide.
             let hides = matches!(shape, Shape::Sphere(shape) if shape.radius > 3.0);
             if !hides || self.below(8) == 0 {
                 shapes.push(shape);
@@ -109,12 +110,13 @@ impl Random {
 /// A pixel, and an offset in it.
 type Sample = (u32, u32, DVec2);
 
-/// What is seen at a point by the plain loop over all objects.
+/// Returns the slot that is seen at a point, by the plain loop over all objects.
 fn plain(world: &World, (x, y, offset): Sample) -> usize {
     world.slot_among(x, y, offset, 0..world.object_count())
 }
 
-/// The same in one precision alone; none if that is in doubt.
+/// Returns the slot that is seen at a point, in one precision alone. Returns `None` if that is in
+/// doubt.
 fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
@@ -122,7 +124,7 @@ fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize>
     Some(world.slot(seen))
 }
 
-/// The sample at a point of the view plane, if it is in the picture.
+/// Returns the sample at a point of the view plane, if it is in the picture.
 fn sample_of(world: &World, at: DVec2) -> Option<Sample> {
     let pixels = at / world.geometry.fast.camera.pitch + f64::from(SIZE) / 2.0;
     let floor = pixels.floor();
@@ -139,11 +141,11 @@ fn extents(world: &World, scene: &Scene) -> Vec<Option<Extent>> {
 #[test]
 fn the_quadtree_changes_nothing() {
     for seed in 0..60 {
-        let mut random = Random::new(seed);
+        let mut random = SceneGenerator::new(seed);
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // And at the ends of the bounds, where they matter, and within the last bits of them.
+        // Also points at the ends of the bounds, where these matter, and within their last bits.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {
@@ -163,8 +165,8 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// The rows at the horizon leave doubts of about 1e-10 of the samples. And what lies in one plane
-/// is no doubt, which would cost a hundred times as much as a decision.
+/// The rows at the horizon leave about 1e-10 of the samples in doubt. Objects in one plane leave no
+/// doubt, which would cost a hundred times as much as a decision.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -181,7 +183,7 @@ fn f64_alone_decides_nearly_everything() {
         spun(DVec3::ZERO, dvec3(1.0, 2.0, 3.0), DVec3::splat(6.0), 0.0),
         spun(DVec3::ZERO, dvec3(3.0, 6.0, 9.0), DVec3::splat(6.0), 180.0),
     ];
-    let mut random = Random::new(2);
+    let mut random = SceneGenerator::new(2);
     for shapes in [&figure[..], &in_one_plane] {
         let camera = camera(dvec3(3.0, 3.5, 8.0), dvec3(0.2, 0.8, 0.0));
         let world = World::new(&scene(camera, shapes));
@@ -198,7 +200,7 @@ fn f64_alone_decides_nearly_everything() {
 fn what_a_ray_meets_is_within_bounds() {
     let mut met = 0;
     for seed in 1000..1040 {
-        let mut random = Random::new(seed);
+        let mut random = SceneGenerator::new(seed);
         let scene = random.scene(40);
         let world = World::new(&scene);
         let extents = extents(&world, &scene);
@@ -228,8 +230,8 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // Of a sphere at the height of the eye, the ends right and left are met at that height; of a
-    // box, at a corner.
+    // The left and right ends of a sphere at the height of the eye are met at that height, those of
+    // a box at a corner.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
@@ -254,7 +256,7 @@ fn bounds_are_tight() {
 fn what_is_seen_in_a_part_is_a_candidate_there() {
     let mut seen = 0;
     for seed in 2000..2060 {
-        let mut random = Random::new(seed);
+        let mut random = SceneGenerator::new(seed);
         let world = World::new(&random.scene(3 + (seed as usize - 2000) * 4));
         let camera = &world.geometry.fast.camera;
         let (mut some, mut all) = (Vec::new(), Vec::new());
@@ -270,8 +272,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
-            // The quadtree's bounds may leave out more, but nothing else comes in.
-            let objects = |candidates: &[Candidate]| -> Vec<_> {
+            // The quadtree's bounds may exclude more objects, but never admit others.
+            let objects = |candidates: &[VisibilityCandidate]| -> Vec<_> {
                 candidates
                     .iter()
                     .map(|candidate| candidate.object)
@@ -293,18 +295,19 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// Of objects in one plane nearly every sample point asks whether they are: were they prepared for
-/// it, there would be as much to do for a point as for a scene where they are too many to be kept.
+/// With objects in one plane, nearly every sample point asks whether they are. If they were
+/// prepared in a higher precision for it, a point would cost as much as in a scene with too many
+/// objects for the cache.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![
         board(0.0, 0.25),
         cuboid(dvec3(-2.0, -1.0, -1.0), dvec3(2.0, 0.0, 1.0)),
     ];
-    let mut random = Random::new(5);
+    let mut random = SceneGenerator::new(5);
     for _ in 0..80 {
-        // In y = 0, y = −z and z = 0.3 x, as whole numbers of 64ths and with normals of several
-        // lengths.
+        // In the planes y = 0, y = −z and z = 0.3 x, with coordinates in whole 64ths and normals of
+        // several lengths.
         let [a, b] = [0, 1].map(|_| (random.below(256) as f64 - 128.0) / 64.0);
         let length = random.below(9) as f64 - 4.5;
         for (at, normal) in [
@@ -316,22 +319,23 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
         }
     }
     let world = World::new(&scene(camera(dvec3(3.0, 3.5, 8.0), DVec3::ZERO), &shapes));
-    let mut together = 0;
+    let mut several = 0;
     for _ in 0..2000 {
         let (x, y, offset) = random.point();
         let point = world.geometry.fast.camera.sample_point(x, y, offset);
-        together += usize::from(world.candidates(&point).len() > 2);
+        several += usize::from(world.candidates(&point).len() > 2);
         world.slot_at(x, y, offset);
     }
-    assert!(together > 1000, "{together} points with several objects");
+    assert!(several > 1000, "{several} points with several objects");
     let Geometry { double, big, .. } = &world.geometry;
-    assert_eq!(double.kept.len() + big.kept.len(), 0);
+    assert_eq!(double.cache.len() + big.cache.len(), 0);
 }
 
 #[test]
 fn very_many_objects() {
-    // Enough that several threads prepare them, all over the picture and many in one place.
-    let mut random = Random::new(1);
+    // Enough objects for several threads to prepare them, all over the picture and many in one
+    // place.
+    let mut random = SceneGenerator::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
     let template = stage.objects[0].clone();
@@ -344,7 +348,7 @@ fn very_many_objects() {
         let mut object = template.clone();
         object.shape = sphere(dvec3(x, y, -1.0) * depth, radius * depth);
         if let Shape::Sphere(sphere) = &mut object.shape {
-            // Each has its own colour.
+            // Each sphere has its own colour.
             sphere.color.srgb[0] = f64::from(index) / 256.0;
         }
         objects.push(object);
@@ -359,7 +363,7 @@ fn very_many_objects() {
     for number in 0..160 {
         let mut point = random.point();
         if number % 4 == 0 {
-            // A cluster that is far smaller than a pixel, about the corner of the middle ones.
+            // A cluster that is far smaller than a pixel, about the corner of the middle pixels.
             let [x, y] = [0, 1].map(|_| random.within(-1e-9, 1e-9));
             point = sample_of(&world, dvec2(x, y)).expect("the middle of the picture");
         }

@@ -1,7 +1,7 @@
 //! The triangle: three edges, each a line in the view plane.
 //!
-//! In: the triangle's numbers and the camera. Out: a [`Convex`] object of three edges, each form
-//! the determinant of the edge's ends and the ray, and one face; and its corners.
+//! In: the triangle's numbers and the camera. Out: a [`Convex`] object of one face and three edges,
+//! whose forms are the determinants of the edge's ends and the ray; and the triangle's corners.
 
 use std::{array, cmp::Ordering};
 
@@ -17,8 +17,8 @@ use crate::{
     scene::{self, CenteredTriangle, Outline},
 };
 
-/// Prepares a triangle, and tells its corners in the camera's axes; `None` if its plane holds the
-/// eye, which sees it edge-on: not at all.
+/// Prepares a triangle, and returns it with its corners in the camera's axes. Returns `None` if its
+/// plane contains the eye, which sees nothing of it.
 pub fn prepare<T: Real>(
     camera: &Camera<T>,
     shape: &scene::Triangle,
@@ -29,8 +29,8 @@ pub fn prepare<T: Real>(
     }
 }
 
-/// Two triangles that share an edge have the same two points for it, so that of every ray they know
-/// exactly the same.
+/// Prepares a triangle that is given by its vertices. Two triangles that share an edge have the
+/// same two points for it, so that they decide exactly the same of every ray.
 fn by_vertices<T: Real>(
     camera: &Camera<T>,
     vertices: &[DVec3; 3],
@@ -42,8 +42,8 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// The normal a × b of the plane through the eye and an edge from a corner to another. Its form
-/// matters by its sign alone, so it may have a scale of its own.
+/// Returns the normal a × b of the plane through the eye and an edge. Only the sign of its form
+/// matters, so its scale is free.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
         // a × b = a × (b − a)
@@ -55,7 +55,7 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
             return normal;
         }
     }
-    // Corners may be so far away that they are in one direction but for hundreds of bits.
+    // Corners may be so far away that their directions differ only after hundreds of bits.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
@@ -66,8 +66,8 @@ fn by_centroid<T: Real>(
     shape: &CenteredTriangle,
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     let plane = SeenPlane::across(camera, shape)?;
-    // The eye sees each corner at c + o, c being the centroid. Both may be of any size beside each
-    // other.
+    // The eye sees each corner at c + o, where c is the centroid. The ratio of c to o may be of any
+    // size.
     let from_eye = camera.relative(shape.centroid);
     let offsets = offsets::<T>(shape);
     let [far, near] = [
@@ -80,9 +80,9 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // The edges' forms matter by their signs alone, so lengths may be scaled. From the corners
-    // themselves little would be left of a triangle far away beside its size: of a × b, a = c +
-    // o and b = c + p, that is c × (p − o) + o × p.
+    // Only the signs of the edges' forms matter, so lengths may be scaled. The corners themselves
+    // would lose most digits of a triangle that is small beside its distance; with a = c + o and b
+    // = c + p, a × b is therefore computed as c × (p − o) + o × p.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -95,20 +95,20 @@ fn by_centroid<T: Real>(
     ))
 }
 
-/// A vector times a power of two that brings its greatest coordinate near to 1.
+/// Scales a vector by the power of two that brings its greatest coordinate near to 1.
 fn scaled_to_one<T: Real>(v: &Ball3<T>) -> Ball3<T> {
     let exponent = exponent_of(array::from_ref(v));
     v.each_ref().map(|x| x.scaled(-exponent))
 }
 
-/// The exponent of the greatest coordinate.
+/// Returns the exponent of the greatest coordinate.
 fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     let sizes = points.iter().flatten().map(Ball::size);
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
-/// The vertices of a triangle in the world: as they are written, or left base end, right base end,
-/// apex, each coordinate rounded once.
+/// Returns the vertices of a triangle in the world, each coordinate rounded once: as they are
+/// written, or left base end, right base end, apex.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
         Outline::Vertices(vertices) => return *vertices,
@@ -119,24 +119,25 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
-/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number a
-/// rounding of the true one. So triangles in one plane, with normals of whatever lengths, get the
-/// same n and h, and planes along the axes those of a box's faces.
+/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number correctly
+/// rounded. Triangles in one plane therefore get the same n and h, whatever the lengths of their
+/// normals, and planes along the axes get those of a box's faces.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
-    /// On which side of it the eye lies: the sign of h for the normal that the scene gives.
+    /// Side of the plane on which the eye lies: the sign of h for the normal that the scene gives.
     side: Ordering,
 }
 
 impl<T: Real> SeenPlane<T> {
-    /// Through three points, the normal being (b − a) × (c − a); none if it holds the eye.
+    /// The plane through three points, with the normal (b − a) × (c − a). Returns `None` if it
+    /// contains the eye.
     fn through(camera: &Camera<T>, [a, b, c]: &[DVec3; 3]) -> Option<Self> {
         let normal = Dyadic::cross(&Dyadic::between(*a, *b), &Dyadic::between(*a, *c));
         Self::new(camera, *a, &normal)
     }
 
-    /// Through a triangle's centroid; none if it holds the eye.
+    /// The plane through a triangle's centroid. Returns `None` if it contains the eye.
     fn across(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<Self> {
         Self::new(camera, shape.centroid, &Dyadic::vector(shape.normal))
     }
@@ -155,20 +156,18 @@ impl<T: Real> SeenPlane<T> {
         })
     }
 
-    /// The triangle in it with these edges; seen from behind, each turns the other way round.
+    /// Returns the triangle with these edges in the plane. Seen from behind, every edge is
+    /// reversed.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
-        let facing = |n: Ball3<T>| match self.side.is_lt() {
-            true => n.map(|x| -x),
-            false => n,
-        };
+        let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
         let plane = inverse_depth(camera, &self.normal, &self.height);
         Convex::new(edges.collect(), vec![(0, plane)], Vec::new())
     }
 }
 
-/// The vertices as seen from the centroid, in the world's axes: left base end, right base end,
-/// apex.
+/// Returns the vertices relative to the centroid, in the world's axes: left base end, right base
+/// end, apex.
 ///
 /// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² +
 /// c²)/(2c) and y = 2A/c, the area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
@@ -200,8 +199,8 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     })
 }
 
-/// Unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| × right, with
-/// (0, 0, −1) for Y where n is parallel to it.
+/// Returns unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| ×
+/// right, with (0, 0, −1) instead of Y if n is parallel to it.
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
@@ -210,7 +209,7 @@ fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
         let right = [Ball::exact(1f64.copysign(y)), zero.clone(), zero.clone()];
         return (right, [zero.clone(), zero, -one]);
     }
-    // Y × n = (z, 0, −x). Its length is formed apart from y, which may be larger by any factor.
+    // Y × n = (z, 0, −x). Its length is computed apart from y, which may be larger by any factor.
     let exponent = -libm::frexp(x.abs().max(z.abs())).1;
     let [sx, sz] = [x, z].map(|k| Ball::<T>::exact(k).scaled(exponent));
     let across = (&sx * &sx + &sz * &sz).sqrt();

@@ -16,7 +16,7 @@ use glam::DVec3;
 use pinhole::{
     render::{Control, render},
     scene::{Count, Method, Scene},
-    tracer::{Part, Quartering, Scratch, World},
+    tracer::{PicturePart, Quartering, Scratch, World},
 };
 
 #[path = "../../benches/one_by_one/mod.rs"]
@@ -259,7 +259,7 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
             whole(&all),
             &mut Scratch::default(),
             &mut |part| match part {
-                Part::Crowded { .. } => ControlFlow::Break(()),
+                PicturePart::Crowded { .. } => ControlFlow::Break(()),
                 _ => ControlFlow::Continue(()),
             },
         );

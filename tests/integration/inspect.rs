@@ -6,7 +6,7 @@ use pinhole::{
     probe::{Probe, probe},
     report::numerics::oracle::{ALL_SIZES, Oracle, length},
     scene::{self, View},
-    seen::Seen,
+    seen::Visibility,
     tracer::World,
 };
 
@@ -315,16 +315,16 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         let inspection = inspected(&text);
         let rest = json_of(&inspection)["rest"].clone();
         let seen = inspection.objects[100..].iter().map(|it| it.seen);
-        let count = |is_it: fn(&Seen) -> bool| seen.clone().filter(is_it).count() as u64;
+        let count = |is_it: fn(&Visibility) -> bool| seen.clone().filter(is_it).count() as u64;
         assert_eq!(rest["objects"], 50, "{first}");
         assert_eq!(
             rest["seen"],
-            count(|it| matches!(it, Seen::Part(..))),
+            count(|it| matches!(it, Visibility::Part(..))),
             "{first}"
         );
         assert_eq!(
             rest["outside"],
-            count(|it| matches!(it, Seen::Outside(_))),
+            count(|it| matches!(it, Visibility::Outside(_))),
             "{first}"
         );
     }

@@ -6,14 +6,14 @@ use std::{
     io::{self, BufReader, Read, Seek, SeekFrom},
     path::Path,
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex,
         atomic::{AtomicU64, Ordering},
     },
 };
 
 use zip::{DateTime, ZipArchive, result::ZipError};
 
-use crate::files;
+use crate::{files, lock::lock};
 
 /// Maximum length of a submitted file, in a zip file or beside it, in bytes.
 pub const FILE_LIMIT: u64 = 256 << 20;
@@ -160,7 +160,7 @@ impl Archive {
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
         /// Number of bytes that are unpacked between two checks of the budget.
         const PIECE: u64 = 1 << 16;
-        let mut zip = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;
         let mut bytes = Vec::new();
         loop {

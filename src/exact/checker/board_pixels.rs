@@ -11,7 +11,7 @@ use super::{
     homography::Sum,
     strips_simd::{Lines, PIXELS, Room, STRIPS},
 };
-use crate::tracer::{Candidate, Checks};
+use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
 /// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and
 /// pixels with more lines are few. (Measured: with 8 or 128 times differ by about a tenth at most.)
@@ -25,7 +25,7 @@ pub(in crate::exact) struct BoardPixel {
     /// Its row.
     pub y: u32,
     /// The checkerboard.
-    pub candidate: Candidate,
+    pub candidate: VisibilityCandidate,
 }
 
 /// The pixels that wait, by the numbers of lines that cross them.
@@ -59,7 +59,7 @@ impl BoardBatches {
     pub fn push(
         &mut self,
         pixel: BoardPixel,
-        checks: &Checks,
+        checks: &CheckerPixel,
         tell: &mut impl FnMut(BoardPixel, Option<Sum>),
     ) {
         let ranges = checks.ranges();
@@ -117,7 +117,7 @@ mod tests {
         math::Angle,
         report::numerics::scenes::{board, camera, scene},
         scene::{Camera, Lens},
-        tracer::{Part, Quartering, SubPixel, World},
+        tracer::{PicturePart, Quartering, SubPixel, World},
     };
     use glam::dvec3;
     use proptest::prelude::*;
@@ -137,8 +137,8 @@ mod tests {
         let mut batches = BoardBatches::new();
         let mut known = Vec::new();
         let mut tell = |pixel, sum| known.push((pixel, sum));
-        let mut visit = |part: Part| {
-            if let Part::Pixel {
+        let mut visit = |part: PicturePart| {
+            if let PicturePart::Pixel {
                 x,
                 y,
                 candidates: [candidate],

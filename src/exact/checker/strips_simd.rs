@@ -27,7 +27,7 @@ use super::{
     homography::{Sum, UNIT},
     special::square_wave,
 };
-use crate::tracer::{Checks, LocalForm, Squares};
+use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
 /// At most so many lines cut the pixels into strips: their sides, 34 of 320 bytes, stay in the
 /// first-level cache.
@@ -109,8 +109,14 @@ impl Sums {
 impl Lines {
     /// Sets one of the pixels: the family with fewer lines comes first, and lines are counted from
     /// each family's first square.
-    pub fn set(&mut self, place: usize, checks: &Checks, families: [usize; 2], first: [f64; 2]) {
-        let Squares { across, below, odd } = &checks.squares;
+    pub fn set(
+        &mut self,
+        place: usize,
+        checks: &CheckerPixel,
+        families: [usize; 2],
+        first: [f64; 2],
+    ) {
+        let CheckerForms { across, below, odd } = &checks.squares;
         let [few, many] = families.map(|family| across[family].less(first[family], below));
         self.few.set(place, &few);
         self.many.set(place, &many);

@@ -1,5 +1,5 @@
-//! The grid in which a quadtree counts: whole numbers for places in the view plane and for how near
-//! an object is.
+//! The grid in which a quadtree counts: whole numbers for places in the view plane and for the
+//! nearness of an object.
 //!
 //! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of
 //! an `f64`. Both conversions are monotone, and bounds are rounded outwards.
@@ -7,56 +7,56 @@
 use crate::tracer::{
     bounds2d::Extent,
     camera::{Direction, Window},
-    interval::Range,
+    interval::Interval,
     local_form::Patch,
 };
 
-/// By how much the root is wider than the window: a sixteenth on either side, so that rectangles of
-/// pixels at its rim, roundings included, are inside.
+/// Ratio of the root's side to the window's: a sixteenth wider on either side, so that rectangles
+/// of pixels at the rim are inside, including roundings.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// The side of the root is 2 to this power, in units of the grid: a pixel of a picture a hundred
-/// thousand pixels wide is a hundred of them.
+/// Binary logarithm of the root's side in units of the grid. A pixel of a picture 100,000 pixels
+/// wide is about a hundred units.
 pub(super) const LEVELS: u32 = 24;
 
-/// A rectangle in the units of the grid, ends included.
+/// A rectangle in units of the grid, ends included.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub(super) low: [u32; 2],
     pub(super) high: [u32; 2],
 }
 
-/// An object's bounds, and how near it is at most.
+/// The bounds of an object, and its maximum nearness.
 #[derive(Clone, Copy, Debug)]
-pub struct Item {
-    /// Where it may be seen.
+pub struct BoundedObject {
+    /// Rectangle in which the object may be seen.
     pub bounds: Rectangle,
-    /// Above what its inverse depths may be.
+    /// Upper bound of the object's inverse depths.
     pub nearest: Nearness,
     /// Its index in the file.
     pub object: u32,
 }
 
-/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, which is ordered as
-/// the number is.
+/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, whose order is that
+/// of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 
-/// From X and Y to the units of the grid.
+/// The conversion from X and Y to units of the grid.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// The window, ends included: no point outside of it can be asked for.
+    /// The window, ends included: no point outside of it is ever asked for.
     low: [u32; 2],
     high: [u32; 2],
 }
 
 impl Nearness {
-    /// Nothing is as far as this.
+    /// The nearness that everything exceeds.
     pub const NONE: Self = Self(0);
 
-    /// More than a number that is not negative; infinite for NaN.
+    /// Rounds up a number that is not negative; infinite for NaN.
     fn above(x: f64) -> Self {
         if x >= 0.0 {
             Self((x.to_bits() >> 32) as u32 + 1)
@@ -65,7 +65,7 @@ impl Nearness {
         }
     }
 
-    /// A number or less; none for NaN.
+    /// Rounds down a number; [`NONE`](Self::NONE) for NaN.
     pub fn below(x: f64) -> Self {
         if x > 0.0 {
             Self((x.to_bits() >> 32) as u32)
@@ -76,8 +76,8 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// Meets every rectangle. `u32::MAX` is left out, since a share counts units up to one behind
-    /// the last.
+    /// The rectangle that meets every other. `u32::MAX` is left out, since a share counts units up
+    /// to one beyond the last.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],
@@ -96,7 +96,7 @@ impl Rectangle {
         holds(0) & holds(1)
     }
 
-    /// What share of another rectangle this one covers.
+    /// Returns the share of another rectangle that this one covers, 0 to 1.
     pub fn share_of(&self, other: &Self) -> f64 {
         let share = |i: usize| {
             let (low, high) = (
@@ -115,8 +115,8 @@ impl Rectangle {
     }
 }
 
-impl Grid {
-    /// The grid of a window.
+impl CellGrid {
+    /// Builds the grid of a window.
     pub fn new(window: &Window<f64>) -> Self {
         let half = window.x.max(window.y) * ROOT_MARGIN;
         let mut grid = Self {
@@ -131,15 +131,15 @@ impl Grid {
         grid
     }
 
-    /// The unit that a coordinate lies in, or the nearest one; the first for NaN.
+    /// Returns the unit that contains a coordinate, or the nearest unit; the first one for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // One less than the last unit, so that the window's end, one more, is a unit, too.
+        // One less than the last unit, so that the window's end, one unit further, exists, too.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
 
-    /// The units of a direction that lies in the window.
+    /// Returns the units of a direction. Returns `None` outside of the window.
     #[inline]
     pub(super) fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
         let at = [self.unit(r.x), self.unit(r.y)];
@@ -147,8 +147,8 @@ impl Grid {
         (is_within(0) && is_within(1)).then_some(at)
     }
 
-    /// The ends of some ranges within the window; none if one of them lies outside.
-    fn ends(&self, ranges: [Range; 2]) -> Option<Rectangle> {
+    /// Clips two ranges to the window. Returns `None` if one of them lies outside.
+    fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);
             low.max(self.low[i])
@@ -157,18 +157,19 @@ impl Grid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Rectangle { low, high })
     }
 
-    /// What holds all rays through a patch; none outside of the window.
+    /// Returns the rectangle that contains all rays through a patch. Returns `None` outside of the
+    /// window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
-        self.ends([0, 1].map(|i| Range::about(center[i], 0.5 * patch.sides[i])))
+        self.ends([0, 1].map(|i| Interval::about(center[i], 0.5 * patch.sides[i])))
     }
 
-    /// An object in the grid; none outside of the window.
-    pub fn item(&self, object: usize, extent: &Extent) -> Option<Item> {
-        Some(Item {
+    /// Converts the bounds of an object. Returns `None` outside of the window.
+    pub fn item(&self, object: usize, extent: &Extent) -> Option<BoundedObject> {
+        Some(BoundedObject {
             bounds: self.ends(extent.across)?,
             nearest: Nearness::above(extent.nearest),
-            // More would not fit into memory.
+            // More objects would not fit into memory.
             object: object as u32,
         })
     }

@@ -1,16 +1,16 @@
 //! The point query: the objects that one ray may meet.
 //!
-//! In: a point in the grid. Out: the objects of the cells that hold it, from the root down, each
-//! list ended where the rest is hidden.
+//! In: a point in the grid. Out: the objects of the cells that contain it, from the root down; each
+//! list ends where the rest is hidden.
 
 use super::{
-    grid::{Item, LEVELS, Nearness},
-    tree::Tree,
+    grid::{BoundedObject, LEVELS, Nearness},
+    tree::Cells,
 };
 
-impl Tree {
-    /// Shows `visit` the objects that the ray through a point may meet, until it fails, but for
-    /// those that are not nearer than it last answered.
+impl Cells {
+    /// Calls `visit` with the objects that the ray through a point may meet, until it fails.
+    /// Objects that are not nearer than its last answer are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -36,10 +36,11 @@ impl Tree {
     }
 }
 
-/// Shows `visit` the objects of one list, the nearest first, that the ray through a point may meet.
+/// Calls `visit` with the objects of one list, the nearest first, that the ray through a point may
+/// meet.
 #[inline]
 pub(super) fn visit_list<E>(
-    list: &[Item],
+    list: &[BoundedObject],
     at: [u32; 2],
     hidden: &mut Nearness,
     visit: &mut impl FnMut(usize) -> Result<Nearness, E>,

@@ -1,55 +1,55 @@
 //! The rectangle query: the objects that rays through a rectangle may meet.
 //!
-//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, but for those
-//! behind one that fills it.
+//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, except those
+//! behind an object that fills it.
 
 use super::{
-    grid::{Item, Nearness, Rectangle},
-    tree::{CellSquare, Tree},
+    grid::{BoundedObject, Nearness, Rectangle},
+    tree::{CellSquare, Cells},
 };
 
-/// An object is listed in no more cells than this: it is no longer than the cells that list it, and
-/// meets two of them along each axis.
-const CELLS: usize = 4;
+/// Maximum number of cells that list one object: it is no longer than such a cell, and meets at
+/// most two of them along each axis.
+const MAX_CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may meet.
 pub(super) struct Search<'a, F> {
-    tree: &'a Tree,
+    tree: &'a Cells,
     rectangle: &'a Rectangle,
-    /// More entries than this are of too many objects.
+    /// Maximum number of entries.
     most: usize,
-    /// What is not nearer than this is behind an object, if that fills the rectangle.
+    /// Returns the nearness at and below which an object hides others, if it fills the rectangle.
     behind: F,
-    /// What is not nearer than this is hidden.
+    /// Nearness at and below which everything is hidden.
     hidden: Nearness,
-    found: Vec<Item>,
+    found: Vec<BoundedObject>,
 }
 
 impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
-    pub(super) fn new(tree: &'a Tree, rectangle: &'a Rectangle, most: usize, behind: F) -> Self {
+    pub(super) fn new(tree: &'a Cells, rectangle: &'a Rectangle, most: usize, behind: F) -> Self {
         Self {
             tree,
             rectangle,
-            most: most.saturating_mul(CELLS),
+            most: most.saturating_mul(MAX_CELLS),
             behind,
             hidden: Nearness::NONE,
             found: Vec::new(),
         }
     }
 
-    /// The objects, in file order; none if they are too many.
-    pub(super) fn run(mut self) -> Option<Vec<Item>> {
+    /// Returns the objects in file order. Returns `None` if they are too many.
+    pub(super) fn run(mut self) -> Option<Vec<BoundedObject>> {
         self.below(0, CellSquare::ROOT)?;
         let mut items = self.found;
         items.retain(|item| item.nearest > self.hidden);
         items.sort_unstable_by_key(|item| item.object);
-        // Those that lie in several cells.
+        // Removes repetitions of objects that lie in several cells.
         items.dedup_by_key(|item| item.object);
         Some(items)
     }
 
-    /// Adds what a cell lists, and then what those below it do: the large objects come first, which
-    /// may hide the others. None if that is too much.
+    /// Adds the objects of a cell, and then those of its quarters: large objects, which may hide
+    /// others, come first. Returns `None` if they are too many.
     fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {

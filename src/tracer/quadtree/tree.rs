@@ -1,44 +1,45 @@
 //! The cells of a quadtree, and the objects listed in them.
 //!
 //! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A
-//! cell is divided while it holds many objects; an object larger than its quarters stays in it.
+//! cell that holds many objects is divided; an object larger than its quarters stays in it.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
-use super::grid::{Item, LEVELS, Nearness, Rectangle};
+use super::grid::{BoundedObject, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
-/// A cell with no more objects is not divided. Measured on 10⁵ spheres: with 16 or 64 pictures take
-/// the same time within a twentieth.
+/// Maximum number of objects of a cell that is not divided. Measured on 10⁵ spheres: 16 and 64
+/// render in the same time within a twentieth.
 pub const OBJECTS_A_CELL: usize = 32;
 
-/// Cells, the first of which holds the others.
+/// All cells; the first one is the root.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(super) struct Cells {
     pub(super) cells: Vec<Cell>,
-    pub(super) entries: Vec<Item>,
+    pub(super) entries: Vec<BoundedObject>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
-    /// Where its four quarters are, or 0 if it is not divided.
+    /// Index of the first of the four quarters, or 0 if the cell is not divided.
     pub(super) quarters: u32,
-    /// Its list among the entries.
+    /// Start of the cell's list among the entries.
     pub(super) start: u32,
+    /// End of the cell's list.
     pub(super) end: u32,
-    /// The nearest of its own list and of all below it.
+    /// Maximum nearness of the cell's own list and of all cells below it.
     pub(super) nearest: Nearness,
 }
 
-impl Tree {
-    /// The tree of all cells. Cancelled, it lacks some of the items.
-    pub(super) fn new(items: Vec<Item>, cancel: &AtomicBool) -> Self {
+impl Cells {
+    /// Builds the tree of all cells. If it is cancelled, some of the objects are missing.
+    pub(super) fn new(items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let mut tree = Self {
             cells: vec![Cell::EMPTY],
             entries: Vec::new(),
         };
-        // The items of a cell are the last ones; on the way down those of a quarter are put behind
-        // them.
+        // The last items of the stack are those of the current cell; on the way down, the items of
+        // a quarter are pushed behind them.
         let mut stack = items;
         tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
@@ -46,12 +47,12 @@ impl Tree {
         tree
     }
 
-    /// Fills a cell and all below it with the items from `start` on.
+    /// Fills a cell and all cells below it with the items from `start` on.
     fn divide(
         &mut self,
         cell: usize,
         square: CellSquare,
-        stack: &mut Vec<Item>,
+        stack: &mut Vec<BoundedObject>,
         start: usize,
         cancel: &AtomicBool,
     ) {
@@ -84,8 +85,8 @@ impl Tree {
         }
     }
 
-    /// Lists items in a cell, behind all lists so far.
-    fn list(&mut self, cell: usize, items: &[Item]) {
+    /// Appends the list of a cell to the entries.
+    fn list(&mut self, cell: usize, items: &[BoundedObject]) {
         let start = self.entries.len();
         self.entries.extend_from_slice(items);
         let list = &mut self.entries[start..];
@@ -108,7 +109,7 @@ impl Cell {
     };
 }
 
-/// Where a cell is, and that its side is 2^level.
+/// The square of a cell: its corner, and the binary logarithm of its side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellSquare {
     corner: [u32; 2],
@@ -121,7 +122,7 @@ impl CellSquare {
         level: LEVELS,
     };
 
-    /// All of the cell.
+    /// Returns the whole square.
     #[inline]
     pub(super) fn bounds(self) -> Rectangle {
         Rectangle {
@@ -130,14 +131,14 @@ impl CellSquare {
         }
     }
 
-    /// Whether an object is as large as the cell's quarters or larger, and so not listed below it:
-    /// a smaller one meets two of them along each axis.
-    fn keeps(self, item: &Item) -> bool {
+    /// Whether an object is at least as large as the cell's quarters, and therefore not listed
+    /// below it: a smaller one meets at most two of them along each axis.
+    fn keeps(self, item: &BoundedObject) -> bool {
         let Rectangle { low, high } = item.bounds;
         (0..2).any(|axis| high[axis] - low[axis] >= 1 << (self.level - 1))
     }
 
-    /// A quarter: right of the first for 1 and 3, below it for 2 and 3.
+    /// Returns a quarter: right of the first for 1 and 3, below it for 2 and 3.
     pub(super) fn quarter(self, quarter: u32) -> Self {
         let level = self.level - 1;
         let [x, y] = self.corner;

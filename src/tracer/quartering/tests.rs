@@ -1,10 +1,10 @@
-//! What is found of a part.
+//! The parts of a picture and their candidates.
 
 use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3, dvec3};
 
-use super::{Part, Quartering, Scratch, candidates};
+use super::{PicturePart, Quartering, Scratch, candidates};
 use crate::{
     area::Area,
     report::numerics::scenes::{SIZE, along, board, cuboid, scene, sphere, triangle},
@@ -16,7 +16,7 @@ fn world(shapes: &[Shape]) -> World {
     World::new(&scene(along(DVec3::ZERO, DVec3::NEG_Z), shapes))
 }
 
-/// A thousand spheres of a depth all over the picture.
+/// A thousand spheres at one depth, all over the picture.
 fn thousand_spheres(depth: f64) -> Vec<Shape> {
     let sphere = |index: i32| {
         let x = (f64::from(index % 40) - 19.5) * 0.02 * depth;
@@ -26,8 +26,7 @@ fn thousand_spheres(depth: f64) -> Vec<Shape> {
     (0..1000).map(sphere).collect()
 }
 
-/// Large triangles in planes behind each other, in any order, before the first of which nothing
-/// lies.
+/// Large triangles in parallel planes, in any order; no other object lies in front of the first.
 fn triangles_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
@@ -37,8 +36,8 @@ fn triangles_in_layers(count: usize) -> World {
     world(&(0..count).map(layer).collect::<Vec<_>>())
 }
 
-/// Boards below each other and above each other, of one colour each, in any order; the horizon lies
-/// in the picture.
+/// Single-coloured boards below and above each other, in any order; the horizon lies in the
+/// picture.
 fn boards_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let height = 1.0 + (index * 37 % count) as f64 / 64.0;
@@ -64,11 +63,11 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
                 &mut Scratch::default(),
                 &mut |part| {
                     let few = match part {
-                        Part::OneColor { .. } => 0,
+                        PicturePart::OneColor { .. } => 0,
                         // All boards meet at the horizon, between these two rows.
-                        Part::Pixel { y: 31 | 32, .. } => 0,
-                        Part::Pixel { candidates, .. } => candidates.len(),
-                        Part::Crowded { .. } => usize::MAX,
+                        PicturePart::Pixel { y: 31 | 32, .. } => 0,
+                        PicturePart::Pixel { candidates, .. } => candidates.len(),
+                        PicturePart::Crowded { .. } => usize::MAX,
                     };
                     assert!(few <= 2, "{count}: {part:?}");
                     ControlFlow::Continue(())
@@ -95,7 +94,7 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Neither where it lies across the cells of the quadtree.
+        // Nor is anything found behind the wall where it lies across several cells of the quadtree.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -103,8 +102,8 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Near every square of a crowd the objects are known, and of some pixels the only colour; at all
-/// points the same is seen as by the quadtree.
+/// Around every square of a crowd the nearby objects are known, and for some pixels their only
+/// colour; at all points they show what the quadtree shows.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);
@@ -115,12 +114,12 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
     }
     shapes.extend(thousand_spheres(3.0));
     let world = world(&shapes);
-    let (mut told, mut several, mut narrowed) = (0, 0, Vec::new());
+    let (mut known, mut several, mut narrowed) = (0, 0, Vec::new());
     for part in Area::whole(SIZE, SIZE).grid(4) {
         let near = nearby::nearby(&world, part).unwrap();
         for (x, y) in part.iter() {
             let only = nearby::in_part(&world, Area::pixel(x, y), &near, &mut narrowed);
-            told += usize::from(only.is_some());
+            known += usize::from(only.is_some());
             several += usize::from(only.is_none());
             for step in 0..9 {
                 let offset = DVec2::new(f64::from(step % 3 - 1), f64::from(step / 3 - 1)) * 0.49;
@@ -133,5 +132,5 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
             }
         }
     }
-    assert!(told > 100 && several > 100, "{told}, {several}");
+    assert!(known > 100 && several > 100, "{known}, {several}");
 }

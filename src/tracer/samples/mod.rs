@@ -2,13 +2,12 @@
 //!
 //! In: a pixel, its candidates, and where its samples lie. Out: how often each colour is seen.
 //!
-//! In a pixel every boundary is a linear or a quadratic form of the offset from the pixel's centre,
-//! and each has one bound on the error of all its values there. So the objects that may be seen in
-//! the pixel are written down as a few forms, those that have one sign all over it are left out,
-//! and what is left is evaluated for all samples in plain arrays, which the compiler makes vectors
-//! of. A form is divided by its error bound: beyond ±1 its sign is certain. A sample that is not
-//! certain is asked for again on its own, exactly, so that nothing here can change what is seen: it
-//! only says it sooner.
+//! In a pixel, every boundary is a linear or a quadratic form of the offset from the pixel's
+//! centre, with one error bound for all its values there. The objects that may be seen in the pixel
+//! are therefore written as a few forms; forms with one sign all over it are left out, and the
+//! others are evaluated for all samples in plain arrays, which the compiler vectorizes. A form is
+//! divided by its error bound, so that beyond ±1 its sign is certain. An uncertain sample is traced
+//! again on its own, exactly: this module cannot change what is seen, it only finds it sooner.
 
 mod pixel;
 mod prepare;
@@ -16,25 +15,25 @@ mod simd;
 
 use glam::DVec2;
 
-use self::pixel::{BACKGROUND, CHUNK_SAMPLES, ColorCount, DOUBT, Pattern};
-use super::{candidates::Candidate, checker_corners::Checks, world::World};
+use self::pixel::{BACKGROUND, CHUNK_SAMPLES, ColorCount, ColorPattern, DOUBT};
+use super::{candidates::VisibilityCandidate, checker_corners::CheckerPixel, world::World};
 use crate::math::SimdWidth;
 
 pub use self::pixel::PreparedPixel;
 
-/// Prepares a pixel, given the objects that may be seen there, in file order, and, if they are but
-/// a board and that is known, what is seen of it.
+/// Prepares a pixel from the objects that may be seen there, in file order. If a checkerboard is
+/// all that is seen and its squares are known, they are given as `checks`.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
-    candidates: &[Candidate],
-    checks: Option<&Checks>,
+    candidates: &[VisibilityCandidate],
+    checks: Option<&CheckerPixel>,
     pixel: &mut PreparedPixel,
 ) {
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
     match candidates {
-        // Most often, and then without a call to copy it.
+        // The most frequent case, for which `push` avoids the call to copy a slice.
         [only] => pixel.candidates.push(*only),
         _ => pixel.candidates.extend_from_slice(candidates),
     }
@@ -45,9 +44,9 @@ pub fn prepare(
     pixel.is_hard = prepared.is_err();
 }
 
-/// Counts what the samples at some offsets from the centre of a pixel see: `count` is told slots of
-/// the palette, each any number of times. The coordinates of the offsets are two lists, filled up
-/// with any others to a multiple of eight.
+/// Calls `count` with the palette slots that the samples of a pixel see, and how many samples see
+/// each; a slot may occur several times. The samples are given by their offsets from the pixel's
+/// centre, as one list for each coordinate, padded to a multiple of eight.
 pub fn count(
     world: &World,
     pixel: &mut PreparedPixel,
@@ -97,8 +96,8 @@ fn may_see(world: &World, pixel: &mut PreparedPixel) {
         let [first, second] = world.slots(pixel.candidates[surface.index].object);
         let codes = [false, true].map(|odd| surface.code(odd));
         match surface.pattern {
-            Pattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),
-            Pattern::Plain(code) => pixel.colors.push(color(code, first)),
+            ColorPattern::Plain(code) if code == codes[1] => pixel.colors.push(color(code, second)),
+            ColorPattern::Plain(code) => pixel.colors.push(color(code, first)),
             _ => pixel
                 .colors
                 .extend([color(codes[0], first), color(codes[1], second)]),

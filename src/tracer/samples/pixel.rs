@@ -1,40 +1,42 @@
-//! What is kept of one pixel: its surfaces as forms, and the samples of a chunk.
+//! A prepared pixel: its surfaces as forms, and the samples of one chunk.
 
 use super::super::{
-    candidates::Candidate,
-    checker_corners::Squares,
+    candidates::VisibilityCandidate,
+    checker_corners::CheckerForms,
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// So many samples are evaluated at a time: their six [`Lanes`], 3 KiB, and their places stay in
-/// the first-level cache.
+/// Number of samples that are evaluated at a time. Their six [`Lanes`], 3 KiB, and their
+/// coordinates stay in the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// What is seen where nothing is hit, and where it is not certain; object i of the pixel is 2i + 1,
-/// its second colour 2i + 2.
+/// Code of a sample that meets nothing. Object i of the pixel has the code 2i + 1, its second
+/// colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
+/// Code of a sample that is not certain.
 pub(super) const DOUBT: f64 = -1.0;
 
-/// A pixel's objects, prepared for many samples. Kept from pixel to pixel for its room.
+/// The objects of one pixel, prepared for many samples. It is reused from pixel to pixel, to keep
+/// its allocations.
 #[derive(Debug, Default)]
 pub struct PreparedPixel {
-    /// The candidates.
-    pub(super) candidates: Vec<Candidate>,
+    /// The objects that may be seen in the pixel.
+    pub(super) candidates: Vec<VisibilityCandidate>,
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// Of all surfaces.
+    /// Boundary and pattern lines of all surfaces.
     pub(super) lines: Vec<ScaledLine>,
-    /// How far apart inverse depths must be to be told apart, if surfaces are compared sample by
+    /// Minimum difference of inverse depths that is certain, if surfaces are compared sample by
     /// sample.
     pub(super) apart: Option<f64>,
-    /// Of all surfaces, if they are looked at.
+    /// Depth planes of all surfaces; filled only if surfaces are compared sample by sample.
     pub(super) planes: Vec<LocalForm>,
-    /// Whether samples are to be traced one by one.
+    /// Whether samples must be traced one by one.
     pub(super) is_hard: bool,
-    /// What may be seen, where surfaces are told by forms.
+    /// The colours that may be seen, if surfaces are decided by forms.
     pub(super) colors: Vec<ColorCount>,
-    /// How many samples of the last chunk are not certain.
+    /// Number of uncertain samples in the last chunk.
     pub(super) doubts: u64,
     pub(super) lanes: Lanes,
 }
@@ -42,50 +44,49 @@ pub struct PreparedPixel {
 /// A colour that may be seen in a pixel.
 #[derive(Debug)]
 pub(super) struct ColorCount {
-    /// What stands for it.
+    /// The code of the colour in [`Lanes::seen`].
     pub(super) code: f64,
-    /// Its slot in the palette.
+    /// The colour's slot in the palette.
     pub(super) slot: usize,
-    /// How many samples have seen it.
+    /// Number of samples that have seen the colour.
     pub(super) count: u64,
 }
 
-/// What a pixel shows of an object.
+/// One object as a pixel shows it.
 #[derive(Debug)]
 pub(super) struct PixelSurface {
-    /// Its index among the candidates.
+    /// The object's index among the candidates.
     pub(super) index: usize,
-    /// Where its boundaries begin among all lines, and where they end: each is ≥ 0 where it is
-    /// hit.
+    /// Start and end of its boundaries among all lines; each form is ≥ 0 where the object is met.
     pub(super) edges: [usize; 2],
     /// The boundary of a sphere.
     pub(super) conic: Option<LocalQuadratic>,
-    pub(super) pattern: Pattern,
+    pub(super) pattern: ColorPattern,
     pub(super) depth: Depth,
 }
 
-/// Which of its colours an object shows.
+/// Which of its two colours an object shows.
 #[derive(Debug)]
-pub(super) enum Pattern {
-    /// The first or the second.
+pub(super) enum ColorPattern {
+    /// One colour, by its code.
     Plain(f64),
-    /// The first where the product of the lines up to `end`, behind the edges, is positive, if not
-    /// `odd`.
+    /// Two colours, separated by the lines from the end of the edges up to `end`: where the product
+    /// of their forms is positive, the first colour is shown, or the second if `odd`.
     Lines { end: usize, odd: bool },
-    /// Squares by division.
-    Squares(Squares),
+    /// Squares of a checkerboard, by division.
+    Squares(CheckerForms),
 }
 
-/// Where the inverse depth of a surface comes from.
+/// How the inverse depth of a surface is computed.
 #[derive(Debug)]
 pub(super) enum Depth {
-    /// It is not asked for.
+    /// Not needed.
     Unknown,
-    /// The least of some planes'.
+    /// The least of a range of planes.
     Least([usize; 2]),
-    /// The greatest of them.
+    /// The greatest of a range of planes.
     Greatest([usize; 2]),
-    /// That of the near side of a sphere, (b + √Q) · factor.
+    /// The near side of a sphere, (b + √Q) · factor.
     Sphere {
         q: LocalQuadratic,
         b: LocalForm,
@@ -93,20 +94,20 @@ pub(super) enum Depth {
     },
 }
 
-/// The samples of a chunk.
+/// Values of the samples of a chunk, one array per quantity.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    /// What is seen so far.
+    /// Code of what is seen so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// Its inverse depth.
+    /// Inverse depth of what is seen so far.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
-    /// How certainly a surface is hit.
+    /// Least boundary form of the current surface, in units of its error bound.
     pub(super) margin: [f64; CHUNK_SAMPLES],
-    /// What is seen of it.
+    /// Code of what the current surface shows.
     pub(super) shown: [f64; CHUNK_SAMPLES],
-    /// Its inverse depth.
+    /// Inverse depth of the current surface.
     pub(super) depth: [f64; CHUNK_SAMPLES],
-    /// The product of signs.
+    /// Product of the pattern's line forms.
     pub(super) sign: [f64; CHUNK_SAMPLES],
 }
 
@@ -125,18 +126,18 @@ impl Default for Lanes {
 }
 
 impl PixelSurface {
-    /// Without boundaries, which would begin there among all lines.
+    /// A surface without boundaries, whose lines will begin at `start`.
     pub(super) fn new(index: usize, start: usize) -> Self {
         Self {
             index,
             edges: [start; 2],
             conic: None,
-            pattern: Pattern::Plain(0.0),
+            pattern: ColorPattern::Plain(0.0),
             depth: Depth::Unknown,
         }
     }
 
-    /// What stands for one of its colours.
+    /// Returns the code of one of its colours.
     pub(super) fn code(&self, odd: bool) -> f64 {
         (2 * self.index + 1 + usize::from(odd)) as f64
     }

@@ -1,36 +1,36 @@
-//! The preparation of a pixel: what it shows of its candidates, written down as forms.
+//! The preparation of a pixel: what it shows of its candidates, written as forms.
 //!
 //! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths,
-//! sorted from back to front where their depths do not overlap. A form that has one sign all over
-//! the pixel by its bound is left out. What is rare or has overflowed is left to the world, sample
-//! by sample.
+//! sorted from back to front if their depths do not overlap. A form whose bound gives it one sign
+//! all over the pixel is left out. Rare cases and overflows are left to the world, sample by
+//! sample.
 
 use super::{
     super::{
-        candidates::Candidate,
-        checker_corners::{Checks, Squares, is_odd},
+        candidates::VisibilityCandidate,
+        checker_corners::{CheckerForms, CheckerPixel, is_odd},
         checkerboard::Checkerboard,
         form::Form,
         interval::Side,
         local_form::{LOCAL_ROUNDING, LocalForm, Patch},
-        object::Object,
+        object::{Object, SurfaceKind},
         sphere::Sphere,
         world::{Precision, World},
     },
-    pixel::{Depth, Pattern, PixelSurface, PreparedPixel},
+    pixel::{ColorPattern, Depth, PixelSurface, PreparedPixel},
 };
 use crate::{area::Area, math::UP};
 
-/// Forms of a board with greater errors than this are left to higher precisions: products with
-/// numbers of squares, which are below 2^53, and of a few such factors would be infinite.
-const LARGEST: f64 = 1e250;
+/// Error bound of a board's form above which the pixel is left to higher precisions: products of a
+/// few such factors with numbers of squares, which are below 2^53, would be infinite.
+const MAX_ERROR: f64 = 1e250;
 
-/// A square of a board is told by lines if no more than this many of them pass through the pixel,
-/// else by division. Measured: 3 to 12 make no difference, and division alone makes figure 9.9 a
-/// ninth slower.
-const LINES: usize = 6;
+/// Maximum number of board lines through a pixel for which squares are decided by lines; beyond it
+/// they are decided by division. Measured: 3 to 12 make no difference, and division alone makes
+/// figure 9.9 a ninth slower.
+const MAX_LINES: usize = 6;
 
-/// The preparation has met something that is better traced sample by sample.
+/// Error of a preparation that has met a case which is better traced sample by sample.
 pub(super) struct Hard;
 
 impl PreparedPixel {
@@ -39,13 +39,13 @@ impl PreparedPixel {
         let pixel = Patch::new(camera, Area::pixel(self.x, self.y));
         self.clear();
         for index in 0..self.candidates.len() {
-            self.surface(world, &pixel, index)?;
+            self.add_surface(world, &pixel, index)?;
         }
         self.order(world, &pixel)
     }
 
-    /// The same where a board is the only candidate and fills the pixel.
-    pub(super) fn prepare_checks(&mut self, checks: &Checks) -> Result<(), Hard> {
+    /// Prepares a pixel that a board fills and in which nothing else may be seen.
+    pub(super) fn prepare_checks(&mut self, checks: &CheckerPixel) -> Result<(), Hard> {
         self.clear();
         let mut surface = PixelSurface::new(0, 0);
         surface.pattern = self.lines(&checks.squares, checks.ranges(), &surface)?;
@@ -60,23 +60,23 @@ impl PreparedPixel {
         self.apart = None;
     }
 
-    /// Writes down a candidate's boundaries and colours.
-    fn surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
+    /// Writes a candidate's boundaries and colours as forms.
+    fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
         let start = self.lines.len();
         let mut surface = PixelSurface::new(index, start);
-        let met = match object.convex() {
-            _ if candidate.is_whole => true,
-            Ok(convex) => self.edges(convex.bounds(), pixel)?,
-            Err(sphere) => self.silhouette(sphere, pixel, &mut surface)?,
-        };
-        if !met || !self.clips(world, pixel, candidate, object)? {
+        let met = candidate.is_whole
+            || match object.surface_kind() {
+                SurfaceKind::Flat(convex) => self.add_boundaries(convex.bounds(), pixel)?,
+                SurfaceKind::Round(sphere) => self.add_silhouette(sphere, pixel, &mut surface)?,
+            };
+        if !met || !self.add_clips(world, pixel, candidate, object)? {
             self.lines.truncate(start);
             return Ok(());
         }
         surface.edges[1] = self.lines.len();
-        surface.pattern = Pattern::Plain(surface.code(false));
+        surface.pattern = ColorPattern::Plain(surface.code(false));
         if let Object::Checkerboard(board) = object {
             let [first, second] = world.slots(candidate.object);
             if first != second {
@@ -87,18 +87,18 @@ impl PreparedPixel {
         Ok(())
     }
 
-    /// Adds forms that are all ≥ 0 where an object is hit. As all functions down to `clips`, it
-    /// says whether the object may be hit at all.
-    fn edges(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
+    /// Adds forms that are all ≥ 0 where an object is met. Returns whether the object may be met at
+    /// all.
+    fn add_boundaries(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
         for form in forms {
-            if !self.edge(form.local(pixel))? {
+            if !self.add_boundary(form.local(pixel))? {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    fn edge(&mut self, local: LocalForm) -> Result<bool, Hard> {
+    fn add_boundary(&mut self, local: LocalForm) -> Result<bool, Hard> {
         match local.range().side() {
             Side::Above => Ok(true),
             Side::Below => Ok(false),
@@ -110,15 +110,16 @@ impl PreparedPixel {
         }
     }
 
-    /// Where a sphere is hit: everywhere, by an eye inside.
-    fn silhouette(
+    /// Adds the outline of a sphere. Returns whether the sphere may be met at all.
+    fn add_silhouette(
         &mut self,
         sphere: &Sphere<f64>,
         pixel: &Patch,
         surface: &mut PixelSurface,
     ) -> Result<bool, Hard> {
         if !sphere.is_outside() {
-            // On the surface, or too seldom seen in part to be worth a rule of its own.
+            // The eye is on the surface or inside: too rarely seen in part to deserve a rule of its
+            // own.
             return Err(Hard);
         }
         let (q, b) = sphere.local(pixel);
@@ -128,31 +129,32 @@ impl PreparedPixel {
             Side::Both => surface.conic = Some(q.certain()),
             Side::Unknown => return Err(Hard),
         }
-        self.edge(b)
+        self.add_boundary(b)
     }
 
-    /// What the near and the far plane leave of an object with a single surface.
-    fn clips(
+    /// Adds the near and the far plane as boundaries of an object with a single surface. Returns
+    /// whether the object may be met at all.
+    fn add_clips(
         &mut self,
         world: &World,
         pixel: &Patch,
-        candidate: Candidate,
+        candidate: VisibilityCandidate,
         object: &Object<f64>,
     ) -> Result<bool, Hard> {
         let prepared = f64::frame(&world.geometry);
-        let plane = match object
-            .convex()
-            .map(|convex| (convex.firsts(), convex.seconds()))
-        {
-            Ok(([plane], [])) => Some(plane),
-            _ => None,
+        let plane = match object.surface_kind() {
+            SurfaceKind::Flat(convex) => match (convex.firsts(), convex.seconds()) {
+                ([plane], []) => Some(plane),
+                _ => None,
+            },
+            SurfaceKind::Round(_) => None,
         };
         let mut met = true;
         if candidate.is_cut() {
             let (Some(near), Some(plane)) = (&prepared.near, plane) else {
                 return Err(Hard);
             };
-            met = self.edge(near.minus(plane).local(pixel))?;
+            met = self.add_boundary(near.minus(plane).local(pixel))?;
         }
         if let Some(far) = &prepared.far
             && !candidate.is_whole
@@ -160,55 +162,55 @@ impl PreparedPixel {
             let is_before = candidate.inverse_depth.low > far.over(pixel).high;
             if !is_before {
                 let plane = plane.ok_or(Hard)?;
-                met &= self.edge(plane.minus(far).local(pixel))?;
+                met &= self.add_boundary(plane.minus(far).local(pixel))?;
             }
         }
         Ok(met)
     }
 
-    /// Which squares a board shows.
+    /// Decides which squares a board shows.
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
         pixel: &Patch,
         surface: &PixelSurface,
-    ) -> Result<Pattern, Hard> {
-        let squares = Squares::new(&board.local(&pixel.center, &pixel.sides));
-        let Squares { across, below, .. } = &squares;
+    ) -> Result<ColorPattern, Hard> {
+        let squares = CheckerForms::new(&board.local(&pixel.center, &pixel.sides));
+        let CheckerForms { across, below, .. } = &squares;
         let sizes = [below, &across[0], &across[1]].map(|local| local.rad);
-        if !sizes.iter().all(|&rad| rad < LARGEST) {
+        if !sizes.iter().all(|&rad| rad < MAX_ERROR) {
             return Err(Hard);
         }
         match squares.ranges() {
             Some(ranges) => self.lines(&squares, ranges, surface),
-            None => Ok(Pattern::Squares(squares)),
+            None => Ok(ColorPattern::Squares(squares)),
         }
     }
 
-    /// The lines between a board's squares.
+    /// Writes the lines between a board's squares as forms.
     fn lines(
         &mut self,
-        squares: &Squares,
+        squares: &CheckerForms,
         [(x0, x1), (z0, z1)]: [(f64, f64); 2],
         surface: &PixelSurface,
-    ) -> Result<Pattern, Hard> {
-        if (x1 - x0) + (z1 - z0) > LINES as f64 {
-            return Ok(Pattern::Squares(*squares));
+    ) -> Result<ColorPattern, Hard> {
+        if (x1 - x0) + (z1 - z0) > MAX_LINES as f64 {
+            return Ok(ColorPattern::Squares(*squares));
         }
-        let Squares { across, below, odd } = squares;
+        let CheckerForms { across, below, odd } = squares;
         let mut odd = odd ^ is_odd(x0) ^ is_odd(z0);
         for (across, first, last) in [(&across[0], x0, x1), (&across[1], z0, z1)] {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more odd
-                // step.
+                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more
+                // change of parity.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // Where it is negative the step is not made: count from the other side.
+                        // On the negative side there is no change: count from the other side.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -218,13 +220,14 @@ impl PreparedPixel {
         }
         let end = self.lines.len();
         Ok(if end == surface.edges[1] {
-            Pattern::Plain(surface.code(odd))
+            ColorPattern::Plain(surface.code(odd))
         } else {
-            Pattern::Lines { end, odd }
+            ColorPattern::Lines { end, odd }
         })
     }
 
-    /// Sorts the surfaces from back to front, or has them compared at every sample.
+    /// Sorts the surfaces from back to front, or prepares their depths for a comparison at every
+    /// sample.
     fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
         let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;
@@ -241,17 +244,18 @@ impl PreparedPixel {
         for surface in &mut self.surfaces {
             let start = self.planes.len();
             let object = &*f64::object(&world.geometry, self.candidates[surface.index].object);
-            surface.depth = match object.convex() {
-                Ok(convex) => {
+            surface.depth = match object.surface_kind() {
+                SurfaceKind::Flat(convex) => {
                     let faces = convex.firsts().iter().map(|face| face.local(pixel));
                     self.planes.extend(faces);
                     let range = [start, self.planes.len()];
-                    match convex.is_inside() {
-                        true => Depth::Greatest(range),
-                        false => Depth::Least(range),
+                    if convex.is_inside() {
+                        Depth::Greatest(range)
+                    } else {
+                        Depth::Least(range)
                     }
                 }
-                Err(sphere) => {
+                SurfaceKind::Round(sphere) => {
                     let (factor, error) = sphere.depth_factor().ok_or(Hard)?;
                     let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
@@ -266,7 +270,7 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // Of both sides of a comparison, and its own rounding is within theirs.
+        // The errors of both sides of a comparison; its own rounding is within theirs.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);

@@ -1,18 +1,20 @@
-//! Samples by the chunk: loops over plain arrays, which the compiler makes vectors of.
+//! Samples by the chunk: loops over plain arrays, which the compiler vectorizes.
 //!
-//! In: a prepared pixel, and a chunk of its samples. Out: what each sees, and how often each colour
-//! is seen. For each surface in turn its boundary forms are evaluated at all samples, then its
-//! pattern and its depth. Errors: a value within its form's bound of 0, or two depths within theirs
-//! of each other, make the sample one in doubt, which the world is asked for again.
+//! In: a prepared pixel, and a chunk of its samples. Out: what each sample sees, and how often each
+//! colour is seen. For each surface in turn, its boundary forms are evaluated at all samples, then
+//! its pattern and its depth. Errors: a sample is in doubt, and traced again by the world, if a
+//! value is within its form's error bound of 0, or two depths are within theirs of each other.
 
 use multiversion::multiversion;
 
 use super::{
     super::{
-        checker_corners::Squares,
+        checker_corners::CheckerForms,
         local_form::{LOCAL_ROUNDING, LocalForm, LocalQuadratic, ScaledLine},
     },
-    pixel::{BACKGROUND, CHUNK_SAMPLES, DOUBT, Depth, Lanes, Pattern, PixelSurface, PreparedPixel},
+    pixel::{
+        BACKGROUND, CHUNK_SAMPLES, ColorPattern, DOUBT, Depth, Lanes, PixelSurface, PreparedPixel,
+    },
 };
 use crate::math::{HAS_WIDER, ROUND, SimdWidth, UP};
 
@@ -24,12 +26,13 @@ fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }
 
-/// Where samples lie: as many numbers of each coordinate, a multiple of eight for the widest
+/// Offsets of samples: one list for each coordinate, its length a multiple of eight for the widest
 /// vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
-    /// What the first `count` samples of a chunk see, and how often each colour is seen.
+    /// Decides what the first `count` samples of a chunk see, and counts how often each colour is
+    /// seen.
     pub(super) fn chunk(&mut self, points: At, count: usize, vectors: SimdWidth) {
         match vectors {
             SimdWidth::Widest if HAS_WIDER => see_simd(self, points, count),
@@ -42,7 +45,7 @@ impl PreparedPixel {
         let length = points[0].len();
         let lanes = &mut self.lanes;
         match self.surfaces.as_slice() {
-            // It fills the pixel.
+            // A single surface that fills the pixel.
             [surface] if surface.edges[0] == surface.edges[1] && surface.conic.is_none() => {
                 surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.seen);
             }
@@ -82,7 +85,7 @@ impl PreparedPixel {
 }
 
 impl PixelSurface {
-    /// Which colour each sample shows that hits it.
+    /// Writes which colour each sample shows, if it meets the surface.
     #[inline(always)]
     fn show(
         &self,
@@ -93,12 +96,12 @@ impl PixelSurface {
     ) {
         let shown = &mut shown[..points[0].len()];
         match &self.pattern {
-            Pattern::Plain(code) => shown.fill(*code),
-            Pattern::Lines { end, odd } => {
+            ColorPattern::Plain(code) => shown.fill(*code),
+            ColorPattern::Lines { end, odd } => {
                 let codes = [*odd, !*odd].map(|odd| self.code(odd));
                 between(&lines[self.edges[1]..*end], codes, points, sign, shown);
             }
-            Pattern::Squares(squares) => {
+            ColorPattern::Squares(squares) => {
                 let codes = [squares.odd, !squares.odd].map(|odd| self.code(odd));
                 in_squares(squares, codes, points, shown);
             }
@@ -106,7 +109,7 @@ impl PixelSurface {
     }
 }
 
-/// Whether a sample lies beyond an even or an odd number of lines.
+/// Decides whether a sample lies beyond an even or an odd number of lines.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],
@@ -144,9 +147,9 @@ fn between(
     }
 }
 
-/// In which squares of a board the samples lie.
+/// Decides in which squares of a board the samples lie.
 #[inline(always)]
-fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
+fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
     let LocalForm { factors: l, rad } = squares.below;
     let [n0, n1] = squares.across.map(|across| across.factors);
@@ -167,8 +170,8 @@ fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // Not so for NaN either, and the error of what is too great for the rounding is too great,
-        // too.
+        // NaN fails the comparisons, too; and a number too large for the rounding has too large an
+        // error.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -180,7 +183,7 @@ fn in_squares(squares: &Squares, [even, odd]: [f64; 2], [x, y]: At, shown: &mut 
 }
 
 impl Lanes {
-    /// The least of the boundaries' values, in units of their errors.
+    /// Computes the least of the boundary forms, in units of their error bounds.
     #[inline(always)]
     fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];
@@ -200,7 +203,7 @@ impl Lanes {
         }
     }
 
-    /// Puts a surface in front of all so far.
+    /// Draws a surface over everything seen so far.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);
@@ -210,7 +213,7 @@ impl Lanes {
         }
     }
 
-    /// The inverse depths of a surface.
+    /// Computes the inverse depths of a surface.
     #[inline(always)]
     fn depths(&mut self, depth: &Depth, planes: &[LocalForm], [x, y]: At) {
         let out = &mut self.depth[..x.len()];
@@ -244,8 +247,8 @@ impl Lanes {
         }
     }
 
-    /// Puts a surface before or behind what is seen so far, `apart` being how far depths must
-    /// differ for that to be certain.
+    /// Merges a surface with what is seen so far, by depth; `apart` is the minimum difference of
+    /// depths that is certain.
     #[inline(always)]
     fn merge(&mut self, apart: f64, length: usize) {
         let surface = self.margin[..length]

@@ -1,7 +1,7 @@
-//! The colours that can be seen, and which of them an object has.
+//! The palette: the colours that can be seen, and which of them each object has.
 //!
-//! In: the objects and the background. Out: the palette of distinct colours, and each object's
-//! slots in it.
+//! In: the objects and the background. Out: the distinct colours, and each object's slots among
+//! them.
 
 use std::collections::HashMap;
 
@@ -10,9 +10,9 @@ use crate::{color::Color, scene};
 /// The colours of the objects.
 #[derive(Debug)]
 pub(super) struct Colors {
-    /// The distinct ones in file order, and the background behind them.
+    /// The distinct colours in file order, and the background last.
     pub palette: Vec<Color>,
-    /// The slots of each object's colour, and of a checkerboard's second one.
+    /// The slots of each object's colour and of a checkerboard's second colour.
     pub of_objects: Vec<[u32; 2]>,
 }
 
@@ -25,16 +25,15 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // No more than twice the objects, which fit into memory.
+                    // At most twice the number of objects, which fit into memory.
                     (palette.len() - 1) as u32
                 })
         };
-        let of_objects = objects.iter();
-        let of_objects = of_objects.map(|object| {
+        let slots_of = |object: &scene::Object| {
             let [first, second, _] = object.shape.colors();
             [first, second].map(&mut slot)
-        });
-        let of_objects = of_objects.collect();
+        };
+        let of_objects = objects.iter().map(slots_of).collect();
         palette.push(background);
         Self {
             palette,
@@ -42,7 +41,7 @@ impl Colors {
         }
     }
 
-    /// Gives each object a slot of its own; a piece has that of the object that it belongs to.
+    /// Gives each object a slot of its own; a piece gets the slot of the object that it belongs to.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

@@ -1,9 +1,10 @@
-//! Which of two crossings is nearer, and where they are in one surface, that none is.
+//! The depth order of two crossings, and whether they lie in one surface and are equal.
 //!
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths
-//! of one surface are in doubt at every sample point, and forms take long to prepare. So where
-//! depths are in doubt, objects' planes are compared by the numbers of the scene, without rounding
-//! (the near and the far plane, which are no numbers of the scene, by their forms).
+//! of one surface would be in doubt at every sample point, and forms of higher precision take long
+//! to prepare. If depths are in doubt, the objects' planes are therefore compared by the numbers of
+//! the scene, without rounding; the near and the far plane, which are not among these numbers, by
+//! their forms.
 
 use std::cmp::Ordering;
 
@@ -17,7 +18,7 @@ use crate::{
     },
 };
 
-/// Compares the inverse depths of two crossings. Those of one surface are equal, whatever their
+/// Compares the inverse depths of two crossings. Crossings in one surface are equal, whatever their
 /// computed values.
 #[inline]
 pub(in crate::tracer) fn order<T: Real>(
@@ -45,11 +46,11 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface that lies in one of the two planes and is in doubt about the other would need them
-    // to be equal.
+    // A surface that lies in one of the two planes can be in doubt about the other only if the
+    // planes are equal.
     let at = (index, crossing.part);
-    // Planes that are hundreds of bits apart need to be asked for more; to prepare them for it
-    // takes time.
+    // Planes that differ by hundreds of bits need the higher precision, which takes time to
+    // prepare.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }
@@ -72,9 +73,9 @@ fn is_same_surface(
     }
 }
 
-/// Whether two flat parts of objects lie in one plane, by the numbers of the scene and without
-/// rounding: forms need not be prepared for it, and where surfaces lie in one plane it is asked at
-/// every sample point.
+/// Whether two flat parts of objects lie in one plane, decided by the numbers of the scene without
+/// rounding. If surfaces lie in one plane, this is asked at every sample point; no forms need to be
+/// prepared for it.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
     (i, a): (usize, SurfacePart),

@@ -1,9 +1,8 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 //!
-//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray asks
-//! the objects on its way down the quadtree, or those that are known to be nearby; where
-//! `f64` leaves the nearest in doubt it is asked again in double-double, and in the end in big
-//! numbers.
+//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray tests
+//! the objects on its way down the quadtree, or those that are known to be nearby. If `f64` leaves
+//! the nearest in doubt, double-double decides, and in the end big numbers.
 
 mod colors;
 pub(super) mod depth_order;
@@ -12,7 +11,7 @@ mod precision;
 mod prepare;
 
 pub(crate) use self::{
-    precise_cache::{Held, KEPT},
+    precise_cache::{CACHE_SLOTS, ObjectRef},
     precision::{Geometry, Precision},
 };
 
@@ -22,11 +21,11 @@ use glam::DVec2;
 
 use self::{colors::Colors, precision::first_certain, prepare::prepare};
 use super::{
-    camera::{Basis, Direction, Point},
+    camera::{Basis, Direction, PicturePoint},
     crossing::Crossing,
     object::Object,
     pieces::{Faces, Pieces},
-    quadtree::{Item, Nearness, Quadtree},
+    quadtree::{BoundedObject, Nearness, Quadtree},
 };
 use crate::{
     area::Area,
@@ -36,7 +35,8 @@ use crate::{
     scene::Scene,
 };
 
-/// The scene prepared for one picture: made once, then asked at any sample point from any thread.
+/// The scene prepared for one picture. It is built once and may then be asked at any sample point
+/// from any thread.
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
@@ -46,21 +46,21 @@ pub struct World {
     pieces: Pieces,
 }
 
-/// What is seen at a point.
+/// The crossing that is seen at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Seen {
+pub(super) struct VisibleCrossing {
     pub(super) object: usize,
-    /// Whether it is the object's second crossing, the first being nearer than the near plane.
+    /// Whether it is the object's second crossing, the first one being before the near plane.
     pub(super) second: bool,
-    /// Whether it is a checkerboard's second colour.
+    /// Whether it shows a checkerboard's second colour.
     odd: bool,
 }
 
-/// The nearest crossing so far.
+/// The nearest crossing found so far.
 #[derive(Debug)]
 struct Nearest<T: Real> {
     object: usize,
-    /// Whether it is the object's second one.
+    /// Whether it is the object's second crossing.
     second: bool,
     crossing: Crossing<T>,
 }
@@ -68,27 +68,27 @@ struct Nearest<T: Real> {
 impl World {
     /// Prepares a scene for the sample points of its picture.
     pub fn new(scene: &Scene) -> Self {
-        Self::as_far(scene, Faces::Seen, reach(scene), &cancel::NEVER)
+        Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
 
-    /// The same, given up soon after the flag is set.
+    /// Prepares a scene for the sample points of its picture; gives up soon after the flag is set.
     ///
     /// # Errors
     ///
     /// The flag is set.
     pub fn new_unless(scene: &Scene, cancel: &AtomicBool) -> Result<Self, Cancelled> {
-        let world = Self::as_far(scene, Faces::Seen, reach(scene), cancel);
+        let world = Self::build(scene, Faces::Seen, reach(scene), cancel);
         cancel::unless_set(cancel, world)
     }
 
-    /// Prepares a scene for all crossings of rays through the points of its picture plane at most
-    /// `reach` pixels from the picture's centre.
-    pub fn reaching(scene: &Scene, reach: DVec2) -> Self {
-        Self::as_far(scene, Faces::All, reach, &cancel::NEVER)
+    /// Prepares a scene for [`ray`](super::ray()): for all crossings of rays through points of its
+    /// picture plane at most `reach` pixels from the picture's centre.
+    pub fn for_rays(scene: &Scene, reach: DVec2) -> Self {
+        Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as if each object, also a checkerboard, had one colour of its own: the slot
-    /// is the object's index in the file.
+    /// Prepares a scene as if each object had one colour of its own, checkerboards included: the
+    /// slot is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();
@@ -96,7 +96,7 @@ impl World {
         world
     }
 
-    fn as_far(scene: &Scene, faces: Faces, reach: DVec2, cancel: &AtomicBool) -> Self {
+    fn build(scene: &Scene, faces: Faces, reach: DVec2, cancel: &AtomicBool) -> Self {
         let basis = Basis::new(&scene.camera, &scene.image);
         let (scene, pieces) = Pieces::of(scene, faces);
         let (geometry, quadtree) = prepare(&scene, &pieces, &basis, reach, cancel);
@@ -115,35 +115,35 @@ impl World {
         &self.basis
     }
 
-    /// All pixels of the picture.
+    /// The area of all pixels of the picture.
     pub fn picture(&self) -> Area {
         let half = self.geometry.fast.camera.half;
         Area::whole((2.0 * half.x) as u32, (2.0 * half.y) as u32)
     }
 
-    /// The distinct colours that can be seen: the objects' in the order of the file, the background
+    /// The distinct colours that can be seen: those of the objects in file order, the background
     /// last.
     pub fn palette(&self) -> &[Color] {
         &self.colors.palette
     }
 
-    /// Which colour of the palette is seen at a sample point: the pixel in column `x` and row `y`
-    /// from the top left, and the offset from that pixel's centre, x to the right and y down,
-    /// each in [−1/2, 1/2).
+    /// Returns the palette slot that is seen at a sample point: in the pixel in column `x` and row
+    /// `y` from the top left, at an offset from its centre, x to the right and y down, each in
+    /// [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         self.slot_near(x, y, offset, None)
     }
 
-    /// The same, for points of a part of the picture whose objects [`nearby`](super::nearby) are
-    /// known.
+    /// Returns what [`slot_at`](World::slot_at) returns, faster if the objects
+    /// [`nearby`](super::nearby) are known.
     #[inline]
     pub(crate) fn slot_near(
         &self,
         x: u32,
         y: u32,
         offset: DVec2,
-        nearby: Option<&[Item]>,
+        nearby: Option<&[BoundedObject]>,
     ) -> usize {
         let point = self.geometry.fast.camera.sample_point(x, y, offset);
         match self.seen_fast(&point, nearby) {
@@ -152,7 +152,7 @@ impl World {
         }
     }
 
-    /// The object that is seen in the middle of a pixel.
+    /// Returns the index in the file of the object that is seen at the centre of a pixel.
     pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
         let seen = match self.seen_fast(&point, None) {
@@ -165,13 +165,13 @@ impl World {
         seen.map(|piece| self.owner(piece))
     }
 
-    /// The index in the file of an object that may be a face of one.
+    /// Returns the index in the file of an object that may be a face of a box.
     pub(super) fn owner(&self, piece: usize) -> usize {
         self.pieces.owner(piece)
     }
 
-    /// What [`slot_at`](World::slot_at) answers where some objects, in file order, are all that may
-    /// be seen.
+    /// Returns what [`slot_at`](World::slot_at) returns, if only the given objects, in file order,
+    /// may be seen.
     pub fn slot_among(
         &self,
         x: u32,
@@ -183,12 +183,12 @@ impl World {
         self.slot_of(&point, among)
     }
 
-    fn slot_of(&self, point: &Point, among: impl Iterator<Item = usize> + Clone) -> usize {
+    fn slot_of(&self, point: &PicturePoint, among: impl Iterator<Item = usize> + Clone) -> usize {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // What the last precision cannot tell apart counts as met, but where bounds exclude it:
-            // whichever objects were asked, the answer is the same.
+            // An object that the last precision cannot decide counts as met, unless its bounds
+            // exclude it. With this the answer does not depend on which objects were tested.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -199,11 +199,11 @@ impl World {
         self.slot(seen)
     }
 
-    /// The object that is seen at a point, of some in file order; and whether the last precision
-    /// was not asked.
+    /// Returns the object that is seen at a point, among the given ones in file order; and whether
+    /// the answer was found before the last precision.
     pub(super) fn object_among(
         &self,
-        point: &Point,
+        point: &PicturePoint,
         among: impl Iterator<Item = usize> + Clone,
     ) -> (Option<usize>, bool) {
         let among = || among.clone();
@@ -214,36 +214,40 @@ impl World {
         (nearest, is_sure)
     }
 
-    /// The slots of the palette that an object's colour has, and a checkerboard's second one.
+    /// Returns the palette slots of an object's colour and of a checkerboard's second colour.
     pub fn slots(&self, object: usize) -> [usize; 2] {
         self.colors.of_objects[object].map(|slot| slot as usize)
     }
 
-    /// The slot of the background's colour.
+    /// Returns the palette slot of the background.
     pub fn background(&self) -> usize {
         self.palette().len() - 1
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects, in which a box with coloured faces counts once for each face.
     pub fn object_count(&self) -> usize {
         self.geometry.objects.len()
     }
 
-    /// What is seen as far as `f64` can tell, of the objects nearby or on the way down the
-    /// quadtree.
+    /// Returns the crossing that is seen, as far as `f64` can decide, among the objects nearby or
+    /// on the way down the quadtree.
     #[inline]
-    fn seen_fast(&self, point: &Point, nearby: Option<&[Item]>) -> Result<Option<Seen>, Doubt> {
+    fn seen_fast(
+        &self,
+        point: &PicturePoint,
+        nearby: Option<&[BoundedObject]>,
+    ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // All farther than this is hidden.
-        let mut bar = Nearness::NONE;
+        // Everything farther than this is hidden.
+        let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
                 && let Some(Nearest { crossing, .. }) = &nearest
             {
-                bar = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
+                hidden = Nearness::below(crossing.inverse_depth.mid - crossing.inverse_depth.rad);
             }
-            Ok(bar)
+            Ok(hidden)
         };
         let visited = match nearby {
             Some(nearby) => self.quadtree.visit_nearby(&r, nearby, visit),
@@ -254,12 +258,12 @@ impl World {
     }
 
     #[cold]
-    fn slot_after_doubt(&self, point: &Point) -> usize {
+    fn slot_after_doubt(&self, point: &PicturePoint) -> usize {
         self.slot_of(point, self.candidates(point).iter().copied())
     }
 
-    /// The objects that the ray through a point may meet, in file order.
-    pub(super) fn candidates(&self, point: &Point) -> Vec<usize> {
+    /// Returns the objects that the ray through a point may meet, in file order.
+    pub(super) fn candidates(&self, point: &PicturePoint) -> Vec<usize> {
         let r = self.geometry.fast.camera.direction(point);
         let mut candidates = Vec::new();
         let visited = self.quadtree.visit(&r, |index| {
@@ -273,30 +277,30 @@ impl World {
         candidates
     }
 
-    /// Of some objects, in file order, the nearest crossing between the near and the far plane; of
-    /// equal ones the first object's.
+    /// Returns the nearest crossing between the near and the far plane, among the given objects in
+    /// file order; of equal crossings that of the first object.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
         r: &Direction<T>,
         among: impl Iterator<Item = usize>,
-    ) -> Result<Option<Seen>, Doubt> {
+    ) -> Result<Option<VisibleCrossing>, Doubt> {
         let nearest = self.nearest(r, among)?;
         self.with_color(r, nearest)
     }
 
-    /// Adds which of an object's colours is seen.
+    /// Adds which of an object's two colours is seen.
     #[inline]
     fn with_color<T: Precision>(
         &self,
         r: &Direction<T>,
         nearest: Option<Nearest<T>>,
-    ) -> Result<Option<Seen>, Doubt> {
+    ) -> Result<Option<VisibleCrossing>, Doubt> {
         let Some(Nearest { object, second, .. }) = nearest else {
             return Ok(None);
         };
         let odd = T::object(&self.geometry, object).is_odd(r)?;
-        Ok(Some(Seen {
+        Ok(Some(VisibleCrossing {
             object,
             second,
             odd,
@@ -316,8 +320,8 @@ impl World {
         Ok(nearest)
     }
 
-    /// Whether an object's crossing is nearer than the nearest so far, in whose place it is put
-    /// then; of equal ones that of the object which comes first in the file is.
+    /// Tests an object. If its crossing is nearer than the nearest so far, or equal and of an
+    /// object earlier in the file, stores it as the nearest and returns `true`.
     #[inline]
     fn meet<T: Precision>(
         &self,
@@ -351,8 +355,8 @@ impl World {
         Ok(true)
     }
 
-    /// The first of an object's crossings that lies between the near and the far plane, and whether
-    /// it is the second one.
+    /// Returns the first of an object's crossings that lies between the near and the far plane, and
+    /// whether it is the second one.
     #[inline]
     fn clip<T: Precision>(
         &self,
@@ -387,7 +391,7 @@ impl World {
     }
 
     #[inline]
-    pub(super) fn slot(&self, seen: Option<Seen>) -> usize {
+    pub(super) fn slot(&self, seen: Option<VisibleCrossing>) -> usize {
         match seen {
             None => self.background(),
             Some(seen) => self.slots(seen.object)[usize::from(seen.odd)],
@@ -395,7 +399,7 @@ impl World {
     }
 }
 
-/// From the picture's centre to its edges, in pixels.
+/// Returns the distances from the picture's centre to its edges, in pixels.
 fn reach(scene: &Scene) -> DVec2 {
     DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0
 }

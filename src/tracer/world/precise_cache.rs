@@ -1,89 +1,85 @@
 //! The cache of objects in a higher precision.
 //!
-//! In: an object's index, and how it is prepared. Out: the object, prepared now or kept since it
-//! was last asked for.
+//! In: an object's index, and how to prepare it. Out: the object, prepared now or cached from an
+//! earlier request.
 
 use std::{
     ops::Deref,
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    sync::{Arc, Mutex},
 };
 
-use crate::{math::Real, tracer::object::Object};
+use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// As many objects are kept as people write by hand and more. It is a prime number, so that objects
-/// in rows, whose indices often are a power of two or of ten apart, do not take each other's.
-pub const KEPT: usize = 4093;
+/// Maximum number of cached objects: as many as people write by hand and more. It is a prime
+/// number, so that objects in rows, whose indices are often a power of two or of ten apart, do not
+/// evict each other.
+pub const CACHE_SLOTS: usize = 4093;
 
-/// Objects in one precision, each prepared when it is first asked for and kept, of many until
-/// another takes its place.
+/// Objects in one precision. Each is prepared when it is first requested, and kept until another
+/// object takes its slot.
 ///
-/// To prepare an object takes far longer than to ask it; but where one sample point is in doubt,
-/// those beside it often are, about the same objects. However many a scene has, only so many take
-/// memory.
+/// Preparing an object takes far longer than testing a ray against it; but if one sample point is
+/// in doubt, its neighbours often are, about the same objects. The slots bound the memory, however
+/// many objects a scene has.
 #[derive(Debug)]
-pub struct Kept<T: Real>(Vec<Mutex<Option<Arc<Prepared<T>>>>>);
+pub struct ObjectCache<T: Real>(Vec<Mutex<Option<Arc<CachedObject<T>>>>>);
 
-/// An object that was prepared.
+/// A prepared object.
 #[derive(Debug)]
-pub struct Prepared<T: Real> {
-    /// Its index in the file.
+pub struct CachedObject<T: Real> {
+    /// The object's index in the file.
     index: usize,
     object: Object<T>,
 }
 
-/// An object that stays where it is, or one that was prepared and is kept for as long as it is
-/// held.
+/// A reference to an object: borrowed from the world, or shared with the cache.
 #[derive(Debug)]
-pub enum Held<'a, T: Real> {
-    Always(&'a Object<T>),
-    Shared(Arc<Prepared<T>>),
+pub enum ObjectRef<'a, T: Real> {
+    Borrowed(&'a Object<T>),
+    Shared(Arc<CachedObject<T>>),
 }
 
-impl<T: Real> Deref for Held<'_, T> {
+impl<T: Real> Deref for ObjectRef<'_, T> {
     type Target = Object<T>;
 
     #[inline]
     fn deref(&self) -> &Object<T> {
         match self {
-            Self::Always(object) => object,
+            Self::Borrowed(object) => object,
             Self::Shared(prepared) => &prepared.object,
         }
     }
 }
 
-impl<T: Real> Kept<T> {
-    /// Places for the objects of a scene, of which there are so many.
+impl<T: Real> ObjectCache<T> {
+    /// Prepares the slots for a scene with this number of objects.
     pub fn new(objects: usize) -> Self {
-        Self((0..objects.min(KEPT)).map(|_| Mutex::default()).collect())
+        let slots = objects.min(CACHE_SLOTS);
+        Self((0..slots).map(|_| Mutex::default()).collect())
     }
 
-    /// The object with an index.
-    pub fn object(&self, index: usize, prepare: impl FnOnce() -> Object<T>) -> Held<'_, T> {
-        let place = &self.0[index % self.0.len()];
-        let kept = lock(place).clone();
-        if let Some(kept) = kept
-            && kept.index == index
+    /// Returns the object with an index, and prepares it if it is not cached.
+    pub fn object(&self, index: usize, prepare: impl FnOnce() -> Object<T>) -> ObjectRef<'_, T> {
+        let slot = &self.0[index % self.0.len()];
+        let cached = lock(slot).clone();
+        if let Some(cached) = cached
+            && cached.index == index
         {
-            return Held::Shared(kept);
+            return ObjectRef::Shared(cached);
         }
-        // Not while others wait for the place; two threads that want the same object may both
-        // prepare it.
+        // The slot is not locked meanwhile, so that no thread waits; two threads that want the same
+        // object may both prepare it.
         let object = prepare();
-        let prepared = Arc::new(Prepared { index, object });
-        *lock(place) = Some(prepared.clone());
-        Held::Shared(prepared)
+        let prepared = Arc::new(CachedObject { index, object });
+        *lock(slot) = Some(prepared.clone());
+        ObjectRef::Shared(prepared)
     }
 
-    /// How many there are.
+    /// Returns the number of cached objects.
     #[cfg(test)]
     pub fn len(&self) -> usize {
-        self.0.iter().filter(|place| lock(place).is_some()).count()
+        self.0.iter().filter(|slot| lock(slot).is_some()).count()
     }
-}
-
-/// What is in a place is whole even if a thread has panicked: it is put there in one step.
-fn lock<T>(place: &Mutex<T>) -> MutexGuard<'_, T> {
-    place.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]
@@ -93,7 +89,7 @@ mod tests {
 
     #[test]
     fn an_object_is_prepared_once_until_another_takes_its_place() {
-        let kept = Kept::<f64>::new(3 * KEPT);
+        let kept = ObjectCache::<f64>::new(3 * CACHE_SLOTS);
         let times = |index| {
             let mut times = 0;
             kept.object(index, || {
@@ -103,7 +99,7 @@ mod tests {
             times
         };
         assert_eq!([1, 2, 1, 2].map(times), [1, 1, 0, 0]);
-        assert_eq!([KEPT + 1, 1, 1, 2].map(times), [1, 1, 0, 0]);
+        assert_eq!([CACHE_SLOTS + 1, 1, 1, 2].map(times), [1, 1, 0, 0]);
         assert_eq!(kept.len(), 2);
     }
 }

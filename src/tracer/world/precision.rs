@@ -1,13 +1,13 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, which
 //! decide everything.
 //!
-//! In: the numbers of the scene. Out: frames and objects in the precision that is asked for; beyond
-//! `f64` they are prepared when they are first asked for. What a decision in one precision leaves
-//! in doubt, by the bounds on its errors, is asked of the next.
+//! In: the numbers of the scene. Out: frames and objects in the requested precision; beyond `f64`,
+//! objects are prepared when they are first requested. What a decision in one precision leaves in
+//! doubt, by its error bounds, is decided in the next.
 
 use glam::{DVec2, DVec3};
 
-use super::precise_cache::{Held, Kept};
+use super::precise_cache::{ObjectCache, ObjectRef};
 use crate::{
     math::{Ball, Big, Double, Real, predicates::Plane},
     scene::{self, Outline, Scene, Shape},
@@ -21,12 +21,12 @@ use crate::{
     },
 };
 
-/// The answer to a question about a ray in the first precision that is certain of it, the ray
-/// having its direction there; and whether that is not the last precision, in which what it does
-/// not tell apart counts as equal, so that it is never in doubt.
+/// Evaluates an expression about a ray, which gets the direction in each precision, in the first
+/// precision that is certain. Yields the answer, and whether it was found before the last
+/// precision, in which what cannot be told apart counts as equal, so that it is never in doubt.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
-        let (geometry, point): (&Geometry, &Point) = ($geometry, $point);
+        let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);
         let asked = {
             let $r = &geometry.fast.camera.direction(point);
             $answer
@@ -45,40 +45,40 @@ macro_rules! first_certain {
 }
 pub(super) use first_certain;
 
-/// The numbers of the scene that an object is prepared from.
+/// The numbers of the scene from which an object is prepared.
 #[derive(Debug)]
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All of any other shape, and of a box that was taken apart which face it is.
+    /// All numbers of any other shape; and which face of a box that was taken apart it is.
     Other(Box<(Shape, Option<u8>)>),
 }
 
-/// The camera and the objects, in each precision.
+/// The camera and the objects in each precision.
 #[derive(Debug)]
 pub struct Geometry {
-    /// What the objects are prepared from.
+    /// The numbers from which the objects are prepared.
     pub numbers: Vec<Numbers>,
-    /// The objects for `f64`.
+    /// The objects in `f64`.
     pub objects: Vec<Object<f64>>,
-    pub fast: Frame<f64>,
-    pub double: Frame<Double>,
-    pub big: Frame<Big>,
+    pub fast: SceneFrame<f64>,
+    pub double: SceneFrame<Double>,
+    pub big: SceneFrame<Big>,
 }
 
-/// The camera and some objects in one precision.
+/// The camera, the near and the far plane, and cached objects in one precision.
 #[derive(Debug)]
-pub struct Frame<T: Real> {
+pub struct SceneFrame<T: Real> {
     pub camera: Camera<T>,
-    /// The objects that were asked for, of many the last; none for `f64`, whose are all there.
-    pub(in crate::tracer) kept: Kept<T>,
+    /// Cached objects; none for `f64`, in which all objects are kept in [`Geometry::objects`].
+    pub(in crate::tracer) cache: ObjectCache<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
 
-impl<T: Real> Frame<T> {
-    /// With places for so many objects.
-    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, kept: usize) -> Self {
+impl<T: Real> SceneFrame<T> {
+    /// Prepares a frame with this number of cache slots.
+    pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
         // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
@@ -90,21 +90,21 @@ impl<T: Real> Frame<T> {
         Self {
             near: (near > 0.0).then(|| clip(near)),
             far: far.map(clip),
-            kept: Kept::new(kept),
+            cache: ObjectCache::new(slots),
             camera,
         }
     }
 }
 
-/// A precision that the world is held in.
+/// A precision in which the world is prepared.
 pub trait Precision: Real {
-    fn frame(geometry: &Geometry) -> &Frame<Self>;
+    fn frame(geometry: &Geometry) -> &SceneFrame<Self>;
 
-    /// An object in this precision, prepared when it is asked for.
-    fn object(geometry: &Geometry, index: usize) -> Held<'_, Self> {
-        let Frame { camera, kept, .. } = Self::frame(geometry);
+    /// Returns an object in this precision, prepared on request.
+    fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
+        let SceneFrame { camera, cache, .. } = Self::frame(geometry);
         let prepare = || geometry.numbers[index].object(camera);
-        kept.object(index, prepare)
+        cache.object(index, prepare)
     }
 }
 
@@ -116,7 +116,7 @@ impl Numbers {
         }
     }
 
-    /// The plane of a flat part.
+    /// Returns the exact plane of a flat part.
     pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
         let (Self::Other(other), SurfacePart::Plane(index)) = (self, part) else {
             return None;
@@ -136,7 +136,7 @@ impl Numbers {
         })
     }
 
-    /// The object in one precision.
+    /// Prepares the object in one precision.
     fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
         match self {
             Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
@@ -152,24 +152,24 @@ impl Numbers {
 
 impl Precision for f64 {
     #[inline]
-    fn frame(geometry: &Geometry) -> &Frame<Self> {
+    fn frame(geometry: &Geometry) -> &SceneFrame<Self> {
         &geometry.fast
     }
 
     #[inline]
-    fn object(geometry: &Geometry, index: usize) -> Held<'_, Self> {
-        Held::Always(&geometry.objects[index])
+    fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
+        ObjectRef::Borrowed(&geometry.objects[index])
     }
 }
 
 impl Precision for Double {
-    fn frame(geometry: &Geometry) -> &Frame<Self> {
+    fn frame(geometry: &Geometry) -> &SceneFrame<Self> {
         &geometry.double
     }
 }
 
 impl Precision for Big {
-    fn frame(geometry: &Geometry) -> &Frame<Self> {
+    fn frame(geometry: &Geometry) -> &SceneFrame<Self> {
         &geometry.big
     }
 }

@@ -1,11 +1,11 @@
 //! The preparation of a scene.
 //!
-//! In: a scene. Out: its geometry, prepared block by block by all threads, and the quadtree over
+//! In: a scene. Out: its geometry, prepared block by block on all threads, and the quadtree over
 //! its objects' bounds.
 
 use std::sync::atomic::AtomicBool;
 
-use super::precision::{Frame, Geometry, Numbers};
+use super::precision::{Geometry, Numbers, SceneFrame};
 use crate::{
     cancel,
     scene::{self, Scene},
@@ -14,20 +14,21 @@ use crate::{
         camera::Basis,
         object::Object,
         pieces::Pieces,
-        quadtree::{Grid, Item, Quadtree},
+        quadtree::{BoundedObject, CellGrid, Quadtree},
     },
 };
 use glam::DVec2;
 
-/// With fewer objects no threads are started: at 0.7 µs an object (benches/README.md) they take
-/// less than a millisecond.
+/// Minimum number of objects for which threads are started. Fewer objects take less than a
+/// millisecond, at 0.7 µs each (benches/README.md).
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
-/// So many objects are prepared before anybody is asked whether that is still wanted: 6 ms at most.
+/// Number of objects that are prepared between two checks for cancellation: 6 ms at most.
 const BLOCK: usize = 1 << 13;
 
-/// The geometry of a scene for the points of its picture plane at most `reach` pixels from the
-/// picture's centre, and where its objects are; cancelled, something of no use.
+/// Prepares the geometry of a scene for the points of its picture plane at most `reach` pixels from
+/// the picture's centre, and the quadtree over its objects. If it is cancelled, the result is of no
+/// use.
 pub fn prepare(
     scene: &Scene,
     pieces: &Pieces,
@@ -36,9 +37,9 @@ pub fn prepare(
     cancel: &AtomicBool,
 ) -> (Geometry, Quadtree) {
     let count = scene.objects.len();
-    let double = Frame::new(basis, scene, reach, count);
-    let fast = Frame::new(basis, scene, reach, 0);
-    let grid = Grid::new(&fast.camera.window);
+    let double = SceneFrame::new(basis, scene, reach, count);
+    let fast = SceneFrame::new(basis, scene, reach, 0);
+    let grid = CellGrid::new(&fast.camera.window);
     let prepare = |index: usize, object: &scene::Object| {
         let (object, extent) = Object::with_extent(
             &double.camera,
@@ -48,9 +49,12 @@ pub fn prepare(
         );
         (object, extent.and_then(|extent| grid.item(index, &extent)))
     };
-    let threads = threads_for(count);
+    // `None` also if the system starts no threads.
+    let threads = (count >= OBJECTS_WORTH_THREADS)
+        .then(|| Threads::new(None).ok())
+        .flatten();
     let mut objects = Vec::with_capacity(count);
-    let mut items: Vec<Item> = Vec::with_capacity(count);
+    let mut items: Vec<BoundedObject> = Vec::with_capacity(count);
     let (mut more, mut seen) = (Vec::new(), Vec::new());
     for (first, block) in (0..).step_by(BLOCK).zip(scene.objects.chunks(BLOCK)) {
         if cancel::is_set(cancel) {
@@ -67,11 +71,12 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // Before the rest, which finds room where this had lists that are gone.
+    // Built before the rest, which then reuses the memory of the lists that this has freed.
     let quadtree = Quadtree::new(grid, items, cancel);
-    let rest = match cancel::is_set(cancel) {
-        false => &scene.objects[..],
-        true => &[],
+    let rest = if cancel::is_set(cancel) {
+        &[]
+    } else {
+        &scene.objects[..]
     };
     let geometry = Geometry {
         numbers: (rest.iter().enumerate())
@@ -80,14 +85,7 @@ pub fn prepare(
         objects,
         fast,
         double,
-        big: Frame::new(basis, scene, reach, count),
+        big: SceneFrame::new(basis, scene, reach, count),
     };
     (geometry, quadtree)
-}
-
-/// Threads to prepare so many objects; none if they are few, or if the system starts none.
-fn threads_for(objects: usize) -> Option<Threads> {
-    (objects >= OBJECTS_WORTH_THREADS)
-        .then(|| Threads::new(None).ok())
-        .flatten()
 }
