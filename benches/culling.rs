@@ -13,8 +13,8 @@ use glam::DVec2;
 use pinhole::{
     area::Area,
     math::SimdWidth,
+    reference::textbook::Textbook,
     render::{Control, render, render_exact},
-    report::numerics::textbook::Textbook,
     sampling::{Points, Sampling},
     scene::{self, Count, Method, Scene},
     source::{Source, Sources},

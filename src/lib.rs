@@ -25,10 +25,11 @@
 //! - [`schema`] has the facts of the language: blocks, fields and names. [`syntax`] parses a text
 //!   into a tree, and cannot fail. [`scene`] lowers the tree to plain data with everything
 //!   resolved.
-//! - [`textbook`] has the usual formulas, in `f64`. [`tracer`] finds what is seen at a point of the
-//!   picture, without a wrong decision; its documentation says how. [`projection`] maps points of
-//!   the scene to the picture and back, in rounded numbers. [`sampling`] places the sample points
-//!   of pixels, [`render`] averages what they see, [`exact`] computes a pixel's mean without
+//! - [`reference`](mod@reference) has what the tracer is compared with: textbook formulas in `f64`,
+//!   an oracle of arbitrary precision, and hard scenes. [`tracer`] finds what is seen at a point of
+//!   the picture, without a wrong decision; its documentation says how. [`projection`] maps points
+//!   of the scene to the picture and back, in rounded numbers. [`sampling`] places the sample
+//!   points of pixels, [`render`] averages what they see, [`exact`] computes a pixel's mean without
 //!   samples, and [`refine`] shows coarse pictures until the final one is done.
 //! - [`cancel`]: a flag ends any of these computations early.
 //! - [`film`] converts means to bytes, and encodes files; [`files`] opens files, and writes them
@@ -60,7 +61,8 @@ pub mod schema;
 pub mod syntax;
 
 pub mod scene;
-pub mod textbook;
+
+pub mod reference;
 pub mod tracer;
 
 pub mod projection;

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     math::{Big, Real},
+    reference::formulas::{self, radians},
     scene::{Camera, Image, pixel_size},
-    textbook::{self, radians},
     tracer::Basis,
 };
 
@@ -43,7 +43,7 @@ impl Projection {
 
     /// Derives the projection by a textbook's formulas, for callers that need thousands per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
-        let [right, top, backward] = textbook::axes(camera);
+        let [right, top, backward] = formulas::axes(camera);
         // Lengths out of the range of numbers would leave no axes.
         if !(right + top).is_finite() {
             return Self::new(camera, image);

@@ -45,7 +45,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let most_work = MAX_WORK / tiles.len().max(1) as u64;
     let look = |tile: &Area| {
         let mut areas = SeenAreas::new();
-        let integrator = Integrator::of(&world, |_| []).within(most_work);
+        let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
                 // A smaller share may be a rounding error.

@@ -21,7 +21,7 @@ use crate::{
     files::OutputFolder,
     render::{Control, RenderError},
     report::speed::{
-        self, Measurement, Request, Subject, against_samples, against_time, to_csv, to_json,
+        self, MeasuredScene, Measurement, Request, against_samples, against_time, to_csv, to_json,
     },
     scene::{Method, Scene},
 };
@@ -61,7 +61,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         match input.scene().scene {
             Some(scene) => {
                 check_samples(&scene, &request)?;
-                let subject = Subject {
+                let subject = MeasuredScene {
                     name: path.display().to_string(),
                     overrides: input.recipe(None).overrides,
                 };
@@ -169,7 +169,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
 
 /// Measures a scene; returns `None` if Ctrl-C comes before the first measurement.
 fn measure(
-    subject: &Subject,
+    subject: &MeasuredScene,
     scene: &Scene,
     request: &Request,
     interrupt: &Interrupt,

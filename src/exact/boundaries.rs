@@ -1,9 +1,9 @@
-//! The boundaries of what is seen in a pixel, or in a part of one.
+//! The boundaries of what is seen in a sub-pixel.
 //!
 //! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it:
-//! outlines, where surfaces cross each other, and where the near and the far plane cut them. They
-//! are computed in double-double, and again in the last precision where that leaves too much in
-//! doubt.
+//! outlines, intersections of surfaces, and intersections with the near and far planes. They are
+//! computed in double-double, and once more in the last precision if double-double leaves too large
+//! an error.
 
 use std::{cell::OnceCell, ops::ControlFlow};
 
@@ -15,117 +15,119 @@ use crate::{
     },
 };
 
-use super::budget::Budget;
+use super::budget::PixelBudget;
 
-/// The doubtful area of a conic, in pixels, from which on double-double was not enough: eight
-/// roundings of a mean in `f64`.
+/// Doubtful area of a conic, in square pixels, above which double-double is not accurate enough. It
+/// equals eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Units of work: of a pair of objects whose depths are compared, of an object or a pair that is
-/// asked for curves, and of an object, and of each two surfaces that may cross, in the last
-/// precision. A triangle or a box that is not kept is prepared anew.
+/// Work per pair of objects whose depths are compared, in units.
 const PAIR_WORK: f64 = 1.0 / 16.0;
-const LOOK_WORK: f64 = 8.0;
+/// Work per object or pair that is asked for its curves, in units.
+const CURVES_WORK: f64 = 8.0;
+/// Work to prepare a triangle or a box that the cache does not keep, in units.
 const PREPARATION_WORK: f64 = 140.0;
+/// Work per object and per pair of surfaces in the last precision, in units.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
-/// What a boundary belongs to, of the objects that may be seen, by their places among these.
+/// What a boundary belongs to, with indices into the candidates.
 #[derive(Clone, Copy, Debug)]
-enum Origin {
-    /// An object's outline.
+enum BoundarySource {
+    /// The outline of an object.
     Outline(usize),
-    /// An object and the near or the far plane.
+    /// The intersections of an object with the near and far planes.
     Clips(usize),
-    /// Two objects.
+    /// The intersections of two objects.
     Pair(usize, usize),
 }
 
-/// Asks some objects for their boundaries in a sub-pixel, in one precision.
+/// Computes the boundaries of candidates in a sub-pixel, in one precision.
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [VisibilityCandidate],
-    /// The objects that were asked.
+    /// The candidates prepared so far.
     objects: Vec<OnceCell<ObjectRef<'a, T>>>,
     frame: SubPixelFrame<T>,
-    budget: &'a Budget<'a>,
+    budget: &'a PixelBudget<'a>,
 }
 
-/// Of some candidates, in file order, those that may be seen in a sub-pixel.
-pub fn narrowed(
+/// Collects the candidates that may be seen in a sub-pixel, in file order.
+pub fn visible(
     world: &World,
     sub_pixel: SubPixel,
     among: &[VisibilityCandidate],
-    out: &mut Vec<VisibilityCandidate>,
-) {
+) -> Vec<VisibilityCandidate> {
     let patch = Patch::of_sub_pixel(&world.geometry.fast.camera, sub_pixel);
     let objects = among.iter().map(|candidate| candidate.object);
-    candidates::visible_among(world, &patch, objects, out);
+    let mut visible = Vec::new();
+    candidates::visible_among(world, &patch, objects, &mut visible);
+    visible
 }
 
-/// Finds the curves in a sub-pixel that may bound what is seen there of some objects. Answers
-/// whether these are all: the search ends where there are more than `most`, equal ones counted
-/// once, and once the budget is spent, to which it is charged.
+/// Collects the curves in a sub-pixel that may bound what is seen of the candidates. Returns
+/// whether they are complete: the search ends if there are more than `max_curves`, counting equal
+/// ones once, or if the budget is spent.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
     candidates: &[VisibilityCandidate],
-    most: usize,
-    budget: &Budget,
+    max_curves: usize,
+    budget: &PixelBudget,
     out: &mut Vec<Boundary>,
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // Loose: whose curves are not known well enough in double-double. Lacking: pairs that have no
-    // curve there, which only the last precision tells for certain.
-    let (mut loose, mut lacking) = (Vec::new(), Vec::new());
-    let mut of_lacking = Vec::new();
-    let mut room = most;
-    let mut take = |origin| {
-        budget.charge(LOOK_WORK);
+    // Imprecise sources have curves that double-double does not know well enough. Incomplete
+    // sources have pairs of surfaces without an intersection in double-double, which only the last
+    // precision decides.
+    let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
+    let mut incomplete_curves = Vec::new();
+    let mut room = max_curves;
+    let mut take = |source| {
+        budget.charge(CURVES_WORK);
         let before = out.len();
-        let is_whole = boundaries.push(origin, out);
+        let is_whole = boundaries.push(source, out);
         if !out[before..].iter().all(Boundary::is_tight) {
             out.truncate(before);
-            loose.push(origin);
+            imprecise.push(source);
         } else if !is_whole {
-            of_lacking.extend(out.drain(before..));
-            lacking.push(origin);
+            incomplete_curves.extend(out.drain(before..));
+            incomplete.push(source);
         }
         if out.len() > room {
-            leave_one_of_each(out);
-            room = out.len() + most;
+            merge_equal_curves(out);
+            room = out.len() + max_curves;
         }
-        // Equal ones were merged, and more are left than may be.
-        match room > 2 * most || budget.is_spent() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
+        // Equal curves have been merged, and still too many are left.
+        if room > 2 * max_curves || budget.is_spent() {
+            return ControlFlow::Break(());
         }
+        ControlFlow::Continue(())
     };
-    // Outlines come first: of a heap there are too many of them, long before all pairs have been
-    // looked at.
+    // Outlines come first: in a heap they exceed the maximum long before all pairs have been
+    // examined.
     let outlines = boundaries.outlines(&mut take);
-    let are_few = outlines.is_continue() && boundaries.pairs(&mut take).is_continue();
-    if !are_few {
+    if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
     }
-    if loose.is_empty() {
-        out.append(&mut of_lacking);
+    if imprecise.is_empty() {
+        out.append(&mut incomplete_curves);
     } else {
         let boundaries = Boundaries::<Big>::new(world, sub_pixel, candidates, budget);
-        for origin in loose.into_iter().chain(lacking) {
+        for source in imprecise.into_iter().chain(incomplete) {
             if budget.is_spent() {
                 return false;
             }
-            boundaries.push(origin, out);
+            boundaries.push(source, out);
         }
     }
-    leave_one_of_each(out);
-    out.len() <= most
+    merge_equal_curves(out);
+    out.len() <= max_curves
 }
 
-/// Leaves one of the curves whose forms are equal, as they are of objects that share planes or
-/// edges. What it is off is as much as any of them was.
-fn leave_one_of_each(curves: &mut Vec<Boundary>) {
+/// Merges curves with equal forms, such as those of objects that share planes or edges, and keeps
+/// the largest error of each group.
+fn merge_equal_curves(curves: &mut Vec<Boundary>) {
     curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
         let is_equal = again.key() == curve.key();
@@ -143,7 +145,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         world: &'a World,
         sub_pixel: SubPixel,
         candidates: &'a [VisibilityCandidate],
-        budget: &'a Budget,
+        budget: &'a PixelBudget,
     ) -> Self {
         let objects = candidates.iter().map(|_| OnceCell::new());
         Self {
@@ -155,19 +157,19 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         }
     }
 
-    /// The outlines, and what the near and the far plane cut, until one says that it is enough.
-    fn outlines(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
+    /// Visits outlines and clip-plane intersections until `take` breaks.
+    fn outlines(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         for (i, candidate) in self.candidates.iter().enumerate() {
             if !candidate.is_whole {
-                take(Origin::Outline(i))?;
-                take(Origin::Clips(i))?;
+                take(BoundarySource::Outline(i))?;
+                take(BoundarySource::Clips(i))?;
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Where surfaces of two objects cross, until one says that it is enough.
-    fn pairs(&self, mut take: impl FnMut(Origin) -> ControlFlow<()>) -> ControlFlow<()> {
+    /// Visits pairs of objects that may intersect until `take` breaks.
+    fn pairs(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         let geometry = &self.world.geometry;
         let is_board = |candidate: &VisibilityCandidate| {
             matches!(
@@ -187,38 +189,37 @@ impl<'a, T: Precision> Boundaries<'a, T> {
                 // Boards are parallel: they meet at the horizon, which is the outline of both.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
-                    take(Origin::Pair(i, j))?;
+                    take(BoundarySource::Pair(i, j))?;
                 }
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Adds an origin's curves that may pass through the sub-pixel. Says whether all surfaces of it
-    /// that are seen there cross each other somewhere, as all do that are not equal.
-    fn push(&self, origin: Origin, out: &mut Vec<Boundary>) -> bool {
+    /// Appends the curves of a source that may pass through the sub-pixel. Returns whether all its
+    /// pairs of surfaces intersect somewhere, as all unequal surfaces do.
+    fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
-            if curve.may_pass() {
+            if curve.may_cross_pixel() {
                 out.push(curve);
             }
         };
         let mut all = true;
         let mut cross = |a: &InverseDepth<T>, b: &InverseDepth<T>| {
-            self.charge_last();
+            self.charge_big_curve();
             match self.frame.crossing(a, b) {
                 Some(curve) => push(curve),
                 None => all = false,
             }
         };
-        match origin {
-            Origin::Outline(i) => {
-                let outline = self.object(i).outline(&self.frame);
-                for curve in outline {
-                    self.charge_last();
+        match source {
+            BoundarySource::Outline(i) => {
+                for curve in self.object(i).outline(&self.frame) {
+                    self.charge_big_curve();
                     push(curve);
                 }
             }
-            Origin::Clips(i) => {
+            BoundarySource::Clips(i) => {
                 let frame = T::frame(&self.world.geometry);
                 for clip in [&frame.near, &frame.far].into_iter().flatten() {
                     for surface in &self.surfaces(i) {
@@ -226,7 +227,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
                     }
                 }
             }
-            Origin::Pair(i, j) => {
+            BoundarySource::Pair(i, j) => {
                 let others = self.surfaces(j);
                 for surface in &self.surfaces(i) {
                     others.iter().for_each(|other| cross(surface, other));
@@ -238,9 +239,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     fn object(&self, at: usize) -> &Object<T> {
         self.objects[at].get_or_init(|| {
-            self.charge_last();
+            self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // Of so many, few are kept.
+            // The cache keeps only some objects.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
@@ -248,7 +249,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         })
     }
 
-    fn charge_last(&self) {
+    fn charge_big_curve(&self) {
         if T::LAST {
             self.budget.charge(BIG_CURVE_WORK);
         }
@@ -261,15 +262,15 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 }
 
 impl Boundary {
-    /// Whether it may pass through the sub-pixel.
-    fn may_pass(&self) -> bool {
+    /// Returns whether the curve may pass through the sub-pixel.
+    fn may_cross_pixel(&self) -> bool {
         match self {
             Self::Line(line) => line.over_pixel().holds_zero(),
             Self::Conic(conic) => conic.over_pixel().holds_zero(),
         }
     }
 
-    /// Whether a higher precision would tell next to nothing more.
+    /// Returns whether a higher precision would gain next to nothing.
     fn is_tight(&self) -> bool {
         match self {
             Self::Line(line) => line.rad < LOOSE_LINE,
@@ -277,7 +278,7 @@ impl Boundary {
         }
     }
 
-    /// Its form, which is the same of equal curves.
+    /// Returns the form, normalised so that equal curves have equal keys.
     fn key(&self) -> [u64; 12] {
         let mut factors = [0.0; 12];
         match self {
@@ -288,7 +289,7 @@ impl Boundary {
                 }
             }
         }
-        // Of a form and its opposite one; and of 0 there is but one.
+        // A form and its negative are the same curve, and −0 is 0.
         let leading = factors.iter().find(|factor| **factor != 0.0);
         let sign = 1_f64.copysign(leading.copied().unwrap_or(1.0));
         factors.map(|factor| (factor * sign + 0.0).to_bits())

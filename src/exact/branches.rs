@@ -1,9 +1,9 @@
 //! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a
 //! conic that of two.
 //!
-//! In: lines and conics of a sub-pixel. Out: over a range of x each branch as a chord with an arc
-//! between its tangents, and how far the branch may be from that. Where the roundings of `f64`
-//! leave too much of an arc in doubt, its ends and tangents are taken in double-double.
+//! In: lines and conics of a sub-pixel. Out: over a range of x, each branch as a chord and an arc
+//! between its tangents, with an error bound. If the roundings of `f64` leave too large an error in
+//! an arc, its ends and tangents are computed in double-double.
 
 use glam::DVec2;
 
@@ -14,19 +14,19 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// In f64 the area of an arc is good enough if it is off by no more than this for each part of its
-/// width: 4e-15 for a pixel, far below what is asked for.
-const GOOD: f64 = 32.0 * f64::UNIT;
+/// Maximum error of an arc's area divided by its width for which `f64` is accurate enough. The
+/// total is 4e-15 for a pixel, far below the usual tolerance.
+const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// A steeper line is as good as vertical: from one side of the pixel to the other it moves by less
-/// than eight roundings of x.
-const STEEP: f64 = (1u64 << 50) as f64;
+/// Slope above which a line counts as vertical. Its x then changes by less than eight roundings
+/// across the pixel.
+const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// A branch is outside of the pixel if it is so far from it by the size of its values: millions of
-/// times the roundings that these have.
-const OUTSIDE: f64 = 1.0 / (1u64 << 30) as f64;
+/// Distance from the pixel, relative to the size of its values, at which a branch is certainly
+/// outside. It is millions of times their rounding errors.
+const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
-/// A curve followed from left to right.
+/// A curve as a function y(x).
 #[derive(Clone, Copy, Debug)]
 pub enum Track<'a> {
     /// The line y = const.
@@ -38,47 +38,48 @@ pub enum Track<'a> {
         /// y at x = 0.
         start: f64,
     },
-    /// The upper or the lower one of a conic's two functions.
+    /// One of the two functions of a conic.
     Branch {
         /// The conic.
-        graph: &'a Graph,
-        /// 1 or −1: the sign of the root.
+        graph: &'a ConicGraph,
+        /// Sign of the root, 1 or −1: the upper or the lower function.
         side: f64,
     },
 }
 
-/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as functions: y = (−b ± √Δ)/C with b = Bx + E, Δ =
-/// b² − Cg and g = Ax² + 2Dx + F.
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions: y = (−b ± √Δ)/C with b = Bx + E,
+/// Δ = b² − Cg and g = Ax² + 2Dx + F.
 #[derive(Clone, Copy, Debug)]
-pub struct Graph {
+pub struct ConicGraph {
     factors: [Double; 6],
-    /// Δ as a polynomial in x: the factors of x², 2x and 1.
+    /// Δ as a polynomial in x: the coefficients of x², 2x and 1.
     delta: [Double; 3],
 }
 
-/// A conic's functions over a range of x.
+/// A conic's two functions over a range of x.
 #[derive(Debug)]
-pub struct Span<'a> {
-    graph: &'a Graph,
-    /// Left, middle and right.
+pub struct ConicSpan<'a> {
+    graph: &'a ConicGraph,
+    /// Left end, middle and right end.
     x: [f64; 3],
-    /// √Δ at these.
+    /// √Δ at the left end, the middle and the right end.
     roots: [f64; 3],
 }
 
-/// A track over a range of x, between its chord and two of its tangents.
+/// A track over a range of x, which lies between its chord and two of its tangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// y at the left, in the middle, and at the right.
+    /// y at the left end, in the middle, and at the right end.
     pub y: [f64; 3],
-    /// The arc, where it is not straight; and 1 if it bulges to greater y, −1 if to smaller.
+    /// The arc unless the section is straight, with 1 if it bulges upwards (greater y) or −1 if
+    /// downwards.
     pub arc: Option<(f64, Arc)>,
-    /// How far it may be from what this says of it.
-    pub slack: f64,
+    /// Maximum distance of the track from this section, in y.
+    pub error: f64,
 }
 
-impl Graph {
-    /// The graph of a conic.
+impl ConicGraph {
+    /// Derives the functions of a conic.
     pub fn new(conic: &Conic) -> Self {
         let [a, b, c, d, e, f] = conic.factors;
         let minor = |p: Double, q: Double, r: Double, s: Double| p.times(&q).minus(&r.times(&s));
@@ -88,10 +89,10 @@ impl Graph {
         }
     }
 
-    /// Where its functions begin and end: the x of its vertical tangents.
+    /// Returns the x of the conic's vertical tangents, where its functions begin and end.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
-        // px² + 2qx + r = 0 without cancellation.
+        // The roots of px² + 2qx + r without cancellation.
         let discriminant = q.times(&q).minus(&p.times(&r));
         let roots = (discriminant.hi >= 0.0).then(|| {
             let root = discriminant.sqrt().hi;
@@ -101,7 +102,7 @@ impl Graph {
         roots.into_iter().flatten().filter(|x| x.abs() < 0.5)
     }
 
-    /// The square root of Δ, if it is not negative but for its rounding.
+    /// Returns √Δ, or 0 if Δ is negative because of rounding.
     fn root(&self, x: f64) -> f64 {
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -110,24 +111,24 @@ impl Graph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Its functions from `left` to `right`, where it is there at all.
-    pub fn span(&self, left: f64, right: f64) -> Option<Span<'_>> {
+    /// Returns the functions from `left` to `right`, or `None` if the conic has no point there.
+    pub fn span(&self, left: f64, right: f64) -> Option<ConicSpan<'_>> {
         let x = [left, 0.5 * (left + right), right];
         let middle = self.root(x[1]);
-        (middle > 0.0).then(|| Span {
+        (middle > 0.0).then(|| ConicSpan {
             graph: self,
             x,
             roots: [self.root(left), middle, self.root(right)],
         })
     }
 
-    /// y at an x at which Δ has a root.
+    /// Computes y at an x where √Δ is `root`.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two ways to write the root the one that does not cancel.
+        // Of the two forms of the solution, uses the one without cancellation.
         if minus * side >= 0.0 {
             (minus + root) / c.hi
         } else {
@@ -137,8 +138,8 @@ impl Graph {
         }
     }
 
-    /// The same of the place and the root, in double-double.
-    fn end_in_double(&self, x: f64, side: f64) -> End<Double> {
+    /// Computes the point and its root at an x in double-double.
+    fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -150,42 +151,41 @@ impl Graph {
                 .plus(one)
         };
         let delta = quadratic(p, q, r);
-        let root = match delta.is_negative() {
-            true => Double::from_f64(0.0),
-            false => delta.sqrt(),
+        let root = if delta.is_negative() {
+            Double::from_f64(0.0)
+        } else {
+            delta.sqrt()
         };
         let root = if side < 0.0 { root.negated() } else { root };
         let minus = b.times(&at).plus(e).negated();
-        let y = match minus.hi * side >= 0.0 {
-            true => minus.plus(&root).over(c),
-            false => quadratic(a, d, f).over(&minus.minus(&root)),
+        let y = if minus.hi * side >= 0.0 {
+            minus.plus(&root).over(c)
+        } else {
+            quadratic(a, d, f).over(&minus.minus(&root))
         };
-        End { at: [at, y], root }
+        ArcEnd { at: [at, y], root }
     }
 }
 
-impl<'a> Span<'a> {
-    /// One of the two functions as a track and its section, where it is a number at all and may be
-    /// seen in the pixel; that is none if it turns too much to be followed at once.
+impl<'a> ConicSpan<'a> {
+    /// Returns one of the two functions as a track with its section. Returns `None` if it is not
+    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
+    /// followed in one piece.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // A function that bends one way only is nowhere farther from its chord than twice as far as
-        // in the middle.
+        // A function that bends in one direction is nowhere farther from its chord than twice its
+        // distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
-        let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE * size;
+        let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
         if y.iter().all(|y| *y > beyond) || y.iter().all(|y| *y < -beyond) {
             return None;
         }
-        let straight = Section {
-            y,
-            arc: None,
-            slack: 0.0,
-        };
+        let straight = Section::straight(y);
         let (start, end) = (DVec2::new(x[0], y[0]), DVec2::new(x[2], y[2]));
         let width = end.x - start.x;
         let section = match self.arc([start, end], side) {
@@ -193,16 +193,16 @@ impl<'a> Span<'a> {
                 let bulge = 1f64.copysign((end - start).perp_dot(arc.control - start));
                 Some(Section {
                     arc: Some((bulge, arc)),
-                    slack: off / width,
+                    error: off / width,
                     ..straight
                 })
             }
-            // Too flat for its tangents to be told apart: each y has six operations, and its middle
-            // two.
+            // The branch is too flat to distinguish its tangents: each y has six operations, and
+            // the middle of two has two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
-                    slack: 2.0 * sagitta.abs() + flat,
+                    error: 2.0 * sagitta.abs() + flat,
                     ..straight
                 })
             }
@@ -210,20 +210,19 @@ impl<'a> Span<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// The arc from its first point to its last, if the two tangents meet between them; and by how
-    /// much the area between it and its chord may be off.
+    /// Returns the arc between two points and the maximum error of the area between it and its
+    /// chord. Returns `None` if the tangents do not meet between the points.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
         let factors = graph.factors.map(|factor| factor.hi);
-        let rounded = [(start, roots[0]), (end, roots[2])].map(|(at, root)| End {
+        let rounded = [(start, roots[0]), (end, roots[2])].map(|(at, root)| ArcEnd {
             at: [at.x, at.y],
             root: side * root,
         });
         let mut tangents = Tangents::new(&factors, &rounded);
-        // Of a conic that is next to nothing but a line hardly more than roundings is left of the
-        // gradient.
-        let is_good = tangents.off <= GOOD * (end.x - start.x);
+        // The gradient of a conic that is almost a line is hardly more than rounding error.
+        let is_good = tangents.off <= ARC_TOLERANCE * (end.x - start.x);
         if !is_good {
             let ends = ends.map(|at| graph.end_in_double(at.x, side));
             tangents = Tangents::new(&graph.factors, &ends);
@@ -235,47 +234,47 @@ impl<'a> Span<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Arcs whose tangents turn by more than 120° are cut: the weight is the cosine of half of
-        // that.
-        const TURN: f64 = 0.5;
-        let turns_little = arc.weight > TURN && arc.weight < 1.0 / TURN;
+        // Arcs that turn by more than 120° are cut: the weight is the cosine of half the turn.
+        const MIN_WEIGHT: f64 = 0.5;
+        let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
     }
 }
 
-/// A point of a conic, and the root there with its sign, which is half the gradient by y.
-struct End<T> {
+/// A point of a conic, with the signed root there, which is half of ∂/∂y of the conic's form.
+struct ArcEnd<T> {
     at: [T; 2],
     root: T,
 }
 
-/// Where the tangents at two points of a conic meet.
+/// The point where the tangents at two points of a conic meet.
 struct Tangents {
-    /// From the first point on.
+    /// Position relative to the first point.
     control: DVec2,
     /// The square of the arc's weight.
     w2: f64,
-    /// By how much the area between arc and chord may be off.
+    /// Maximum error of the area between arc and chord.
     off: f64,
 }
 
 impl Tangents {
-    /// Of the conic that has such factors.
+    /// Intersects the tangents at two points of the conic with these coefficients.
     ///
-    /// Its gradient is off by a few roundings of its terms, κ times as many of itself, and so are
-    /// both tangents' directions by as much of a radian. By an angle at its base a triangle's
-    /// area grows by half the square of the leg there. What the control is off along its tangent
-    /// changes the triangle and the weight, one up and the other down, by no more than that. The
-    /// conic's quadratic part Q is off by as many of its own terms, and by what the vectors
-    /// are, which are off by roundings of coordinates and by what the directions are; the
-    /// weight's square is the quotient of two of it, and what lies between arc and chord grows no
-    /// faster than the weight. The root is that of another conic as near as this one is known
-    /// itself, which moves points and tangents together.
-    fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[End<T>; 2]) -> Self {
+    /// The gradient is off by a few roundings of its terms, that is, κ times as many roundings of
+    /// itself, and the directions of both tangents are off by as much, in radians. An angle error
+    /// at the base of a triangle changes its area by half the square of the adjacent leg. An error
+    /// of the control point along its tangent changes the triangle and the weight in opposite
+    /// directions, by no more than that. The conic's quadratic part Q is off by as many roundings
+    /// of its own terms and by the error of its vector argument, which consists of roundings of
+    /// coordinates and of the direction error. The weight's square is the quotient of two values of
+    /// Q, and the area between arc and chord grows no faster than the weight. An error of the root
+    /// corresponds to another conic that is as close as this one is known, which moves points and
+    /// tangents together.
+    fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
-        let gradients = ends.each_ref().map(|End { at: [x, y], root }| {
+        let gradients = ends.each_ref().map(|ArcEnd { at: [x, y], root }| {
             let by_x = a.times(x).plus(&b.times(y)).plus(d);
             [by_x, root.clone()]
         });
@@ -285,7 +284,7 @@ impl Tangents {
             1.0 + terms / length(&gradients[i])
         });
         let kappa = kappa[0].max(kappa[1]);
-        // Q, and what it is off by, of itself, where the vector is off by so much.
+        // Returns Q and its relative error if the vector is off by `off`.
         let quadratic = |v: &[T; 2], off: f64| {
             let half = [
                 product(&[a.clone(), b.clone()], v),
@@ -302,8 +301,7 @@ impl Tangents {
         let [[x, y], [far_x, far_y]] = ends.each_ref().map(|end| &end.at);
         let chord = [far_x.minus(x), far_y.minus(y)];
         let [here, there] = &gradients;
-        // From the start the control is along the tangent there, and from the end along the other
-        // one.
+        // The control point lies on the tangent at the start and on the tangent at the end.
         let along = [here[1].negated(), here[0].clone()];
         let way = product(there, &chord).over(&product(there, &along));
         let control = along.map(|x| x.times(&way));
@@ -323,14 +321,15 @@ impl Tangents {
 }
 
 impl Track<'_> {
-    /// The track of a line; none if it is vertical, or so steep that it may be said to be.
+    /// Returns the track of a line, or `None` if it is vertical or so steep that it counts as
+    /// vertical.
     pub fn of_line(line: &BoundaryLine) -> Option<Self> {
         let [a, b, c] = line.factors;
         let (slope, start) = (-a / b, -c / b);
-        (slope.abs() <= STEEP && start.is_finite()).then_some(Self::Line { slope, start })
+        (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// y at an x where the track is.
+    /// Computes y at an x where the track is defined.
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Self::Level(y) => *y,
@@ -339,28 +338,24 @@ impl Track<'_> {
         }
     }
 
-    /// A straight track from `left` to `right`.
+    /// Returns the straight section from `left` to `right`.
     pub fn straight(&self, left: f64, right: f64) -> Section {
-        Section {
-            y: [left, 0.5 * (left + right), right].map(|x| self.y(x)),
-            arc: None,
-            slack: 0.0,
-        }
+        Section::straight([left, 0.5 * (left + right), right].map(|x| self.y(x)))
     }
 }
 
 impl Section {
-    /// A section of the line y = const.
-    pub fn level(y: f64) -> Self {
+    /// Returns a straight section from its y at the left end, in the middle, and at the right end.
+    pub fn straight(y: [f64; 3]) -> Self {
         Self {
-            y: [y; 3],
+            y,
             arc: None,
-            slack: 0.0,
+            error: 0.0,
         }
     }
 
-    /// The greatest y it may have at three places: left, where its tangents meet (or anywhere, if
-    /// it is straight), right.
+    /// Returns the maximum of `up`·y, times `up`, at the left end, the right end, or the control
+    /// point's x (any x if straight).
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -380,10 +375,10 @@ impl Section {
             }
             _ => chord(start, end),
         };
-        at + up * self.slack
+        at + up * self.error
     }
 
-    /// By how much this section may rise above another one over the same range of x, at most.
+    /// Bounds how far this section rises above another one over the same range of x.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
@@ -393,21 +388,22 @@ impl Section {
             .flatten()
             .map(|x| self.hull(1.0, x, left, right) - other.hull(-1.0, x, left, right))
             .fold(f64::NEG_INFINITY, f64::max);
-        let rise = self.between(other).map(|[rise, _]| rise);
+        let rise = self.parallel_bounds(other).map(|[rise, _]| rise);
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// By how much it may rise above another one over the same range of x, and how far they may be
-    /// apart, where both are arcs that are nearly parallel, however close: point by point of
-    /// their parameter, with the first one's chord level.
+    /// Bounds how far this section rises above another one over the same range of x, and how far
+    /// the two are apart. Returns `None` unless both are arcs that bulge to the same side; the
+    /// bounds are tight if these are nearly parallel, however close. Points of equal parameter are
+    /// compared, with the first chord made level.
     ///
-    /// Of the same weights an arc's point is the same mean of its three control points as the
-    /// other's of its own. An error in x counts by the steepest tangent; and a different weight
-    /// moves a point by at most its distance from the control point. Of narrow arcs that place is
-    /// uncertain along them, where little depends on it. A point is off by less than eight times
-    /// what the area is by the width; and by what x is rounded, which moves no more area than
-    /// roundings of it by the arc's height.
-    fn between(&self, other: &Self) -> Option<[f64; 2]> {
+    /// If the weights are equal, a point of one arc is the same weighted mean of its three control
+    /// points as the other's point is of its own. An error in x counts with the steepest tangent. A
+    /// different weight moves a point by at most its distance from the control point. The control
+    /// point of a narrow arc is uncertain along the arc, where little depends on it. A point is off
+    /// by less than eight times the area's error divided by the width, and by the rounding of x,
+    /// which moves no more area than that rounding times the arc's height.
+    fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;
@@ -423,26 +419,26 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // Some twenty operations on coordinates of both arcs, and what those are off themselves;
-        // the slack counts on both sides, for three points and the chord.
+        // About twenty operations on coordinates of both arcs, and the errors of the coordinates.
+        // The error term counts on both sides, for three points and the chord.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest
             + rounding
-            + 8.0 * (self.slack + other.slack);
+            + 8.0 * (self.error + other.error);
         let heights = [a.start - b.start, a.control - b.control, a.end - b.end].map(height);
         let rise = heights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let apart = heights.into_iter().map(f64::abs).fold(0.0, f64::max);
         Some([rise + off, apart + off])
     }
 
-    /// The integral of y over its range.
+    /// Integrates y over the range.
     pub fn integral(&self, left: f64, right: f64) -> f64 {
         let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
         chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
     }
 
-    /// How far apart two pieces are at most, if they are nearly the same curve.
+    /// Bounds the distance of two sections of nearly equal curves; infinite for other ones.
     pub fn distance(&self, other: &Self) -> f64 {
         let ends = (self.y[0] - other.y[0])
             .abs()
@@ -450,7 +446,7 @@ impl Section {
         match (&self.arc, &other.arc) {
             (None, None) => ends,
             (Some(_), Some(_)) => self
-                .between(other)
+                .parallel_bounds(other)
                 .map_or(f64::INFINITY, |[_, apart]| apart),
             _ => f64::INFINITY,
         }

@@ -1,70 +1,101 @@
-//! How long a pixel may take, and how well it is to be known.
+//! The work that may be spent on a pixel and on a picture, and the accuracy that is asked for.
 //!
-//! In: what is about to be computed, in units of work. Out: whether to compute it. What is not
-//! computed any more counts as the mean of what may be there, with its whole area as its bound, so
-//! that every pixel ends, whatever the view. Work is counted, not timed: the same scene gives the
-//! same picture.
+//! In: the work of the next step, in units. Out: whether to do it. A step that is not done is
+//! replaced by the mean of what may be seen, with the whole area as its bound, so that every pixel
+//! ends in any view. Work is counted instead of timed, so that the same scene gives the same
+//! picture.
 
 use std::{
     cell::Cell,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
-/// Maximum number of units of work that are spent on a pixel. A unit is one square of a board cut
-/// out of a polygon, some 50 ns on the machine where it was measured, and about 0.6 seconds for
-/// all.
-const PIXEL: f64 = 1.2e7;
+/// Maximum work on a pixel, in units, about 0.6 seconds. A unit is the time to cut one square of a
+/// board out of a polygon, about 50 ns on the machine where it was measured.
+const PIXEL_WORK: f64 = 1.2e7;
 
-/// The work that may still be spent on a pixel, and the flag by which its picture is given up.
+/// Work spent on the pixels of a picture, by all threads, with its limit.
 #[derive(Debug)]
-pub(super) struct Budget<'a> {
+pub(super) struct PictureWork {
+    spent: AtomicU64,
+    limit: u64,
+}
+
+impl PictureWork {
+    /// Starts a picture whose work is limited, in units.
+    pub fn new(limit: u64) -> Self {
+        let spent = AtomicU64::new(0);
+        Self { spent, limit }
+    }
+
+    /// Adds the work of a pixel, in units.
+    pub fn add(&self, work: u64) {
+        self.spent.fetch_add(work, Relaxed);
+    }
+
+    /// Returns the work spent so far, in units.
+    pub fn spent(&self) -> u64 {
+        self.spent.load(Relaxed)
+    }
+
+    /// Returns whether more work was spent than the limit.
+    pub fn is_exceeded(&self) -> bool {
+        self.spent() > self.limit
+    }
+}
+
+/// Work that may still be spent on a pixel, and the flag that cancels its picture.
+#[derive(Debug)]
+pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// The bound that is asked for, in area: what is neglected is a part of it.
+    /// Error bound that is asked for, in pixel areas. Truncation errors are limited to fractions of
+    /// it.
     pub tolerance: f64,
-    /// Set once nobody wants the picture any more.
+    /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
 }
 
-impl<'a> Budget<'a> {
-    /// That of a whole pixel.
-    pub fn of_pixel(tolerance: f64, cancel: &'a AtomicBool) -> Self {
+impl<'a> PixelBudget<'a> {
+    /// Starts the budget of a pixel.
+    pub fn new(tolerance: f64, cancel: &'a AtomicBool) -> Self {
         Self {
-            left: Cell::new(PIXEL),
+            left: Cell::new(PIXEL_WORK),
             tolerance,
             cancel,
         }
     }
 
-    /// The work that was spent.
+    /// Returns the work spent so far.
     pub fn spent(&self) -> f64 {
-        PIXEL - self.left.get()
+        PIXEL_WORK - self.left.get()
     }
 
-    /// Whether nobody wants the picture any more, so that all that is computed is thrown away.
+    /// Returns whether the picture is no longer wanted, so that all results are discarded.
     pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        self.cancel.load(Relaxed)
     }
 
-    /// Whether nothing more should be computed.
+    /// Returns whether nothing more should be computed.
     pub fn is_spent(&self) -> bool {
         self.left.get() <= 0.0 || self.is_cancelled()
     }
 
-    /// Spends so much, if it is there. What is not a number, or infinite, never is.
-    pub fn spend(&self, work: f64) -> bool {
-        let is_there = self.affords(work);
-        if is_there {
-            self.left.set(self.left.get() - work);
+    /// Charges the work of the next step if the budget affords it, and returns whether it does. An
+    /// infinite amount or NaN is never affordable.
+    pub fn try_charge(&self, work: f64) -> bool {
+        let is_affordable = self.affords(work);
+        if is_affordable {
+            self.charge(work);
         }
-        is_there
+        is_affordable
     }
 
-    /// Whether so much may still be spent.
+    /// Returns whether the budget affords the work.
     pub fn affords(&self, work: f64) -> bool {
         work <= self.left.get() && !self.is_cancelled()
     }
 
-    /// Takes so much away for what has been computed already.
+    /// Charges work that is done already, even beyond the limit.
     pub fn charge(&self, work: f64) {
         self.left.set(self.left.get() - work);
     }

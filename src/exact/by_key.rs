@@ -1,8 +1,8 @@
-//! Values in the order of a number, for a heap that gives the greatest first.
+//! Values ordered by a number, for a heap that returns the greatest first.
 
 use std::cmp::Ordering;
 
-/// A number, and a value that is in its order.
+/// A number, and the value that is ordered by it.
 pub(super) struct ByKey<T>(pub f64, pub T);
 
 impl<T> Ord for ByKey<T> {

@@ -1,13 +1,12 @@
-//! Convex polygons cut by lines: the one clipper of `exact`, but for the lanes of `strips_simd`.
+//! Clipping of convex polygons by lines, for all of `exact` except the SIMD lanes of `strips_simd`.
 //!
-//! In: a convex polygon and a form that is linear in the picture. Out: the parts on both sides of
-//! the form's zero line (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane
-//! at a time). A crossing is off by a few roundings along its side; whoever cuts adds that to its
-//! bound.
+//! In: a convex polygon and a linear form. Out: the parts on both sides of the form's zero line
+//! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). A
+//! crossing is off by a few roundings along its side, which callers add to their bounds.
 
 use glam::DVec2;
 
-/// The pixel itself, or the sub-pixel that takes its place.
+/// The pixel, or the sub-pixel in its place, as a polygon.
 pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, -0.5),
     DVec2::new(0.5, -0.5),
@@ -15,11 +14,11 @@ pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, 0.5),
 ];
 
-/// The part of a polygon that lies on its cutting line.
+/// The segment of a polygon that lies on its cutting line.
 pub(super) type Chord = Option<[DVec2; 2]>;
 
-/// Appends the parts where a form is negative and where it is positive; points at which it is 0
-/// belong to both. Returns the chord between them, if the line meets the polygon.
+/// Appends the parts where the form is negative and where it is positive. Points where it is 0
+/// belong to both. Returns the chord between the parts, or `None` if the line misses the polygon.
 pub(super) fn split(
     polygon: &[DVec2],
     form: impl Fn(DVec2) -> f64,
@@ -51,7 +50,7 @@ pub(super) fn split(
     chord
 }
 
-/// The signed area of a polygon, and its perimeter in |dx| + |dy|.
+/// Returns the signed area of a polygon, and its perimeter in |dx| + |dy|.
 pub(super) fn measure(polygon: &[DVec2]) -> (f64, f64) {
     let Some((&origin, others)) = polygon.split_first() else {
         return (0.0, 0.0);

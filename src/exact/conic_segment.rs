@@ -1,64 +1,65 @@
-//! The segment of a conic between an arc and its chord: its area, and what it shows of a
-//! checkerboard.
+//! The segment of a conic between an arc and its chord: its area, and the integral of a
+//! checkerboard's sign over it.
 //!
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the
-//! integral of the board's sign over it, for which the arc is cut where it crosses the board's
-//! lines, so that each piece has its segment in one square and the chords bound a convex polygon.
-//! The bound adds what roundings displace and the area of what is left out: of pieces that are
-//! small enough, so that toward the horizon there are not too many.
+//! integral of the board's sign, for which the arc is cut where it crosses the board's lines, so
+//! that the segment of each piece lies in one square and the chords bound a convex polygon. The
+//! bound counts displacements by rounding and the area of segments that are neglected because they
+//! are small enough, which limits their number towards the horizon.
 
 use glam::DVec2;
 
 use super::{
-    budget::Budget,
-    checker::{Homography, Sum, UNIT, form, square_wave},
+    budget::PixelBudget,
+    checker::{BoundedSum, Homography, UNIT, form, square_wave},
 };
 
-/// Half the width in which the area's series is used, in 1 − w²: of its 34 terms the first that is
-/// left out is at most 0.36³⁴ = 8e-16.
+/// Half-width, in 1 − w², of the range in which the series of the area is used. Of its 34 terms,
+/// the first omitted one is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// An arc that may cross more lines than this is halved. (Measured: with 48 boards of small squares
-/// behind spheres take up to half as long again.)
-const LINES: f64 = 12.0;
-/// Halves of an arc have slivers of less than this of its own: a quarter for a parabola, 0.37 for
-/// half an ellipse, less for a hyperbola; this is twice the most.
-const LEFT: f64 = 0.75;
+/// Maximum number of board lines that an arc may cross without being halved. (Measured: with 48,
+/// boards of small squares behind spheres take up to half as long again.)
+const MAX_LINES: f64 = 12.0;
+/// Maximum area of both halves' segments, relative to the segment of the whole arc. It is a quarter
+/// for a parabola, 0.37 for half an ellipse, and less for a hyperbola; the constant is twice the
+/// largest.
+const MAX_HALVES_SHARE: f64 = 0.75;
 
-/// An arc of a conic: the rational quadratic Bézier curve of the weights 1, w and 1.
+/// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
 ///
-/// Its tangents at the ends meet at `control`; it is of an ellipse for w < 1, of a parabola for w =
-/// 1 and of a hyperbola for w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
+/// Its end tangents meet at `control`. It belongs to an ellipse if w < 1, to a parabola if w = 1,
+/// and to a hyperbola if w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
     pub start: DVec2,
     pub control: DVec2,
     pub end: DVec2,
-    /// w, above 0.
+    /// w, greater than 0.
     pub weight: f64,
 }
 
 impl Arc {
-    /// The area between the arc and its chord, never negative.
+    /// Returns the area between the arc and its chord, never negative.
     ///
-    /// Of the triangle start, control, end it is the part w·(θ − sin θ cos θ)/sin³θ with cos θ = w:
-    /// what a circle's segment of half-angle θ is of its triangle, for an affine map takes
-    /// every ellipse to a circle. For w > 1 θ is imaginary.
+    /// Relative to the triangle start, control, end it is w·(θ − sin θ cos θ)/sin³θ with cos θ = w.
+    /// This is the ratio of a circle's segment of half-angle θ to its triangle, because an affine
+    /// map takes every ellipse to a circle. If w > 1, θ is imaginary.
     pub(crate) fn area(&self) -> f64 {
         let triangle = 0.5
             * (self.control - self.start)
                 .perp_dot(self.end - self.start)
                 .abs();
-        triangle * part(self.weight)
+        triangle * triangle_share(self.weight)
     }
 
-    /// The point of the parameter t, from 0 to 1.
+    /// Returns the point at parameter t, from 0 to 1.
     pub(crate) fn at(&self, t: f64) -> DVec2 {
         let (point, weight) = self.blossom(t, t);
         point / weight
     }
 
-    /// The arc between two parameters.
+    /// Returns the arc between two parameters.
     pub(crate) fn between(&self, t0: f64, t1: f64) -> Self {
         let (start, w0) = self.blossom(t0, t0);
         let (control, w) = self.blossom(t0, t1);
@@ -71,7 +72,7 @@ impl Arc {
         }
     }
 
-    /// The curve's polar form in homogeneous coordinates.
+    /// Evaluates the curve's polar form in homogeneous coordinates.
     fn blossom(&self, s: f64, t: f64) -> (DVec2, f64) {
         let (first, last) = ((1.0 - s) * (1.0 - t), s * t);
         let middle = self.weight * (s * (1.0 - t) + t * (1.0 - s));
@@ -82,8 +83,8 @@ impl Arc {
     }
 }
 
-/// The part of its triangle that lies between an arc of weight w and its chord.
-fn part(w: f64) -> f64 {
+/// Returns the area between an arc of weight w and its chord, relative to its triangle.
+fn triangle_share(w: f64) -> f64 {
     let z = (1.0 - w) * (1.0 + w);
     if z.abs() < NEAR_PARABOLA {
         return w * series(z);
@@ -95,8 +96,8 @@ fn part(w: f64) -> f64 {
     (w / s) * (w / s - libm::log(w + s) / s / s)
 }
 
-/// (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral of 2x²/√(1
-/// − x²).
+/// Evaluates (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral
+/// of 2x²/√(1 − x²).
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -110,7 +111,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // As |z| < 2^−bits, what so many terms leave out is less than a rounding.
+    // As |z| < 2^−bits, these terms leave less than a rounding.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -118,20 +119,20 @@ fn series(z: f64) -> f64 {
 }
 
 impl Homography {
-    /// The integral of s(a)·s(b) over the region between an arc and its chord, in square pixels.
+    /// Integrates s(a)·s(b) over the region between an arc and its chord, in square pixels.
     ///
-    /// An arc is cut where it crosses a line of the board, so that each of its slivers lies in one
-    /// square, and what is left is a convex polygon. Chords take the place of pieces so short
-    /// that their slivers may be neglected: of an area A those of n pieces have A/n³ each and A/n²
-    /// together, which is the tolerance t if one has t^(3/2)/√A.
-    pub(super) fn sliver(&self, arc: &Arc, budget: &Budget) -> Sum {
+    /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies
+    /// in one square, and the rest is a convex polygon. Pieces with negligible segments are
+    /// replaced by their chords. Of a segment of area A, n pieces have segments of A/n³ each and
+    /// A/n² together, which equals the tolerance t if each has t^(3/2)/√A.
+    pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
         let area = arc.area();
-        if let Some(sign) = self.one_square(arc) {
-            return within_a_square(area, sign);
+        if let Some(sign) = self.square_of(arc) {
+            return over_one_square(area, sign);
         }
         let mut chords = Chords {
             points: vec![arc.start],
-            sum: Sum::default(),
+            sum: BoundedSum::default(),
             neglected: budget.tolerance * (budget.tolerance / area).sqrt(),
         };
         self.cut(arc, area, &mut chords);
@@ -139,10 +140,10 @@ impl Homography {
         chords.sum.or_unknown(area)
     }
 
-    /// Adds the slivers of an arc with an area, and the points at which it was cut.
+    /// Adds the segments of an arc whose segment has this area, and the points where it is cut.
     fn cut(&self, arc: &Arc, area: f64, chords: &mut Chords) {
-        if let Some(sign) = self.one_square(arc) {
-            chords.sum.add(within_a_square(area, sign));
+        if let Some(sign) = self.square_of(arc) {
+            chords.sum.add(over_one_square(area, sign));
             chords.points.push(arc.end);
             return;
         }
@@ -153,14 +154,14 @@ impl Homography {
         }
         let lines = [0, 1].map(|i| self.lines(arc, i));
         if let [Some(a), Some(b)] = lines
-            && a.1 - a.0 + b.1 - b.0 <= LINES
+            && a.1 - a.0 + b.1 - b.0 <= MAX_LINES
         {
             return self.cut_at_lines(arc, [a, b], chords);
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
         let areas = halves.map(|half| half.area());
-        // Not so where numbers that are too large or too small have left no arc of them.
-        let is_halved = areas[0] + areas[1] < LEFT * area;
+        // Fails for numbers that are too large or too small to represent the arc.
+        let is_halved = areas[0] + areas[1] < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
             chords.points.push(arc.end);
@@ -180,11 +181,8 @@ impl Homography {
             let mut line = first;
             while line <= last {
                 let f = [0, 1, 2].map(|i| values[i] - line * below[i]);
-                cuts.extend(
-                    roots(f[0], 2.0 * arc.weight * f[1], f[2])
-                        .into_iter()
-                        .flatten(),
-                );
+                let roots = roots(f[0], 2.0 * arc.weight * f[1], f[2]);
+                cuts.extend(roots.into_iter().flatten());
                 line += 1.0;
             }
         }
@@ -198,23 +196,19 @@ impl Homography {
                 let [a, b] = self
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
-                chords.sum.add(self.between_lines(&piece, a * b));
+                let mut segment = over_one_square(piece.area(), a * b);
+                // The lines of the square are off by roundings.
+                segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
+                chords.sum.add(segment);
                 chords.points.push(piece.end);
             }
             before = cut;
         }
     }
 
-    /// The sliver of an arc within a square between whose lines it was cut, wherever those are to
-    /// within roundings.
-    fn between_lines(&self, arc: &Arc, sign: f64) -> Sum {
-        let mut sum = within_a_square(arc.area(), sign);
-        sum.bound += self.displaced(&[arc.start, arc.control, arc.end]);
-        sum
-    }
-
-    /// The sign of the square that an arc's triangle lies in, if it is one.
-    fn one_square(&self, arc: &Arc) -> Option<f64> {
+    /// Returns the sign of the square that contains the arc's triangle, or `None` if there is no
+    /// such square.
+    fn square_of(&self, arc: &Arc) -> Option<f64> {
         let mut sign = 1.0;
         for i in 0..2 {
             let (first, last) = self.lines(arc, i)?;
@@ -226,8 +220,8 @@ impl Homography {
         Some(sign)
     }
 
-    /// The first and the last line of a family, a = i or b = i, that may cross an arc; unless it
-    /// nears the horizon.
+    /// Returns the first and last line of a family (a = i or b = i) that may cross an arc, or
+    /// `None` if the arc reaches the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -243,35 +237,35 @@ impl Homography {
     }
 }
 
-/// Of a segment with an area that lies within a square of a sign.
-fn within_a_square(area: f64, sign: f64) -> Sum {
-    Sum {
+/// Integrates over a segment of this area within one square.
+fn over_one_square(area: f64, sign: f64) -> BoundedSum {
+    BoundedSum {
         value: sign * area,
-        // A triangle's area has five operations. Its part has up to ten, of terms of which the
-        // difference is a quarter where the series ends.
+        // The area of a triangle has five operations. The ratio has up to ten, of terms whose
+        // difference is a quarter of their size at the ends of the series' range.
         bound: 48.0 * UNIT * area,
     }
 }
 
-/// The points of an arc at which it was cut, and the sum of the slivers between.
+/// The points where an arc is cut, and the sum over the segments between them.
 struct Chords {
     points: Vec<DVec2>,
-    sum: Sum,
-    /// A sliver no greater than this, in square pixels, is neglected.
+    sum: BoundedSum,
+    /// Maximum area, in square pixels, of a segment that is neglected.
     neglected: f64,
 }
 
-/// The roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².
+/// Returns the roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
-    // Of squares as large as numbers can be the products would vanish.
+    // Without scaling, the products underflow for extremely large squares.
     let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
     let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
     let discriminant = f1 * f1 - 4.0 * f0 * f2;
     if discriminant < 0.0 {
         return [None, None];
     }
-    // In r = t/(1 − t): f2·r² + f1·r + f0, and t = r/(1 + r), neither of the roots by a difference
-    // of like numbers.
+    // With r = t/(1 − t) the polynomial is f2·r² + f1·r + f0, and t = r/(1 + r). Neither root is a
+    // difference of nearly equal numbers.
     let q = -0.5 * (f1 + discriminant.sqrt().copysign(f1));
     [(q, f2), (f0, q)].map(|(above, below)| {
         let t = above / (above + below);
@@ -296,7 +290,7 @@ mod tests {
                 weight: cos,
             };
             let expected = if degrees < 20 {
-                // x = 2θ: (x − sin x)/2 = x³/12 − x⁵/240 + …
+                // With x = 2θ, (x − sin x)/2 = x³/12 − x⁵/240 + …
                 let x = 2.0 * theta;
                 let mut term = x * x * x / 6.0;
                 let mut sum = 0.0;
@@ -309,7 +303,7 @@ mod tests {
                 theta - sin * cos
             };
             assert!(
-                // 1/cos θ is a coordinate, and the triangle's height its difference to cos θ.
+                // 1/cos θ is a coordinate, and the triangle's height is its difference from cos θ.
                 (arc.area() / expected - 1.0).abs() < 4e-15 + 2.0 * f64::EPSILON / (theta * theta),
                 "{degrees}: {} {expected}",
                 arc.area()
@@ -321,7 +315,7 @@ mod tests {
 
     #[test]
     fn parabola_and_hyperbola() {
-        assert_eq!(part(1.0), 2.0 / 3.0);
+        assert_eq!(triangle_share(1.0), 2.0 / 3.0);
         // x·y = 1 from x = 1 to x = k: the tangents meet at (2k, 2)/(k + 1), and w² = (k + 1)²/4k.
         for k in [1.5_f64, 2.0, 3.0, 4.0, 5.0, 10.0, 1e3, 1e6, 1e12] {
             let weight = (k + 1.0) / (2.0 * k.sqrt());
@@ -338,15 +332,15 @@ mod tests {
                 arc.area()
             );
         }
-        assert!((part(1e200) - 1.0).abs() < 1e-15);
-        assert!((part(1e-200) / 1e-200 - PI / 2.0).abs() < 1e-15);
+        assert!((triangle_share(1e200) - 1.0).abs() < 1e-15);
+        assert!((triangle_share(1e-200) / 1e-200 - PI / 2.0).abs() < 1e-15);
     }
 
     #[test]
     fn the_formulas_meet() {
         for edge in [NEAR_PARABOLA, -NEAR_PARABOLA] {
             let w = (1.0 - edge).sqrt();
-            let (below, above) = (part(w * (1.0 - 1e-13)), part(w * (1.0 + 1e-13)));
+            let [below, above] = [1.0 - 1e-13, 1.0 + 1e-13].map(|by| triangle_share(w * by));
             assert!((below / above - 1.0).abs() < 3e-15 + 3e-13);
         }
     }

@@ -1,30 +1,30 @@
-//! A pixel's mean without samples: the area integral itself.
+//! Exact pixel means: the area integral itself, without samples.
 //!
-//! In: the prepared scene, and which part of the picture is wanted. Out: for each pixel its mean in
+//! In: the prepared scene and the wanted part of the picture. Out: for each pixel its mean in
 //! linear light, with a bound on its error. In ordinary views (a vertical field of view of 1 to 170
 //! degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within 1e±9 or 0) the bound is
-//! at most 1e-9, if not less is asked for; in others it is what it is, up to 1 for the mean colour.
-//! The work on a pixel is limited: to about a second on the machine where it was measured
-//! (`budget`).
+//! at most 1e-9, unless the caller asks for less accuracy. In other views the bound may be larger,
+//! up to 1 where only the mean of two colours is known. The work on a pixel is limited to about a
+//! second on the machine where it was measured (`budget`).
 //!
-//! What is seen is bounded by straight lines and conics, and of one colour (or of one checkerboard)
+//! What is seen is bounded by straight lines and conics, and shows one colour or one checkerboard
 //! between them. So:
 //!
-//! 1. The picture is quartered until a part shows one colour for certain, or is a single pixel.
-//!    Pixels that show nothing but a checkerboard, and few of its lines, are computed eight at a
-//!    time (`checker::board_pixels`).
-//! 2. In any other pixel the boundaries of what may be seen there cut it into regions: convex
-//!    polygons where all are lines (`arrangement`), slabs between neighbouring curves where some
-//!    are conics (`slabs`). A pixel with too many curves is quartered first.
-//! 3. One ray into each region, decided without a mistake as every sample's is, says what is seen
-//!    there (`region`). Boundaries that are hidden do no harm: both sides of them get the same
+//! 1. The picture is quartered until a part certainly shows one colour or is a single pixel. Pixels
+//!    that show only a checkerboard, and few of its lines, are computed eight at a time
+//!    (`checker::board_pixels`).
+//! 2. In any other pixel, the boundaries of what may be seen there cut it into regions: convex
+//!    polygons if all boundaries are lines (`arrangement`), slabs between neighbouring curves if
+//!    some are conics (`slabs`). A pixel with too many curves is quartered first.
+//! 3. One ray into each region, decided as exactly as that of a sample, determines what is seen
+//!    there (`region`). Hidden boundaries do no harm, because both sides of them get the same
 //!    colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
-//!    polygons so; conics and the board are added here.)
-//! 4. Areas have closed forms: `conic_segment` for what lies between arcs and chords. What a region
-//!    shows of a checkerboard is `checker`'s to say.
+//!    polygons this way; conics and the board are added here.)
+//! 4. Areas have closed forms: `conic_segment` has the area between an arc and its chord. `checker`
+//!    integrates a checkerboard over a region.
 //!
-//! The bound adds up what each step may be off: rounding, what could not be told apart, and what is
-//! cut off of infinite sums.
+//! The error bound is the sum of the errors of all steps: rounding, decisions that remained
+//! uncertain, and the truncation of infinite sums.
 
 mod arrangement;
 mod boundaries;
@@ -42,7 +42,7 @@ use std::{
     array,
     collections::BinaryHeap,
     ops::ControlFlow,
-    sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
+    sync::atomic::{AtomicBool, Ordering::Relaxed},
 };
 
 use glam::DVec2;
@@ -55,104 +55,104 @@ use crate::{
 };
 
 use self::{
-    budget::Budget,
+    budget::{PictureWork, PixelBudget},
     by_key::ByKey,
     checker::{
-        Sum, UNIT,
+        BoundedSum, UNIT,
         board_pixels::{BoardBatches, BoardPixel},
     },
     part_pixels::PartPixels,
     region::{Regions, Shares},
 };
 
-/// A pixel whose bound is no greater than this, in area, is known well enough if nothing else is
-/// said: 1e-9 is asked for, roundings of sums included.
-const ENOUGH: f64 = 9e-10;
-/// A piece with more curves than this is quartered before anything is computed of it: n curves
-/// cross in some n² places, and at each of them all have to be looked at, while about half of them
-/// pass through a quarter. (Measured: a heap of 300 objects takes half the time with 6 that it
-/// takes with 24, and with 96 seven times as long; a dozen objects take a tenth longer with 6.)
-const MOST_CURVES: usize = 12;
-/// With each quartering so many more are allowed: curves that stay together in small pieces are not
-/// likely to part in smaller ones. (Measured: of a heap 1 more takes two thirds of the time, and 16
-/// more four times as long.)
-const MORE_CURVES: usize = 4;
-/// Maximum number of computed pieces of a pixel that are quartered, the worst first, where the
-/// bound is above what is asked for. Near a point that a few curves share each takes the bound to a
-/// quarter, so that 16 take it to 2^−32 of itself.
-const MOST_QUARTERINGS: usize = 16;
-/// Maximum memory of the open pieces of a pixel, in bytes, unless the whole pixel as one piece
-/// takes more. A pixel that needs more is not divided any further, and its bound says how much of
-/// it is in doubt. What one piece takes while it is computed, which grows with its objects, is not
+/// Default error bound that is asked for, in pixel areas. It is a little below 1e-9, so that the
+/// result is within 1e-9 after the rounding of sums.
+const DEFAULT_TOLERANCE: f64 = 9e-10;
+/// Maximum number of curves in a piece of the side of a pixel; a piece with more is quartered
+/// before anything is computed. n curves cross in about n² places, at each of which all curves have
+/// to be examined, whereas about half of the curves pass through a quarter. (Measured: a heap of
+/// 300 objects takes half the time with 6 that it takes with 24, and with 96 seven times as long; a
+/// dozen objects take a tenth longer with 6.)
+const MAX_CURVES: usize = 12;
+/// Number of curves by which the maximum grows with each quartering, because curves that stay
+/// together in small pieces are unlikely to part in smaller ones. (Measured on a heap: 1 takes two
+/// thirds of the time, 16 takes four times as long.)
+const MAX_CURVES_PER_QUARTERING: usize = 4;
+/// Maximum number of quarterings per pixel of pieces that are computed already, the piece with the
+/// largest bound first, as long as the bound exceeds the tolerance. Near a point that a few curves
+/// share, each quartering reduces the bound to a quarter, so that 16 reduce it by a factor of 2^32.
+const MAX_QUARTERINGS: usize = 16;
+/// Maximum memory of a pixel's queued pieces, in bytes, unless the whole pixel as one piece takes
+/// more. A pixel that needs more is not divided any further, and its bound counts the rest as
+/// doubtful. Memory that one piece needs while it is computed, which grows with its objects, is not
 /// counted.
-const MOST_MEMORY: usize = 64 << 20;
-/// Pieces of a smaller side than this are told to be in doubt: their area is less than a rounding.
-const SMALLEST: f64 = 1.0 / (1 << 28) as f64;
-/// Units of work of a piece, for itself and for each object in it. What they are is not critical:
-/// they only end what takes too long.
+const MAX_MEMORY: usize = 64 << 20;
+/// Side of a piece, in pixels, below which it is not divided: its area is less than a rounding.
+const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
+/// Work per piece, in units. The values of the work constants are not critical: they only end what
+/// takes too long.
 const PIECE_WORK: f64 = 100.0;
+/// Work per object of a piece, in units.
 const OBJECT_WORK: f64 = 4.0;
-/// The work of a pair of curves of which one is a conic (measured: a heap of 10⁴ spheres takes
-/// twice as long as its regions alone tell).
+/// Work per pair of curves in a piece with a conic, in units. (Measured: a heap of 10⁴ spheres
+/// takes twice as long as the work of its regions alone suggests.)
 const SLABS_WORK: f64 = 60.0;
-/// The work of a pixel that shows nothing but a few squares of a checkerboard.
+/// Work of a pixel that shows only a few squares of a checkerboard, in units.
 const BOARD_PIXEL_WORK: u64 = 10;
 
-/// A pixel computed: of N numbers from 0 to 1 that each colour has, its channels in linear light if
-/// nothing else is said.
+/// A computed pixel: the means of N values of its colours, each from 0 to 1. By default these are
+/// the channels in linear light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
-    /// Their means.
+    /// Mean of each value.
     pub mean: [f64; N],
-    /// How far each may be from the true mean.
+    /// Maximum error of each mean.
     pub bound: f64,
 }
 
-/// Computes pixels of one picture.
+/// Computes the pixels of one picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
     quartering: Quartering<'a>,
-    /// Of the palette.
+    /// Values of each colour of the palette.
     colors: Vec<[f64; N]>,
-    /// The bound that is asked for, in area.
+    /// Error bound that is asked for, in pixel areas.
     tolerance: f64,
-    /// Units of work that were spent on pixels, and how many may be.
-    work: AtomicU64,
-    most_work: u64,
+    work: PictureWork,
 }
 
-/// A part of a pixel.
-struct Piece {
+/// A square part of a pixel.
+struct PixelPiece {
     sub_pixel: SubPixel,
-    /// What may be seen there.
+    /// Objects that may be seen in the piece.
     candidates: Vec<VisibilityCandidate>,
     shares: Shares,
-    state: State,
+    state: PieceState,
 }
 
-/// How a piece of a pixel stands.
+/// How far the computation of a piece has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum State {
-    /// Too many curves pass through it: nothing is computed of it yet.
+enum PieceState {
+    /// Too many curves pass through the piece: nothing is computed yet.
     Crowded,
     Computed,
-    /// Computed; quartering its parent did not halve the bound.
+    /// The piece is computed, and quartering its parent did not halve the bound.
     Final,
 }
 
-impl Piece {
-    /// Its share of the pixel.
+impl PixelPiece {
+    /// Returns the area of the piece as a fraction of the pixel.
     fn area(&self) -> f64 {
         self.sub_pixel.side * self.sub_pixel.side
     }
 
-    /// How far it may put the pixel off.
+    /// Returns the maximum error that the piece contributes to the pixel.
     fn bound(&self) -> f64 {
         self.area() * self.shares.bound
     }
 
-    /// Its memory in bytes, apart from its place in the heap.
+    /// Returns the memory of the piece in bytes, apart from its place in the queue.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
@@ -161,46 +161,45 @@ impl Piece {
 }
 
 impl<'a> Integrator<'a> {
-    /// For the pixels of a prepared scene.
+    /// Integrates the linear light of a prepared scene.
     pub fn new(world: &'a World) -> Self {
-        Self::of(world, Color::to_linear)
+        Self::for_values(world, Color::to_linear)
     }
 }
 
 impl<'a, const N: usize> Integrator<'a, N> {
-    /// For the means of other numbers than its light that a colour has.
-    pub fn of(world: &'a World, numbers: impl Fn(Color) -> [f64; N]) -> Self {
+    /// Integrates N values per colour, as `values` maps them from the colour.
+    pub fn for_values(world: &'a World, values: impl Fn(Color) -> [f64; N]) -> Self {
         Self {
             world,
             quartering: Quartering::new(world),
-            colors: world.palette().iter().copied().map(numbers).collect(),
-            tolerance: ENOUGH,
-            work: AtomicU64::new(0),
-            most_work: u64::MAX,
+            colors: world.palette().iter().copied().map(values).collect(),
+            tolerance: DEFAULT_TOLERANCE,
+            work: PictureWork::new(u64::MAX),
         }
     }
 
-    /// The same, for which it is enough that pixels are known to within so much.
-    pub fn known_to(mut self, tolerance: f64) -> Self {
+    /// Sets the error bound that is asked for.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
     }
 
-    /// The same, which gives up once it has spent so many units of work; [`shares`](Self::shares)
-    /// goes on by the middles of pixels.
-    pub fn within(mut self, most_work: u64) -> Self {
-        self.most_work = most_work;
+    /// Limits the work, after which [`pixels`](Self::pixels) gives up and [`shares`](Self::shares)
+    /// takes the colour in the middle of each further pixel.
+    pub fn with_work_limit(mut self, limit: u64) -> Self {
+        self.work = PictureWork::new(limit);
         self
     }
 
-    /// The units of work that were spent, of some 50 ns each: the same for the same pixels,
-    /// whatever the machine.
+    /// Returns the work spent so far, in units of about 50 ns. It is the same for the same pixels
+    /// on every machine.
     pub fn work(&self) -> u64 {
-        self.work.load(Relaxed)
+        self.work.spent()
     }
 
-    /// The pixels of a part of the picture, row by row; none once it is cancelled, which ends
-    /// within a pixel, too, or given up.
+    /// Computes the pixels of a part of the picture, row by row. Returns `None` if it is cancelled,
+    /// which also ends within a pixel, or if the work limit is exceeded.
     pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel<N>>> {
         let black = ExactPixel {
             mean: [0.0; N],
@@ -213,11 +212,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Pixels of a checkerboard for which that is not enough.
-        let mut others = Vec::new();
-        let is_ended = || cancel.load(Relaxed) || self.work() > self.most_work;
+        // Checkerboard pixels for which the batches are not accurate enough.
+        let mut deferred = Vec::new();
+        let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
-            if is_ended() {
+            if is_over() {
                 return ControlFlow::Break(());
             }
             match part {
@@ -231,32 +230,33 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     ([candidate], Some(checks)) => {
                         let candidate = *candidate;
                         let pixel = BoardPixel { x, y, candidate };
-                        self.work.fetch_add(BOARD_PIXEL_WORK, Relaxed);
-                        let mut set = |pixel, sum| self.set(pixel, sum, &mut film, &mut others);
+                        self.work.add(BOARD_PIXEL_WORK);
+                        let mut set = |pixel, sum| self.set(pixel, sum, &mut film, &mut deferred);
                         batches.push(pixel, checks, &mut set);
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` allows any number of candidates.
+                // `Quartering::new` sets no limit on candidates.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }
             }
             ControlFlow::Continue(())
         });
-        batches.finish(&mut |pixel, sum| self.set(pixel, sum, &mut film, &mut others));
-        for BoardPixel { x, y, candidate } in others {
-            if is_ended() {
+        batches.finish(&mut |pixel, sum| self.set(pixel, sum, &mut film, &mut deferred));
+        for BoardPixel { x, y, candidate } in deferred {
+            if is_over() {
                 break;
             }
             film.set(x, y, self.pixel(x, y, &[candidate], &mut curves, cancel));
         }
-        (flow.is_continue() && !is_ended()).then_some(film.pixels)
+        (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Shows areas of one colour, and of each other pixel how much of it each colour has, by slots
-    /// of the palette. Wants a world made by [`World::by_object`]. Beyond the work that may be
-    /// spent, the middle of a pixel stands for it. Says whether each share is known to a millionth.
+    /// Calls `show` with areas of one colour, and for each other pixel with the share of every
+    /// colour, by palette slot. Requires a world made by [`World::by_object`]. Once the work limit
+    /// is exceeded, the colour in the middle of a pixel stands for the whole pixel. Returns whether
+    /// every share is known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -264,7 +264,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let _ = self.quartering.parts(part, scratch, &mut |part| {
             match part {
                 PicturePart::OneColor { area, slot } => show(area, &[(slot, 1.0)]),
-                PicturePart::Pixel { x, y, .. } if self.work() > self.most_work => {
+                PicturePart::Pixel { x, y, .. } if self.work.is_exceeded() => {
                     let slot = self.world.slot_at(x, y, DVec2::ZERO);
                     is_exact = false;
                     show(Area::pixel(x, y), &[(slot, 1.0)]);
@@ -285,7 +285,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         is_exact
     }
 
-    /// The mean of one pixel, of what may be seen in it.
+    /// Computes the mean of one pixel in which only the candidates may be seen.
     fn pixel(
         &self,
         x: u32,
@@ -294,17 +294,18 @@ impl<'a, const N: usize> Integrator<'a, N> {
         curves: &mut Vec<Boundary>,
         cancel: &AtomicBool,
     ) -> ExactPixel<N> {
-        let together = self.pixel_shares(x, y, candidates, curves, cancel);
-        let rounding = rounding(together.by_slot.len());
-        let pixel = self.mean(&together.by_slot, (together.bound + rounding).min(1.0));
-        match pixel.bound <= self.tolerance {
-            true => pixel,
-            false => self.centered(&pixel, candidates),
+        let shares = self.pixel_shares(x, y, candidates, curves, cancel);
+        let rounding = rounding(shares.by_slot.len());
+        let pixel = self.mean(&shares.by_slot, (shares.bound + rounding).min(1.0));
+        if pixel.bound <= self.tolerance {
+            pixel
+        } else {
+            self.center_in_range(&pixel, candidates)
         }
     }
 
-    /// How much of one pixel each colour has: in pieces where the whole has too many curves, or is
-    /// not known well enough.
+    /// Computes the share of each colour in one pixel. The pixel is divided if too many curves pass
+    /// through it or its bound exceeds the tolerance.
     fn pixel_shares(
         &self,
         x: u32,
@@ -313,75 +314,77 @@ impl<'a, const N: usize> Integrator<'a, N> {
         curves: &mut Vec<Boundary>,
         cancel: &AtomicBool,
     ) -> Shares {
-        let budget = Budget::of_pixel(self.tolerance, cancel);
+        let budget = PixelBudget::new(self.tolerance, cancel);
         let mut piece = |sub_pixel, candidates| self.piece(sub_pixel, candidates, curves, &budget);
         let whole = piece(SubPixel::pixel(x, y), candidates.to_vec());
         let mut bound = whole.bound();
-        let mut together = Shares::default();
+        let mut shares = Shares::default();
         let mut memory = whole.memory();
-        let mut open = BinaryHeap::from([ByKey(bound, whole)]);
+        let mut queue = BinaryHeap::from([ByKey(bound, whole)]);
         let mut quarterings = 0;
         while bound > self.tolerance
             && !budget.is_spent()
-            && open.peek().is_some_and(|ByKey(_, worst)| {
-                // A heap that is full has its old places beside twice as many new ones for a
+            && queue.peek().is_some_and(|ByKey(_, worst)| {
+                // A full heap moves to twice as many places, beside which the old ones exist for a
                 // moment.
-                let copies = if open.len() + 3 > open.capacity() {
-                    3
-                } else {
-                    1
-                };
-                let places = copies * open.capacity() * size_of::<ByKey<Piece>>();
-                memory + places + 4 * worst.memory() <= MOST_MEMORY
+                let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
+                let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
+                memory + places + 4 * worst.memory() <= MAX_MEMORY
             })
-            && let Some(ByKey(_, worst)) = open.pop()
+            && let Some(ByKey(_, worst)) = queue.pop()
         {
             memory -= worst.memory();
-            let may_be_better = match worst.state {
-                State::Crowded => worst.sub_pixel.side > SMALLEST,
-                State::Computed => quarterings < MOST_QUARTERINGS,
-                State::Final => false,
+            let may_improve = match worst.state {
+                PieceState::Crowded => worst.sub_pixel.side > MIN_SIDE,
+                PieceState::Computed => quarterings < MAX_QUARTERINGS,
+                PieceState::Final => false,
             };
-            if !may_be_better {
-                together.add_part(&worst.shares, worst.area());
+            if !may_improve {
+                shares.add_part(&worst.shares, worst.area());
                 continue;
             }
             let mut quarters = worst.sub_pixel.quarters().map(|sub_pixel| {
-                let mut seen = Vec::new();
-                boundaries::narrowed(self.world, sub_pixel, &worst.candidates, &mut seen);
-                piece(sub_pixel, seen)
+                piece(
+                    sub_pixel,
+                    boundaries::visible(self.world, sub_pixel, &worst.candidates),
+                )
             });
-            let after: f64 = quarters.iter().map(Piece::bound).sum();
-            if worst.state == State::Computed {
+            let after: f64 = quarters.iter().map(PixelPiece::bound).sum();
+            if worst.state == PieceState::Computed {
                 quarterings += 1;
                 if after > 0.5 * worst.bound() {
                     quarters
                         .iter_mut()
-                        .for_each(|quarter| quarter.state = State::Final);
+                        .for_each(|quarter| quarter.state = PieceState::Final);
                 }
                 if after >= worst.bound() {
-                    together.add_part(&worst.shares, worst.area());
+                    shares.add_part(&worst.shares, worst.area());
                     continue;
                 }
             }
             bound += after - worst.bound();
-            memory += quarters.iter().map(Piece::memory).sum::<usize>();
-            open.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
+            memory += quarters.iter().map(PixelPiece::memory).sum::<usize>();
+            queue.extend(quarters.map(|quarter| ByKey(quarter.bound(), quarter)));
         }
-        for ByKey(_, piece) in open {
-            together.add_part(&piece.shares, piece.area());
+        for ByKey(_, piece) in queue {
+            shares.add_part(&piece.shares, piece.area());
         }
-        self.work.fetch_add(budget.spent() as u64, Relaxed);
-        together
+        self.work.add(budget.spent() as u64);
+        shares
     }
 
-    /// Moves the mean of a pixel to the middle of what is possible: within its bound, and between
-    /// the least and the greatest number of all colours that may be seen there.
-    fn centered(&self, pixel: &ExactPixel<N>, candidates: &[VisibilityCandidate]) -> ExactPixel<N> {
+    /// Moves the mean to the middle of the possible range: within its bound, and between the least
+    /// and the greatest value of all colours that may be seen there.
+    fn center_in_range(
+        &self,
+        pixel: &ExactPixel<N>,
+        candidates: &[VisibilityCandidate],
+    ) -> ExactPixel<N> {
         let is_covered = candidates.iter().any(|candidate| candidate.is_whole);
         let background = (!is_covered).then(|| self.world.background());
-        let slots = candidates.iter();
-        let slots = slots.flat_map(|candidate| self.world.slots(candidate.object));
+        let slots = candidates
+            .iter()
+            .flat_map(|candidate| self.world.slots(candidate.object));
         let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
         for slot in slots.chain(background) {
             let color = self.colors[slot];
@@ -394,67 +397,61 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The numbers are at most 1, and have been rounded twice.
+            // The values are at most 1, and each has been rounded twice.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }
 
-    /// Sets a pixel of a checkerboard by its integral, if that is known well enough; else it is one
-    /// of the others.
+    /// Sets a checkerboard pixel from its integral if that is accurate enough, or else defers it.
     fn set(
         &self,
         pixel: BoardPixel,
-        sum: Option<Sum>,
+        sum: Option<BoundedSum>,
         film: &mut PartPixels<N>,
-        others: &mut Vec<BoardPixel>,
+        deferred: &mut Vec<BoardPixel>,
     ) {
-        // A share is rounded once, and the mean of two.
+        // A share is rounded once, in addition to the mean of two.
         let roundings = UNIT + rounding(2);
-        let half = sum.map(|Sum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
+        let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
-            return others.push(pixel);
+            return deferred.push(pixel);
         };
         let [first, second] = self.world.slots(pixel.candidate.object);
         let shares = [(first, 0.5 + half), (second, 0.5 - half)];
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// A piece of a pixel with what is seen there, if there are not too many curves.
+    /// Computes the shares of a piece unless too many curves pass through it.
     fn piece(
         &self,
         sub_pixel: SubPixel,
         candidates: Vec<VisibilityCandidate>,
         curves: &mut Vec<Boundary>,
-        budget: &Budget,
-    ) -> Piece {
+        budget: &PixelBudget,
+    ) -> PixelPiece {
         let quarterings = libm::ilogb(sub_pixel.side).unsigned_abs() as usize;
-        let most = MOST_CURVES + MORE_CURVES * quarterings;
+        let most = MAX_CURVES + MAX_CURVES_PER_QUARTERING * quarterings;
         budget.charge(PIECE_WORK + candidates.len() as f64 * OBJECT_WORK);
         let are_all = boundaries::curves(self.world, sub_pixel, &candidates, most, budget, curves);
-        let is_computed = are_all && !budget.is_spent();
-        let shares = match is_computed {
-            true => {
-                let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
-                let lines = curves.iter().map(|curve| match curve {
-                    Boundary::Line(line) => Some(*line),
-                    Boundary::Conic(_) => None,
-                });
-                match lines.collect::<Option<Vec<_>>>() {
-                    Some(lines) => arrangement::shares(&lines, regions),
-                    None => {
-                        // Each conic is followed past all others.
-                        budget.charge(SLABS_WORK * (curves.len() * curves.len()) as f64);
-                        slabs::shares(curves, regions)
-                    }
+        let regions = Regions::new(self.world, sub_pixel, &candidates, budget);
+        let (shares, state) = if are_all && !budget.is_spent() {
+            let lines = curves.iter().map(|curve| match curve {
+                Boundary::Line(line) => Some(*line),
+                Boundary::Conic(_) => None,
+            });
+            let shares = match lines.collect::<Option<Vec<_>>>() {
+                Some(lines) => arrangement::shares(&lines, regions),
+                None => {
+                    // Each conic is followed past all other curves.
+                    budget.charge(SLABS_WORK * (curves.len() * curves.len()) as f64);
+                    slabs::shares(curves, regions)
                 }
-            }
-            false => Shares::unknown(self.world, sub_pixel, &candidates, budget),
+            };
+            (shares, PieceState::Computed)
+        } else {
+            (regions.unknown(), PieceState::Crowded)
         };
-        let state = match is_computed {
-            true => State::Computed,
-            false => State::Crowded,
-        };
-        Piece {
+        PixelPiece {
             sub_pixel,
             candidates,
             shares,
@@ -480,9 +477,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// What the mean of so many colours is rounded by at most: the sum of its products and that of the
-/// shares have as many roundings as there are colours, a product has one, and so has the quotient.
-/// One colour has none.
+/// Returns the rounding error of a mean of `colors` colours. The sum of products and the sum of
+/// shares each have as many roundings as there are colours; a product has one and so does the
+/// quotient. A single colour has none.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -11,7 +11,7 @@ pub(super) struct PartPixels<const N: usize> {
 }
 
 impl<const N: usize> PartPixels<N> {
-    /// A part of them that shows one colour.
+    /// Fills an area that shows one colour.
     pub fn fill(&mut self, part: Area, mean: [f64; N]) {
         for y in part.y..part.y + part.height {
             let start = self.part.index(part.x, y);
@@ -19,7 +19,7 @@ impl<const N: usize> PartPixels<N> {
         }
     }
 
-    /// One of them.
+    /// Sets one pixel.
     pub fn set(&mut self, x: u32, y: u32, pixel: ExactPixel<N>) {
         let index = self.part.index(x, y);
         self.pixels[index] = pixel;

@@ -1,13 +1,12 @@
-//! Pixels with conics: cut into slabs in which the curves are graphs that do not cross, one above
-//! the other.
+//! Pixels with conics, cut into slabs in which the curves are graphs that do not cross.
 //!
 //! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring
-//! branches in each slab, which are told to [`Regions`].
+//! branches in each slab, which are added to [`Regions`].
 //!
-//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents; if
-//! by that two neighbours might cross within a slab, the slab is cut, where they cross if that can
-//! be seen, else in the middle. What cannot be told apart when slabs have become too narrow is
-//! added to the bound as doubtful area.
+//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents.
+//! If, by these, two neighbours might cross within a slab, the slab is cut at their crossing if it
+//! is visible from the ends, or else in the middle. If slabs become too narrow to separate the
+//! curves, the remaining area is added to the bound.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -16,58 +15,61 @@ use glam::DVec2;
 use crate::{math::Real, tracer::Boundary};
 
 use super::{
-    branches::{Graph, Section, Track},
+    branches::{ConicGraph, Section, Track},
     by_key::ByKey,
     conic_segment::Arc,
     region::{Region, Regions, Shares},
 };
 
-/// Curves may be out of order by so much: two y of at most 1, good to eight roundings each.
-const TIE: f64 = 16.0 * f64::UNIT;
+/// Distance by which curves may be out of order: two y of at most 1, each accurate to eight
+/// roundings.
+const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Curves that are nowhere farther apart than this, in pixels, are not told apart: a thousand
-/// roundings of a coordinate, and 10⁻¹³ of area.
-const CLOSE: f64 = 1.0 / (1u64 << 43) as f64;
+/// Distance, in pixels, below which curves are not separated: a thousand roundings of a coordinate,
+/// and 10⁻¹³ of area.
+const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// Slabs narrower than this, in pixels, are not cut, nor any once `MANY` have been added to the
-/// first ones, counting those still queued: what is left in doubt then is in the bound. (Measured:
-/// a quarter and four times as much of either change bounds by a fiftieth and times by about a
-/// tenth at most.)
-const NARROW: f64 = 1.0 / (1u64 << 48) as f64;
-const MANY: usize = 4096;
+/// Width, in pixels, below which slabs are not cut. (Measured: a quarter of it and four times as
+/// much change bounds by a fiftieth and times by about a tenth at most.)
+const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
+/// Number of slabs, in addition to the initial ones, above which slabs are not cut; those still
+/// queued are counted. The remaining doubtful area is in the bound. (Measured: a quarter as many
+/// and four times as many change bounds by a fiftieth and times by about a tenth at most.)
+const MAX_ADDED_SLABS: usize = 4096;
 
-/// Steps of the false position: halving alone gets from a pixel to a rounding in 53.
-const STEPS: usize = 60;
+/// Maximum number of steps of the false position method. Bisection alone gets from a pixel to a
+/// rounding in 53.
+const MAX_STEPS: usize = 60;
 
-/// What rounding may do to the area of a region in a slab, for each part of its width: two y of at
-/// most 1/2, good to eight roundings each, and as much for products and sums.
+/// Rounding error of the area of a region in a slab, divided by its width: two y of at most 1/2,
+/// each accurate to eight roundings, and as much for products and sums.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// The shares of a pixel that is cut by some curves.
+/// Returns the shares of a sub-pixel that is cut by curves.
 pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // As in `arrangement`, but that here it is y that is rounded, which `ROUNDING`
+                // As in `arrangement`, except that the rounding is that of y, which `ROUNDING`
                 // counts.
-                regions.doubt(3.0 * line.rad);
+                regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
                     None => {
                         let [a, b, c] = line.factors;
-                        // Else it is too far away, or no line at all.
+                        // Otherwise the line is too far away, or degenerate.
                         if b.abs() < a.abs() {
-                            regions.doubt((b / a).abs());
+                            regions.add_doubtful_area((b / a).abs());
                             cuts.push(-c / a);
                         }
                     }
                 }
             }
             Boundary::Conic(conic) => {
-                regions.doubt(conic.doubtful_area());
-                let graph = Graph::new(conic);
+                regions.add_doubtful_area(conic.doubtful_area());
+                let graph = ConicGraph::new(conic);
                 cuts.extend(graph.ends());
                 graphs.push(graph);
             }
@@ -76,25 +78,25 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // As many slabs as may be added leave no more in doubt together than what is asked for, if each
-    // leaves one pair.
-    let crumb = regions.tolerance() / MANY as f64;
+    // If each slab leaves one pair of neighbours unseparated, all slabs together leave no more
+    // doubtful area than the tolerance.
+    let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
         graphs,
         regions,
         slabs: 0,
-        crumb,
+        doubtful_limit,
     };
-    // The widest first: where there are too many, narrow ones are left.
-    let many = MANY + cuts.len();
+    // The widest slab is cut first, so that narrow ones are left if there are too many.
+    let max_slabs = MAX_ADDED_SLABS + cuts.len();
     let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();
     while let Some(ByKey(_, [left, right])) = slabs.pop() {
-        if all.regions.is_given_up() {
+        if all.regions.budget.is_spent() {
             break;
         }
-        if let Some(at) = all.slab(left, right, many.saturating_sub(slabs.len())) {
+        if let Some(at) = all.slab(left, right, max_slabs.saturating_sub(slabs.len())) {
             slabs.extend([slab(left, at), slab(at, right)]);
         }
     }
@@ -103,25 +105,25 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
 
 struct Slabs<'a> {
     lines: Vec<Track<'a>>,
-    graphs: Vec<Graph>,
+    graphs: Vec<ConicGraph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// So much area, in square pixels, may be doubtful between two neighbours before their slab is
-    /// cut.
-    crumb: f64,
+    /// Doubtful area between two neighbours, in square pixels, up to which their slab is not cut.
+    doubtful_limit: f64,
 }
 
 impl Slabs<'_> {
-    /// Adds a slab's regions, or returns where to cut it. A slab that is too narrow, or beyond the
-    /// limit, is never cut.
-    fn slab(&mut self, left: f64, right: f64, may_be: usize) -> Option<f64> {
+    /// Adds a slab's regions, or returns where to cut the slab. A slab that is too narrow, or
+    /// beyond the limit `max_slabs`, is never cut.
+    fn slab(&mut self, left: f64, right: f64, max_slabs: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
-        let is_last = width < NARROW || self.slabs >= may_be;
+        let is_last = width < MIN_WIDTH || self.slabs >= max_slabs;
         let mut doubtful = 0.0;
         let mut sections: Vec<(Track, Section)> =
             Vec::with_capacity(self.lines.len() + self.graphs.len());
-        let lines = self.lines.iter();
-        sections.extend(lines.map(|line| (*line, line.straight(left, right))));
+        for line in &self.lines {
+            sections.push((*line, line.straight(left, right)));
+        }
         for graph in &self.graphs {
             let Some(span) = graph.span(left, right) else {
                 continue;
@@ -137,9 +139,9 @@ impl Slabs<'_> {
         sections.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
         let place = |y: f64| sections.partition_point(|(_, section)| section.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
-        // The pixel's sides in order with what lies outside of them, and neighbours inside with
-        // each other.
-        let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::level(y)));
+        // Compares the pixel's sides with the curves outside, and neighbours inside with each
+        // other.
+        let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::straight([y; 3])));
         let below = sections[..first].iter().map(|below| (below, &bottom));
         let above = sections[end..].iter().map(|above| (&top, above));
         let mut inside = vec![&bottom];
@@ -148,19 +150,19 @@ impl Slabs<'_> {
         let neighbors = inside.windows(2).map(|pair| (pair[0], pair[1]));
         for ((lower, a), (upper, b)) in below.chain(neighbors).chain(above) {
             let overlap = a.overlap(b, left, right).clamp(0.0, 1.0);
-            if overlap <= TIE || overlap * width <= self.crumb {
+            if overlap <= ORDER_TOLERANCE || overlap * width <= self.doubtful_limit {
                 doubtful += overlap * width;
                 continue;
             }
             let distance = a.distance(b);
-            if distance <= CLOSE || is_last {
+            if distance <= MIN_DISTANCE || is_last {
                 doubtful += overlap.min(distance) * width;
                 continue;
             }
             return Some(crossing(lower, upper, a, b, left, right));
         }
         self.slabs += 1;
-        self.regions.doubt(doubtful);
+        self.regions.add_doubtful_area(doubtful);
         for pair in inside.windows(2) {
             add(&mut self.regions, &pair[0].1, &pair[1].1, left, right);
         }
@@ -170,9 +172,9 @@ impl Slabs<'_> {
 
 /// Adds the region between two neighbours.
 fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right: f64) {
-    // What is steep may leave the pixel in a slab that is cut no more.
+    // A steep curve may leave the pixel within a slab that is not cut any more.
     let area = (upper.integral(left, right) - lower.integral(left, right)).min(right - left);
-    regions.doubt((right - left) * (ROUNDING + lower.slack + upper.slack));
+    regions.add_doubtful_area((right - left) * (ROUNDING + lower.error + upper.error));
     if area <= 0.0 {
         return;
     }
@@ -187,8 +189,8 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     arcs.extend(lower.arc.map(|(bulge, arc)| (-bulge, arc)));
     let middle = 0.5 * (left + right);
     let inside = DVec2::new(middle, 0.5 * (lower.y[1] + upper.y[1]));
-    if upper.y[1] - lower.y[1] <= TIE {
-        regions.doubt(area);
+    if upper.y[1] - lower.y[1] <= ORDER_TOLERANCE {
+        regions.add_doubtful_area(area);
     }
     regions.add(&Region {
         polygon: &polygon,
@@ -198,8 +200,8 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     });
 }
 
-/// Where to cut a slab in which two tracks may cross: at their crossing, if the order at one end is
-/// not that in the middle.
+/// Returns where to cut a slab in which two tracks may cross: at their crossing if their order at
+/// one end differs from that in the middle, or else in the middle.
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);
@@ -213,8 +215,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     };
     let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
-    // The Illinois variant of the false position: an end that stays twice has its value halved.
-    for _ in 0..STEPS {
+    // The Illinois variant of false position: an end that stays twice has its value halved.
+    for _ in 0..MAX_STEPS {
         let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         if !((at > out.min(inside)) && (at < out.max(inside))) {
             at = 0.5 * (out + inside);
@@ -238,8 +240,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    // Nearer to an end nothing would be gained.
-    if inside > left + 0.5 * NARROW && inside < right - 0.5 * NARROW {
+    // A cut closer to an end would gain nothing.
+    if inside > left + 0.5 * MIN_WIDTH && inside < right - 0.5 * MIN_WIDTH {
         inside
     } else {
         middle

@@ -1,4 +1,4 @@
-//! A ray tracer by the formulas of a `textbook`, with the mistakes of a program as switches.
+//! A ray tracer by the formulas of a textbook, with the mistakes of a program as switches.
 //!
 //! In: a scene, the switches, a part of its picture, and how many samples. Out: for each pixel of
 //! the part the mean and the variance of what one sample in it sees, from so many at fixed places.
@@ -12,8 +12,8 @@ use crate::{
     area::Area,
     color::Color,
     projection::Projection,
+    reference::formulas::{by_vertices, corners, crossings, radians, vertices},
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
-    textbook::{by_vertices, corners, crossings, radians, vertices},
 };
 
 /// Which of the surfaces that a ray crosses is seen.

@@ -120,9 +120,9 @@ impl<'a> Reference<'a> {
     ) -> Result<Self, RenderError> {
         reserve_memory(part.width, part.height, BYTES_A_PIXEL)?;
         let world = World::new_unless(scene, control.cancel)?;
-        let integrator = Integrator::of(&world, moments::numbers(Curve::Right));
+        let integrator = Integrator::for_values(&world, moments::numbers(Curve::Right));
         let integrator = match rounding {
-            Rounding::Byte => integrator.known_to(work::KNOWN),
+            Rounding::Byte => integrator.with_tolerance(work::KNOWN),
             _ => integrator,
         };
         let all = Mutex::new(Moments::zero(part.pixels() as usize));

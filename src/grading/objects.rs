@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{
     projection::Projection,
+    reference::formulas::{corners, vertices},
     scene::{Checkerboard, Scene, Shape},
-    textbook::{corners, vertices},
     tracer::World,
 };
 

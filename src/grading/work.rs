@@ -97,9 +97,9 @@ impl<'a> Work<'a> {
     /// too much.
     pub fn exact_moments(&self, scene: &Scene, averaged: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
-        let integrator = Integrator::of(&world, numbers(averaged))
-            .known_to(KNOWN)
-            .within(self.left() as u64);
+        let integrator = Integrator::for_values(&world, numbers(averaged))
+            .with_tolerance(KNOWN)
+            .with_work_limit(self.left() as u64);
         let pixels = integrator.pixels(part, self.cancel);
         let cells = part.pixels() as usize;
         self.spend(of_exact(integrator.work(), scene.objects.len(), cells));

@@ -2,10 +2,10 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An angle: a part in degrees and a part in radians, whose sum it is.
+/// An angle: the sum of a part in degrees and a part in radians.
 ///
-/// Keeping the two apart keeps degrees exact: a multiple of 90° has a sine and a cosine of exactly
-/// 0 or ±1, however large.
+/// The separate parts keep degrees exact: a multiple of 90° has a sine and a cosine of exactly 0 or
+/// ±1, however large it is.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Angle {
     /// The part in degrees.
@@ -15,7 +15,7 @@ pub struct Angle {
 }
 
 impl Angle {
-    /// An angle of so many degrees.
+    /// Returns an angle in degrees.
     pub const fn from_degrees(degrees: f64) -> Self {
         Self {
             degrees,
@@ -23,7 +23,7 @@ impl Angle {
         }
     }
 
-    /// An angle of so many radians.
+    /// Returns an angle in radians.
     pub const fn from_radians(radians: f64) -> Self {
         Self {
             degrees: 0.0,
@@ -31,17 +31,17 @@ impl Angle {
         }
     }
 
-    /// All of it in degrees.
+    /// Returns the whole angle in degrees, rounded.
     pub const fn in_degrees(self) -> f64 {
         self.degrees + self.radians.to_degrees()
     }
 
-    /// All of it in radians.
+    /// Returns the whole angle in radians, rounded.
     pub const fn in_radians(self) -> f64 {
         self.degrees.to_radians() + self.radians
     }
 
-    /// Whether both parts are finite.
+    /// Returns whether both parts are finite.
     pub fn is_finite(self) -> bool {
         self.degrees.is_finite() && self.radians.is_finite()
     }

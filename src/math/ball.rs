@@ -1,36 +1,36 @@
-//! Numbers with a bound on their error.
+//! Numbers with an error bound.
 
 use std::{borrow::Borrow, cmp::Ordering};
 
 use super::{Big, Radius, Real};
 
-/// What a decision answers that the precision at hand cannot make: the next precision has to.
+/// The result of a decision that the current precision cannot make; the next precision has to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Doubt;
 
 /// A real number known to lie within `rad` of `mid`.
 ///
-/// Every operation bounds what its operands' radii and its own rounding contribute. A radius that
-/// is infinite or NaN, as after an overflow, holds every number.
+/// Every operation bounds the contributions of its operands' radii and of its own rounding. An
+/// infinite radius or NaN, as after an overflow, contains every number.
 #[derive(Clone, Debug)]
 pub struct Ball<T: Real> {
     /// The computed number.
     pub mid: T,
-    /// How far the true one may be, ≥ 0.
+    /// Maximum distance of the true number, ≥ 0.
     pub rad: T::Radius,
 }
 
-/// A factor that rounds a radius up: it was computed in `f64`, by fewer than 2^12 roundings of
-/// 2^−53 each, which 2^−40 is more than.
+/// Factor that rounds a radius up. A radius is computed in `f64` with fewer than 2^12 roundings of
+/// 2^−53 each, which is less than 2^−40.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// What a rounding counts, in [`UNIT`](Real::UNIT)s of the computed number. It is off by one unit
-/// of the true number, and that is less than two of the computed one; twice as much costs nothing
-/// but an occasional question to the next precision.
+/// Radius of a rounding, in [`UNIT`](Real::UNIT)s of the computed number. The error is at most one
+/// unit of the true number, which is less than two of the computed one; twice as much costs nothing
+/// except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
-    /// A number that is known exactly.
+    /// Returns a number that is known exactly.
     pub fn exact(x: f64) -> Self {
         Self {
             mid: T::from_f64(x),
@@ -38,7 +38,7 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// A computed number whose operands contribute `inherited` to its radius.
+    /// Returns a computed number; its operands contribute `inherited` to the radius.
     fn rounded(mid: T, inherited: T::Radius) -> Self {
         let rounding = if mid.is_zero() {
             T::Radius::ZERO
@@ -51,37 +51,37 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// a − b.
+    /// Computes a − b.
     pub fn difference(a: f64, b: f64) -> Self {
         Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
 
-    /// The rounding of a more precise number.
+    /// Rounds a more precise number.
     pub fn from_big(x: &Big) -> Self {
-        Self::rounded(T::from_big(x), lost_of::<T>(x.is_zero()))
+        Self::rounded(T::from_big(x), underflow_loss::<T>(x.is_zero()))
     }
 
-    /// The size of its middle.
+    /// Returns the absolute value of the midpoint.
     pub fn size(&self) -> T::Radius {
         self.mid.magnitude()
     }
 
-    /// Whether the relative error is far below what an `f64` tells, so that exact arithmetic would
-    /// add nothing to it but the last decisions of [`Double`](super::Double), which allow for
-    /// it.
+    /// Returns whether the relative error is far below the precision of `f64`. Exact arithmetic
+    /// would then add nothing except the last decisions of [`Double`](super::Double), which allow
+    /// for this error.
     pub fn is_precise(&self) -> bool {
-        /// A relative error: 27 bits below the 53 of an `f64`.
+        /// Relative error 27 bits below the 53 of an `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }
 
-    /// Whether the sign is certain; NaN is not.
+    /// Returns whether the sign is certain; that of NaN is not.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP
     }
 
-    /// Less than, equal to or greater than zero. What the last precision cannot tell from zero is
-    /// zero.
+    /// Compares with zero. In the last precision, a number that cannot be distinguished from zero
+    /// is zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -97,34 +97,34 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Less than, equal to or greater than another.
+    /// Compares with another number.
     #[inline]
     pub fn compare(&self, other: &Self) -> Result<Ordering, Doubt> {
         (self - other).sign()
     }
 
-    /// self · power, for a power of two.
+    /// Computes self · power for a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // Dyadic, but for an underflow.
+        // Exact except for an underflow.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
         }
     }
 
-    /// self · 2^exponent.
+    /// Computes self · 2^exponent.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // Dyadic, but for an underflow.
-        let lost = lost_of::<T>(self.mid.is_zero());
+        // Exact except for an underflow.
+        let lost = underflow_loss::<T>(self.mid.is_zero());
         Self {
             mid,
             rad: self.rad.scaled(exponent) + lost,
         }
     }
 
-    /// The square root of a number that is not negative.
+    /// Computes the square root of a non-negative number.
     #[inline]
     pub fn sqrt(&self) -> Self {
         if !self.is_clear() {
@@ -140,8 +140,8 @@ impl<T: Real> Ball<T> {
         Self::rounded(root, inherited)
     }
 
-    /// The greatest integer that is not greater, and whether it is odd. What the last precision
-    /// cannot tell from an integer is that integer.
+    /// Returns the greatest integer that is not greater, and whether it is odd. In the last
+    /// precision, a number that cannot be distinguished from an integer is that integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -178,7 +178,7 @@ impl<T: Real> Ball<T> {
         let mid = self.mid.times(&other.mid);
         let (a, b) = (self.size(), other.size());
         let inherited = a * other.rad + self.rad * b + self.rad * other.rad;
-        let lost = lost_of::<T>(self.mid.is_zero() || other.mid.is_zero());
+        let lost = underflow_loss::<T>(self.mid.is_zero() || other.mid.is_zero());
         Self::rounded(mid, inherited + lost)
     }
 
@@ -191,9 +191,10 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least what the radius leaves of b.
+        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least |b| minus its
+        // radius.
         let least = other.size().without(other.rad * UP);
-        let lost = lost_of::<T>(self.mid.is_zero());
+        let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
         Self::rounded(mid, inherited)
     }
@@ -216,7 +217,7 @@ impl<T: Real> std::ops::Neg for Ball<T> {
     }
 }
 
-/// The operator on values and references.
+/// Implements an operator on values and references.
 macro_rules! operator {
     ($trait:ident, $method:ident) => {
         operator!($trait, $method, &Ball<T>, &Ball<T>);
@@ -241,21 +242,21 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-/// What an operation may lose by an underflow, unless its exact result is zero.
+/// Returns the maximum loss by an underflow, unless the exact result is zero.
 #[inline]
-fn lost_of<T: Real>(is_zero: bool) -> T::Radius {
+fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {
     if is_zero { T::Radius::ZERO } else { T::TINY }
 }
 
 /// A vector of balls.
 pub type Ball3<T> = [Ball<T>; 3];
 
-/// The scalar product.
+/// Computes the dot product.
 pub fn dot<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball<T> {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// The vector product.
+/// Computes the cross product.
 pub fn cross<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball3<T> {
     [
         &a[1] * &b[2] - &a[2] * &b[1],

@@ -1,4 +1,4 @@
-//! Big numbers: what decides where double-double leaves a doubt.
+//! Big numbers, which decide if double-double leaves a doubt.
 
 use std::cmp::Ordering;
 
@@ -7,69 +7,70 @@ use dashu_int::Sign;
 
 use super::Angle;
 
-/// A binary floating-point number with 320 bits and an exponent that does not run out.
+/// A binary floating-point number with 320 bits and an exponent that does not overflow.
 #[derive(Clone, Debug)]
 pub struct Big(pub(super) Float);
 
-/// A float whose precision is that of its operands; 0 stands for unlimited, exact as long as
+/// A float with the precision of its operands. A precision of 0 means unlimited, exact as long as
 /// nothing is divided.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer than about
-/// 2^−90, and one closer than that counts as a tie anyway; what remains is far more than the
-/// intermediate steps of any formula here lose.
+/// Number of bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer
+/// than about 2^−90, and a closer one than that counts as a tie anyway. The remaining bits are far
+/// more than the intermediate steps of any formula here lose.
 pub(super) const PRECISION: usize = 320;
 
-/// Further bits for the few steps that cancel: as many as a result has, so that these are left
-/// where as many cancel.
+/// Number of additional bits for the few steps that cancel. It equals the number of bits of a
+/// result, so that these are left even if as many cancel.
 const GUARD: usize = 320;
 
 impl Big {
-    /// Bits of a big number. A whole number with more of them has the nearest one with as many in
-    /// its place, which is even.
+    /// Number of bits of a big number. An integer with more bits is rounded to the nearest number
+    /// with this many, which is even.
     pub const BITS: i32 = PRECISION as i32;
 
-    /// The nearest with so many bits.
+    /// Rounds to the nearest big number.
     pub(super) fn round(x: Float) -> Self {
         Self(x.with_precision(PRECISION).value())
     }
 
-    /// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1.
+    /// Returns sine and cosine of an angle; for a multiple of 90° they are exactly 0 and ±1.
     pub fn sin_cos(angle: Angle) -> (Self, Self) {
         let (sin, cos) = sin_cos(angle, 1.0);
         (Self::round(sin), Self::round(cos))
     }
 
-    /// π/2.
+    /// Returns π/2.
     pub(super) fn quarter_turn() -> Self {
         Self::round(Float::pi(PRECISION + GUARD) / wide(2.0))
     }
 
-    /// The tangent of half an angle, without loss near 180°.
+    /// Returns the tangent of half an angle, without loss of accuracy near 180°.
     pub fn tan_half(angle: Angle) -> Self {
         let (sin, cos) = sin_cos(angle, 0.5);
         Self::round(sin / cos)
     }
 
-    /// The nearest finite `f64`, and not 0 for what is not 0.
+    /// Rounds to the nearest finite `f64`, which is 0 only if the number is 0.
     pub fn to_finite(&self) -> f64 {
         let x = self.0.to_f64().value().clamp(f64::MIN, f64::MAX);
-        match x == 0.0 && !is_zero(&self.0) {
-            true if self.0.sign() == Sign::Negative => -f64::from_bits(1),
-            true => f64::from_bits(1),
-            false => x,
+        if x != 0.0 || is_zero(&self.0) {
+            return x;
         }
+        let least = f64::from_bits(1);
+        let is_negative = self.0.sign() == Sign::Negative;
+        if is_negative { -least } else { least }
     }
 
-    /// The angle whose tangent is this, in degrees.
+    /// Returns the arctangent in degrees.
     pub fn atan_degrees(&self) -> Self {
         Self(self.0.atan_unit(360))
     }
 }
 
-/// How an angle compares with so many half turns. Degrees are compared as they are; where radians
-/// are added to them, π is, which is irrational: what is left is never zero, and has more digits
-/// than would have to cancel.
+/// Compares an angle with a number of half turns. If the angle has no radians, degrees are compared
+/// exactly. Otherwise π is involved, which is irrational: the difference is never zero, and has
+/// more digits than can cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -84,12 +85,12 @@ pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     left.cmp(&Float::ZERO)
 }
 
-/// Whether it is zero, of either sign.
+/// Returns whether the number is zero, of either sign.
 pub(super) fn is_zero(x: &Float) -> bool {
     x.repr().is_pos_zero() || x.repr().is_neg_zero()
 }
 
-/// Sine and cosine of `factor` (a power of two) times an angle.
+/// Returns sine and cosine of `factor` (a power of two) times an angle.
 fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     let part = |x: f64| wide(x) * wide(factor);
     let (sin_degrees, cos_degrees) = part(angle.degrees).sin_cos_unit(360);
@@ -103,15 +104,15 @@ fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     )
 }
 
-/// A finite `f64` with the precision for steps that cancel.
+/// Converts a finite `f64` to the precision of steps that cancel.
 fn wide(x: f64) -> Float {
     exact(x).with_precision(PRECISION + GUARD).value()
 }
 
-/// A finite `f64` as a number whose sums and products are exact.
+/// Converts a finite `f64` to a number whose sums and products are exact.
 pub(super) fn exact(x: f64) -> Float {
-    // Numbers of a scene are finite, and so are sample points; anything else would be a mistake of
-    // ours, and zero keeps it from becoming a panic.
+    // Numbers of a scene and sample points are finite. Any other number would be a bug, which zero
+    // prevents from becoming a panic.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

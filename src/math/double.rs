@@ -1,24 +1,24 @@
-//! Double-double numbers: the unevaluated sum of two `f64`, good for about 32 digits.
+//! Double-double numbers: the unevaluated sum of two `f64`, accurate to about 32 digits.
 
 use super::{Big, Real};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
-/// The algorithms are Dekker's and Knuth's error-free transformations; sum and product are the
+/// The algorithms are Dekker's and Knuth's error-free transformations. Sum and product are the
 /// accurate ones analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic
 /// building blocks of double-word arithmetic" (2017): relative errors of 3u² and 5u², u = 2^−53.
 /// The quotient is a long division, the root a step of Newton's method, each with a residual in
-/// double-double. Products are split after Dekker rather than by a fused multiply-add, which is a
-/// slow function call where the processor has none; both are exact.
+/// double-double. Products are split as by Dekker rather than by a fused multiply-add, which is a
+/// slow function call on processors without it; both are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
     /// The number rounded to `f64`.
     pub hi: f64,
-    /// What the rounding left.
+    /// The remainder of the rounding.
     pub lo: f64,
 }
 
-/// a + b as a rounded sum and its exact error (Knuth).
+/// Returns a + b as a rounded sum and its exact error (Knuth).
 #[inline(always)]
 pub fn two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
@@ -27,7 +27,7 @@ pub fn two_sum(a: f64, b: f64) -> Double {
     Double { hi, lo }
 }
 
-/// a + b as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
+/// Returns a + b as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
 #[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
@@ -37,11 +37,11 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
+/// Returns a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// 2^27 + 1: the upper part of a number of 53 bits has 26 of them, and the lower part 26 with
-    /// its sign.
+    /// 2^27 + 1: the upper part of a number of 53 bits gets 26 bits, and the lower part 26 with its
+    /// sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * SPLIT;
@@ -55,12 +55,19 @@ pub fn two_product(a: f64, b: f64) -> Double {
     Double { hi, lo }
 }
 
+impl Double {
+    /// Returns −self if the condition holds, or else self.
+    pub fn negated_if(self, condition: bool) -> Self {
+        if condition { self.negated() } else { self }
+    }
+}
+
 impl Real for Double {
     type Radius = f64;
 
     /// 2^−102 is above the 10u² of a quotient.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
-    /// The splitting loses what falls below the subnormal numbers, a few times 2^−1074.
+    /// The splitting loses bits below the subnormal numbers, a few times 2^−1074.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -72,9 +79,10 @@ impl Real for Double {
     }
     fn from_big(x: &Big) -> Self {
         let hi = x.to_f64();
-        let lo = match hi.is_finite() {
-            true => x.minus(&Big::from_f64(hi)).to_f64(),
-            false => 0.0,
+        let lo = if hi.is_finite() {
+            x.minus(&Big::from_f64(hi)).to_f64()
+        } else {
+            0.0
         };
         Self { hi, lo }
     }
@@ -119,7 +127,7 @@ impl Real for Double {
         if self.hi == 0.0 {
             return *self;
         }
-        // One step of Newton's method from the f64 root, the residual exact to double-double.
+        // One step of Newton's method from the f64 root; the residual is accurate to double-double.
         let root = f64::sqrt(self.hi);
         let rest = self.minus(&two_product(root, root));
         quick_two_sum(root, rest.hi / (2.0 * root))

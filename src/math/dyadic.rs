@@ -1,9 +1,9 @@
-//! Dyadic numbers: whole numbers times powers of two, which sums, differences and products of `f64`
-//! are, without any rounding.
+//! Dyadic numbers: integers times powers of two. Sums, differences and products of `f64` are dyadic
+//! numbers, without any rounding.
 //!
-//! They settle the few questions that must not depend on rounding at all: does the eye lie in this
-//! plane, on this sphere, is the up vector parallel to the view direction. That takes some
-//! microseconds.
+//! They answer the few questions that must not depend on rounding at all: whether the eye lies in a
+//! plane or on a sphere, and whether the up vector is parallel to the view direction. An answer
+//! takes some microseconds.
 
 use std::{cmp::Ordering, ops};
 
@@ -15,20 +15,20 @@ use super::{
     big::{Float, exact, is_zero},
 };
 
-/// A whole number times a power of two: what sums, differences and products of `f64` are.
+/// An integer times a power of two, exact in sums, differences and products.
 #[derive(Clone, Debug)]
 pub struct Dyadic(Float);
 
-/// A vector of them.
+/// A vector of dyadic numbers.
 pub type Dyadic3 = [Dyadic; 3];
 
 impl Dyadic {
-    /// The number itself.
+    /// Converts an `f64` exactly.
     pub fn new(x: f64) -> Self {
         Self(exact(x))
     }
 
-    /// Less than, equal to or greater than zero.
+    /// Compares with zero.
     pub fn sign(&self) -> Ordering {
         if is_zero(&self.0) {
             Ordering::Equal
@@ -39,32 +39,32 @@ impl Dyadic {
         }
     }
 
-    /// The nearest [`Big`].
+    /// Rounds to the nearest [`Big`].
     pub fn to_big(&self) -> Big {
         Big::round(self.0.clone())
     }
 
-    /// A vector.
+    /// Converts a vector exactly.
     pub fn vector(v: DVec3) -> Dyadic3 {
         v.to_array().map(Self::new)
     }
 
-    /// to − from.
+    /// Computes to − from.
     pub fn between(from: DVec3, to: DVec3) -> Dyadic3 {
         [0, 1, 2].map(|i| Self(exact(to[i]) - exact(from[i])))
     }
 
-    /// The scalar product of two vectors.
+    /// Computes the dot product of two vectors.
     pub fn dot(a: &Dyadic3, b: &Dyadic3) -> Self {
         &(&(&a[0] * &b[0]) + &(&a[1] * &b[1])) + &(&a[2] * &b[2])
     }
 
-    /// The vector product of two vectors.
+    /// Computes the cross product of two vectors.
     pub fn cross(a: &Dyadic3, b: &Dyadic3) -> Dyadic3 {
         [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
     }
 
-    /// Whether a vector has no length.
+    /// Returns whether a vector is zero.
     pub fn is_zero(v: &Dyadic3) -> bool {
         v.iter().all(|x| is_zero(&x.0))
     }

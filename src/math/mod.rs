@@ -1,9 +1,9 @@
-//! Arithmetic that is the same on every machine, in three precisions, sine and kin, and questions
-//! answered exactly.
+//! Arithmetic in three precisions that is the same on every machine, trigonometry, and exact
+//! predicates.
 //!
 //! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A
-//! [`Ball`] is a number with a bound on its error, so that a decision either is certain or says
-//! that it is in [`Doubt`]; the next precision then decides.
+//! [`Ball`] is a number with an error bound, so that a decision is either certain or a [`Doubt`],
+//! which the next precision resolves.
 
 mod angle;
 mod ball;

@@ -1,4 +1,4 @@
-//! Questions about the numbers of a scene that are answered without rounding.
+//! Exact predicates on the numbers of a scene.
 
 use std::cmp::Ordering;
 
@@ -9,16 +9,16 @@ use super::{Dyadic, Dyadic3, two_sum};
 /// A plane.
 #[derive(Clone, Debug)]
 pub enum Plane {
-    /// Across the x, y or z axis (0, 1 or 2), at a coordinate.
+    /// A plane perpendicular to the x, y or z axis.
     Axial {
-        /// The axis.
+        /// The axis: 0, 1 or 2.
         axis: usize,
-        /// The coordinate of all its points along it.
+        /// The coordinate of all its points along the axis.
         at: f64,
     },
-    /// Through a point across a normal.
+    /// A plane given by a point and a normal.
     Tilted {
-        /// The normal, of any length but 0.
+        /// The normal, of any length except 0.
         normal: Dyadic3,
         /// The point.
         point: DVec3,
@@ -26,22 +26,23 @@ pub enum Plane {
 }
 
 impl Plane {
-    /// The plane through a point across a normal.
+    /// Returns the plane through a point, perpendicular to a normal.
     pub fn across(normal: DVec3, point: DVec3) -> Self {
         let normal = Dyadic::vector(normal);
         Self::Tilted { normal, point }
     }
 
-    /// The plane through three points.
+    /// Returns the plane through three points.
     pub fn through([a, b, c]: [DVec3; 3]) -> Self {
         let normal = Dyadic::cross(&Dyadic::between(a, b), &Dyadic::between(a, c));
         Self::Tilted { normal, point: a }
     }
 
-    /// Whether it is the same plane as another: their normals are parallel, and the points'
-    /// difference lies across these.
+    /// Returns whether two planes are equal: their normals are parallel, and the difference of the
+    /// points is perpendicular to both.
     pub fn equals(&self, other: &Self) -> bool {
-        // Where a box stands on a floor, or boxes stand side by side, many samples ask.
+        // Many samples compare axial planes if a box stands on a floor, or boxes stand side by
+        // side.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -61,7 +62,7 @@ impl Plane {
     }
 }
 
-/// Whether the cross product of `up` with `to − from` is zero.
+/// Returns whether the cross product of `up` and `to − from` is zero.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     Dyadic::is_zero(&Dyadic::cross(
         &Dyadic::vector(up),
@@ -69,12 +70,12 @@ pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     ))
 }
 
-/// The sign of the dot product of `up` with `to − from`.
+/// Returns the sign of the dot product of `up` and `to − from`.
 pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
     Dyadic::dot(&Dyadic::vector(up), &Dyadic::between(from, to)).sign()
 }
 
-/// Whether three points lie on one line.
+/// Returns whether three points lie on one line.
 pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
     Dyadic::is_zero(&Dyadic::cross(
         &Dyadic::between(a, b),
@@ -82,23 +83,24 @@ pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
     ))
 }
 
-/// Whether three lengths are the sides of a triangle: each is less than the two others together.
+/// Returns whether three lengths are the sides of a triangle: each is less than the sum of the two
+/// others.
 pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
     exceeds(b, c, a) && exceeds(c, a, b) && exceeds(a, b, c)
 }
 
-/// Whether the exact sum of two positive numbers is more than a third one.
+/// Returns whether the exact sum of two positive numbers exceeds a third one.
 fn exceeds(one: f64, other: f64, bound: f64) -> bool {
     let sum = one + other;
     if sum != bound {
-        // Rounding keeps order: the exact sum lies on the same side.
+        // Rounding is monotonic: the exact sum lies on the same side.
         return sum > bound;
     }
     let error = two_sum(one, other).lo;
     error > 0.0
 }
 
-/// `center − size/2` and `center + size/2`, each rounded once.
+/// Returns `center − size/2` and `center + size/2`, each rounded once.
 pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     let corner = |sign: f64| {
         [0, 1, 2]
@@ -108,9 +110,9 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is (2a + b)/2: if the
-/// sum is rounded, it is no subnormal number, and halving it is exact. Where 2a is too large, b/2
-/// is exact or too small to matter.
+/// Returns `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is computed
+/// as (2a + b)/2. If the sum is rounded, it is not subnormal, and halving it is exact. If 2a
+/// overflows, b/2 is exact or too small to matter.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {
@@ -142,7 +144,7 @@ mod tests {
     #[test]
     fn planes_are_one_or_not_to_the_last_bit() {
         let plane = |normal: [f64; 3], point: [f64; 3]| Plane::across(normal.into(), point.into());
-        // x + 2y + 3z = 5.25, and what is small beside 10^16 is not lost.
+        // x + 2y + 3z = 5.25, and small terms are not lost beside 10^16.
         let normal = [1.0, 2.0, 3.0];
         let near = plane(normal, [0.0, 0.0, 1.75]);
         let far = [1e16, -5e15, 1.75];
@@ -157,13 +159,14 @@ mod tests {
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];
         assert!(!near.equals(&plane(tilted, [0.0, 0.0, 1.75])));
-        // A tenth, two and three of them are rounded each in its own way.
+        // One, two and three tenths are rounded differently.
         assert!(!near.equals(&plane([0.1, 0.2, 0.3], far)));
     }
 
     #[test]
     fn sides_of_triangles() {
-        // Once the sum rounds to the third side, and is a little more; once it was rounded up.
+        // In one case the sum rounds to the third side but is slightly greater; in one it was
+        // rounded up.
         let little = f64::EPSILON / 4.0;
         for (sides, is_triangle) in [
             ([2.0, 2.0, 1.0], true),

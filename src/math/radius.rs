@@ -1,9 +1,10 @@
-//! Bounds on errors: numbers ≥ 0, of wider range than an `f64` where big numbers need it. Their
-//! operations round to nearest; where it counts, a result is widened by [`UP`](super::UP).
+//! Error bounds: non-negative numbers, with a wider range than `f64` for big numbers. Their
+//! operations round to nearest; where it matters, a result is increased by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 
-/// A number ≥ 0 that bounds an error; computed carelessly, and rounded up where it counts.
+/// A non-negative number that bounds an error. Its operations round to nearest, and callers round
+/// up where it matters.
 pub trait Radius:
     Copy
     + std::fmt::Debug
@@ -17,18 +18,18 @@ pub trait Radius:
     const ZERO: Self;
     /// No bound at all.
     const INFINITE: Self;
-    /// The square root.
+    /// Computes the square root.
     fn sqrt(self) -> Self;
-    /// self · 2^exponent.
+    /// Computes self · 2^exponent.
     fn scaled(self, exponent: i32) -> Self;
-    /// The exponent of the least power of two that is greater; 0 for 0.
+    /// Returns the exponent of the least power of two that is greater; 0 for 0.
     fn exponent(self) -> i32;
-    /// What is left of it without `other`, which is smaller.
+    /// Subtracts `other`, which is smaller.
     fn without(self, other: Self) -> Self;
-    /// As an `f64`, or infinite.
+    /// Converts to `f64`, or infinity.
     fn to_f64(self) -> f64;
 
-    /// The greater of two.
+    /// Returns the greater of two.
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -45,7 +46,7 @@ impl Radius for f64 {
     #[inline]
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
-            // A power of two that is a normal number; a product is rounded as `ldexp` rounds.
+            // The power of two is a normal number; the product is rounded as `ldexp` rounds.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }
@@ -63,8 +64,8 @@ impl Radius for f64 {
     }
 }
 
-/// A number ≥ 0 whose exponent does not run out: mantissa · 2^exponent, the mantissa 0, infinite,
-/// or from 1 to below 2.
+/// A non-negative number whose exponent does not overflow: mantissa · 2^exponent, where the
+/// mantissa is 0, infinite, or at least 1 and less than 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wide {
     mantissa: f64,
@@ -72,11 +73,11 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// An exponent: what is 2^1000 times smaller is far less than [`UP`](super::UP) adds, and no
-    /// underflow beside a mantissa from 1 to 2.
+    /// Exponent difference beyond which a summand is treated as 2^1000 times smaller: far less than
+    /// [`UP`](super::UP) adds, and no underflow beside a mantissa from 1 to 2.
     const FAR: i64 = 1000;
 
-    /// mantissa · 2^exponent for any mantissa ≥ 0.
+    /// Returns mantissa · 2^exponent for any mantissa ≥ 0.
     pub fn new(mantissa: f64, exponent: i64) -> Self {
         if mantissa == 0.0 || !mantissa.is_finite() {
             return Self {
@@ -172,10 +173,10 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Far beyond the exponents of `f64`, so that nothing that is scaled by it is one, and
+        /// Limit far beyond the exponents of `f64`, so that no number scaled by it is an `f64`, and
         /// small enough to be added and negated.
-        const MOST: i64 = 1 << 20;
-        (self.exponent + of_mantissa).clamp(-MOST, MOST) as i32
+        const LIMIT: i64 = 1 << 20;
+        (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }
     fn without(self, other: Self) -> Self {
         let shift = (self.exponent - other.exponent).clamp(0, Self::FAR);
@@ -183,9 +184,9 @@ impl Radius for Wide {
         Self::new(rest.max(0.0), self.exponent)
     }
     fn to_f64(self) -> f64 {
-        /// Beyond the exponents of `f64`, which are −1074 to 1023.
-        const MOST: i64 = 1100;
-        libm::ldexp(self.mantissa, self.exponent.clamp(-MOST, MOST) as i32)
+        /// Limit beyond the exponents of `f64`, which are −1074 to 1023.
+        const LIMIT: i64 = 1100;
+        libm::ldexp(self.mantissa, self.exponent.clamp(-LIMIT, LIMIT) as i32)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The three precisions that decisions are made in.
+//! The three precisions of decisions.
 
 use std::fmt::Debug;
 
@@ -11,61 +11,60 @@ use super::{
 
 /// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`], from fast to precise.
 ///
-/// Operations take references, since a big number is not free to copy. Each result is off by at
-/// most [`UNIT`](Real::UNIT) of its own size, as long as nothing overflows or underflows; an `f64`
-/// or `Double` that overflows becomes infinite or NaN, which every decision takes for doubt.
+/// Operations take references, because a big number is expensive to copy. The error of a result is
+/// at most [`UNIT`](Real::UNIT) times the result, as long as nothing overflows or underflows. An
+/// `f64` or `Double` that overflows becomes infinite or NaN, which every decision treats as doubt.
 pub trait Real: Clone + Debug + Sized {
-    /// What bounds errors: as wide in range as the kind itself.
+    /// Type of error bounds, with at least the range of the kind itself.
     type Radius: Radius;
     /// Bound on the relative error of one operation.
     const UNIT: f64;
-    /// Bound on the absolute error of one operation that underflows, its radius included.
+    /// Bound on the absolute error of one operation that underflows, including its radius.
     const TINY: Self::Radius;
-    /// Whether there is no more precise kind to ask: a value that is not told from zero counts as
-    /// zero.
+    /// Whether this is the most precise kind, in which a value that cannot be distinguished from
+    /// zero counts as zero.
     const LAST: bool;
 
-    /// The number itself, without rounding.
+    /// Converts without rounding.
     fn from_f64(x: f64) -> Self;
-    /// a − b, without rounding where the kind can hold it.
+    /// Computes a − b, without rounding if the kind can hold the result.
     fn difference(a: f64, b: f64) -> Self;
-    /// The rounding of a more precise number.
+    /// Rounds a more precise number.
     fn from_big(x: &Big) -> Self;
-    /// The nearest `f64`, or one of the two nearest.
+    /// Returns the nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
-    /// Its absolute value, rounded.
+    /// Returns the absolute value, rounded.
     fn magnitude(&self) -> Self::Radius;
-    /// Whether it is less than zero.
+    /// Returns whether the number is less than zero.
     fn is_negative(&self) -> bool;
-    /// Whether it is zero, and not merely too small for an `f64`.
+    /// Returns whether the number is zero, not merely too small for an `f64`.
     fn is_zero(&self) -> bool;
 
-    /// self + other.
+    /// Computes self + other.
     fn plus(&self, other: &Self) -> Self;
-    /// self − other.
+    /// Computes self − other.
     fn minus(&self, other: &Self) -> Self;
-    /// self · other.
+    /// Computes self · other.
     fn times(&self, other: &Self) -> Self;
-    /// self / other.
+    /// Computes self / other.
     fn over(&self, other: &Self) -> Self;
-    /// The square root.
+    /// Computes the square root.
     fn sqrt(&self) -> Self;
-    /// −self.
+    /// Computes −self.
     fn negated(&self) -> Self;
-    /// self · 2^exponent, exactly.
+    /// Computes self · 2^exponent, exactly.
     fn scaled(&self, exponent: i32) -> Self;
-    /// The greatest integer that is not greater, and whether it is odd.
+    /// Returns the greatest integer that is not greater, and whether it is odd.
     fn floor(&self) -> (Self, bool);
 }
 
-/// Added to a number below 2^51 and taken away again, it rounds that to a whole number, whose last
-/// bit is that of the sum.
+/// Number that rounds another one below 2^51 to an integer if it is added and subtracted again. The
+/// last bit of the sum is that of the integer.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// The greatest whole number that is not greater, for |x| < 2^63.
+/// Returns the greatest integer that is not greater, for |x| < 2^63.
 ///
-/// `f64::floor` is a call of a function where not every processor of the kind has an instruction
-/// for it.
+/// `f64::floor` is a function call on targets whose baseline has no instruction for it.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let towards_zero = x as i64 as f64;
@@ -80,7 +79,7 @@ impl Real for f64 {
     type Radius = f64;
     /// Half a unit in the last of 53 places.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// An underflow loses half a subnormal number's unit, 2^−1075, and this is 2^−1022.
+    /// 2^−1022. An underflow loses half a subnormal number's unit, 2^−1075.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -139,7 +138,7 @@ impl Real for f64 {
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {
-        /// Every `f64` from here on is even, as it has 53 bits.
+        /// Every `f64` from 2^53 on is even, because it has 53 bits.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)
@@ -169,7 +168,7 @@ impl Real for Big {
     fn magnitude(&self) -> Wide {
         let repr = self.0.repr();
         let bits = repr.significand().bit_len() as isize;
-        // Between 1/2 and 1, without regard to its exponent.
+        // Between 1/2 and 1, whatever the number's own exponent.
         let fraction = self.0.clone() >> (repr.exponent() + bits);
         let exponent = (repr.exponent() + bits) as i64;
         Wide::new(fraction.to_f64().value().abs(), exponent)

@@ -1,22 +1,22 @@
-//! How wide the vectors are that loops over plain arrays are made of.
+//! The width of the vectors into which loops over plain arrays are compiled.
 //!
-//! A program for any processor of a kind may use the vectors that all of them have, which on x86-64
-//! are two numbers wide. So the few loops that matter are compiled for wider ones, too, and the
-//! processor is asked once which of them it has: four numbers (AVX2), and eight (AVX-512)
-//! where that gains a tenth. Vectors of any width compute the
-//! same bits: IEEE 754 rounds each sum and each product on its own, and nothing here may fuse two
-//! operations into one.
+//! A program for all processors of an architecture may only use the vectors that all of them have,
+//! which on x86-64 hold two numbers. The few loops that matter are therefore also compiled for
+//! wider vectors, four numbers (AVX2) and, where it gains a tenth, eight (AVX-512), and the
+//! processor is asked once which of them it has. Vectors of any width compute the same bits: IEEE
+//! 754 rounds each sum and each product on its own, and nothing here may fuse two operations into
+//! one.
 
-/// Which vectors a loop is made of.
+/// Width of the vectors that a loop uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SimdWidth {
-    /// The widest that the processor has.
+    /// The widest vectors that the processor has.
     #[default]
     Widest,
-    /// Those that every processor of its kind has, which are quicker where there are few numbers.
+    /// The vectors that every processor of the architecture has, which are faster for few numbers.
     Baseline,
 }
 
-/// Whether loops are compiled for wider vectors, too. Elsewhere a second copy of them would only
-/// make the program larger.
+/// Whether loops are also compiled for wider vectors. On other architectures a second copy would
+/// only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

@@ -1,26 +1,27 @@
-//! Sine and cosine with a bound on their error.
+//! Sine and cosine with an error bound.
 //!
-//! Degrees are reduced mod 360 without rounding before they become radians, so that multiples of
-//! 90° give exactly 0 and ±1 however large they are. What is left is at most 45°.
+//! Degrees are reduced mod 360 without rounding before they are converted to radians, so that
+//! multiples of 90° give exactly 0 and ±1 however large they are. The reduced angle is at most 45°.
 
 use std::{array, ops::Neg, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// More radians are left to [`Big`]: its π has digits enough. So many are less than 2^20 quarter
-/// turns, and miss 2^20 times what the π/2 below does, 2^−143, which is nothing beside a unit of
-/// double-double, 2^−102.
-const MOST_RADIANS: f64 = (1u64 << 20) as f64;
+/// Largest angle, in radians, that is not left to [`Big`], whose π has enough digits for any. It is
+/// less than 2^20 quarter turns, for which the truncation of π/2 amounts to 2^20 · 2^−163 = 2^−143,
+/// negligible beside a unit of double-double, 2^−102.
+const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Terms of a series. With r ≤ 0.8, which is above π/4, the first that is left out of the cosine's
-/// is r³⁰/30! < 2^−117, and of the sine's, beside r itself, r³⁰/31! < 2^−122; as terms alternate
-/// and get smaller, no more than that is missing.
+/// Number of terms of a series. With r ≤ 0.8, which is above π/4, the first omitted term of the
+/// cosine is r³⁰/30! < 2^−117, and that of the sine, relative to r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
-const LEFT_OUT: f64 = 1.0 / (1u128 << 116) as f64;
+/// Bound on the truncation error of a series. The terms alternate and decrease, so that the error
+/// is at most the first omitted term.
+const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
-/// What the series need.
+/// Constants of the series.
 struct Constants {
-    /// π/2 as a sum of three `f64`; half of the last one's unit may be missing, 2^−163.
+    /// π/2 as the sum of three `f64`, with an error of at most half a unit of the last one, 2^−163.
     quarter_turn: [f64; 3],
     radians_per_degree: Ball<Double>,
     /// (−1)ⁿ/(2n)!.
@@ -42,7 +43,7 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // i⁰, i¹, i², … without i.
+        // The signs of i⁰, i¹, i², … without i.
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -53,19 +54,19 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     }
 });
 
-/// Sine and cosine of an angle; of a multiple of 90° exactly 0 and ±1. In double-double they are
-/// had by series, in the two other precisions from [`Big`].
+/// Returns sine and cosine of an angle; for a multiple of 90° they are exactly 0 and ±1.
+/// Double-double uses series, the two other precisions round a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
-    if T::UNIT == Double::UNIT && angle.radians.abs() <= MOST_RADIANS {
+    if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
-        return (of_double(&sin), of_double(&cos));
+        return (from_double(&sin), from_double(&cos));
     }
     let (sin, cos) = Big::sin_cos(angle);
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// The same number in `T`, which is [`Double`]: the sum of the two parts is rounded to themselves.
-fn of_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
+/// Converts to `T`, which is [`Double`]: the sum of the two parts is rounded to the same parts.
+fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
         mid: hi.plus(&lo),
@@ -74,11 +75,11 @@ fn of_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
 }
 
 fn by_series(angle: Angle) -> (Ball<Double>, Ball<Double>) {
-    let degrees = of_degrees(angle.degrees);
+    let degrees = sin_cos_degrees(angle.degrees);
     if angle.radians == 0.0 {
         return degrees;
     }
-    let radians = of_radians(angle.radians);
+    let radians = sin_cos_radians(angle.radians);
     if angle.degrees == 0.0 {
         return radians;
     }
@@ -86,15 +87,15 @@ fn by_series(angle: Angle) -> (Ball<Double>, Ball<Double>) {
     (&s * &d + &c * &t, &c * &d - &s * &t)
 }
 
-fn of_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
-    let (rest, quarters) = reduced(degrees);
+fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
+    let (rest, quarters) = reduce_degrees(degrees);
     let rest = Ball::exact(rest) * &CONSTANTS.radians_per_degree;
-    turned(series(&rest), quarters)
+    add_quarter_turns(series(&rest), quarters)
 }
 
-/// Radians are reduced mod π/2 in three steps (Cody and Waite), of which the first two take away
-/// exact products.
-fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
+/// Reduces radians mod π/2 in three steps (Cody and Waite), of which the first two subtract exact
+/// products.
+fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     let [first, second, third] = CONSTANTS.quarter_turn;
     let quarters = (radians / first).round();
     let product = |part: f64| Ball {
@@ -106,12 +107,12 @@ fn of_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
         rad: third.abs() * f64::EPSILON,
     };
     let rest = Ball::exact(radians) - product(first) - product(second);
-    turned(series(&(rest - Ball::exact(quarters) * last)), quarters)
+    add_quarter_turns(series(&(rest - Ball::exact(quarters) * last)), quarters)
 }
 
-/// What is left of an angle in degrees, 45 at most, beside so many quarter turns. Every step is
-/// exact: a remainder is, and so is a difference to 90 of a number between 45 and 90 (Sterbenz).
-fn reduced(degrees: f64) -> (f64, f64) {
+/// Splits an angle in degrees into quarter turns and a rest of at most 45. Every step is exact: so
+/// is a remainder, and so is the difference to 90 of a number between 45 and 90 (Sterbenz).
+fn reduce_degrees(degrees: f64) -> (f64, f64) {
     let within_turn = degrees % 360.0;
     let mut rest = within_turn % 90.0;
     let mut quarters = (within_turn - rest) / 90.0;
@@ -125,8 +126,8 @@ fn reduced(degrees: f64) -> (f64, f64) {
     (rest, quarters)
 }
 
-/// Sine and cosine after so many quarter turns more.
-fn turned<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
+/// Adds quarter turns to an angle given by its sine and cosine.
+fn add_quarter_turns<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
     match quarters.rem_euclid(4.0) as u8 {
         0 => (sin, cos),
         1 => (cos, -sin),
@@ -135,7 +136,7 @@ fn turned<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
     }
 }
 
-/// Sine and cosine of r, |r| ≤ 0.8, by their series, from the smallest term to the largest.
+/// Evaluates the series of sine and cosine at r, |r| ≤ 0.8, from the smallest term to the largest.
 fn series(r: &Ball<Double>) -> (Ball<Double>, Ball<Double>) {
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
     if r.mid.is_zero() && r.rad == 0.0 {
@@ -145,7 +146,7 @@ fn series(r: &Ball<Double>) -> (Ball<Double>, Ball<Double>) {
     let sum = |terms: &[Ball<Double>; TERMS]| {
         let rest = Ball {
             mid: Double::from_f64(0.0),
-            rad: LEFT_OUT,
+            rad: TRUNCATION,
         };
         let all = |sum: Ball<Double>, term: &Ball<Double>| &sum * &square + term;
         let sum = terms.iter().rev().fold(zero.clone(), all);
@@ -160,15 +161,15 @@ mod tests {
 
     use super::*;
 
-    /// How wide a ball may be, in units of double-double: what the rules of [`Ball`] make of an
-    /// angle in degrees, in radians, and of both. A product with a rounded constant gives 8
-    /// units of r for degrees, three differences 12 π/4 at most for radians. From there the series
-    /// come to 19.9 units of the sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for
-    /// radians, all where |r| = π/4; and a sum of two products of these, √½ each, to √½ (19.9 +
-    /// 19.6 + 23.4 + 22.1) + 2 + 2 + 4 = 68.1.
+    /// Maximum radius of a ball, in units of double-double, for an angle in degrees, in radians,
+    /// and in both, by the rules of [`Ball`]. A product with a rounded constant gives 8 units of r
+    /// for degrees, three differences at most 12 π/4 for radians. From there the series give 19.9
+    /// units of the sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for radians, all at |r|
+    /// = π/4. A sum of two products of these, √½ each, gives 2 + 2 + 4 + √½ (19.9 + 19.6 + 23.4 +
+    /// 22.1) = 68.1.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
-    /// Whether both balls hold the true numbers and are no wider than they have to be.
+    /// Returns whether both balls contain the true numbers and are no wider than necessary.
     fn is_right(degrees: f64, radians: f64) -> bool {
         let widest = match (degrees == 0.0, radians == 0.0) {
             (_, true) => WIDEST[0],
@@ -208,9 +209,9 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // Where both parts are 45° beside a quarter turn, the ball is as wide as it gets.
+        // If both parts are 45° off a quarter turn, the ball is as wide as possible.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
-        for radians in [1e7, -3e20, MOST_RADIANS, 1e300] {
+        for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {
             assert!(is_right(0.0, radians), "{radians}");
         }
     }

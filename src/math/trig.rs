@@ -1,32 +1,31 @@
-//! Sine and kin of angles, the same on every machine.
+//! Trigonometric functions of angles, the same on every machine.
 //!
-//! In: angles, or numbers. Out: the double-double numbers of `sine`, rounded; and libm's inverse
+//! In: angles or numbers. Out: the double-double numbers of `sine`, rounded; and libm's inverse
 //! functions.
 
 use super::{Angle, Ball, Double, Real, sine};
 
-/// The sine of an angle.
+/// Returns the sine of an angle.
 pub fn sin(angle: Angle) -> f64 {
-    let (sin, _) = sin_cos(angle);
-    sin.to_f64()
+    sin_cos(angle).0.to_f64()
 }
 
-/// The cosine of an angle.
+/// Returns the cosine of an angle.
 pub fn cos(angle: Angle) -> f64 {
-    let (_, cos) = sin_cos(angle);
-    cos.to_f64()
+    sin_cos(angle).1.to_f64()
 }
 
-/// The tangent of an angle; infinite at an odd multiple of 90 degrees.
+/// Returns the tangent of an angle; infinite at an odd multiple of 90 degrees.
 pub fn tan(angle: Angle) -> f64 {
     let (sin, cos) = sin_cos(angle);
-    match cos.is_zero() {
-        true => f64::INFINITY,
-        false => sin.over(&cos).to_f64(),
+    if cos.is_zero() {
+        f64::INFINITY
+    } else {
+        sin.over(&cos).to_f64()
     }
 }
 
-/// Sine and cosine in double-double, not a number of an angle that is none.
+/// Returns sine and cosine in double-double; NaN if the angle is not finite.
 fn sin_cos(angle: Angle) -> (Double, Double) {
     if !angle.is_finite() {
         return (Double::from_f64(f64::NAN), Double::from_f64(f64::NAN));
@@ -35,22 +34,22 @@ fn sin_cos(angle: Angle) -> (Double, Double) {
     (sin, cos)
 }
 
-/// The angle whose sine this is; not a number outside of −1 to 1.
+/// Returns the angle with this sine; NaN outside of −1 to 1.
 pub fn asin(sine: f64) -> Angle {
     Angle::from_radians(libm::asin(sine))
 }
 
-/// The angle whose cosine this is; not a number outside of −1 to 1.
+/// Returns the angle with this cosine; NaN outside of −1 to 1.
 pub fn acos(cosine: f64) -> Angle {
     Angle::from_radians(libm::acos(cosine))
 }
 
-/// The angle whose tangent this is, between −90 and 90 degrees.
+/// Returns the angle with this tangent, between −90 and 90 degrees.
 pub fn atan(tangent: f64) -> Angle {
     Angle::from_radians(libm::atan(tangent))
 }
 
-/// The angle from the x axis to the point (x, y).
+/// Returns the angle from the x axis to the point (x, y).
 pub fn atan2(y: f64, x: f64) -> Angle {
     Angle::from_radians(libm::atan2(y, x))
 }
@@ -65,7 +64,7 @@ mod tests {
         for turns in [0.0, 1.0, -1.0, 12.0, -7.0, 1e9] {
             for (quarter, (s, c)) in values.iter().enumerate() {
                 let angle = Angle::from_degrees(turns * 360.0 + quarter as f64 * 90.0);
-                // Bits, since no zero is negative.
+                // Compares bits, because no zero is negative.
                 let bits = [sin(angle), cos(angle)].map(f64::to_bits);
                 assert_eq!(bits, [*s, *c].map(f64::to_bits), "{angle:?}");
             }

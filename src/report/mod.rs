@@ -1,5 +1,5 @@
-//! What Pinhole says about itself: how right its decisions and numbers are, and in what time its
-//! methods come to what error.
+//! Reports on Pinhole itself: how accurate its decisions and numbers are, and how fast its sampling
+//! methods reach an error.
 
 pub mod numerics;
 #[cfg(feature = "report")]

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     area::Area,
     math::{Ball, Big, Double},
-    report::numerics::scenes::{SIZE, board, camera, cuboid, scene, sphere, spun, triangle},
+    reference::scenes::{SIZE, board, camera, cuboid, scene, sphere, spun, triangle},
     sampling::CounterRng,
     scene::{self, Camera, Scene, Shape},
 };

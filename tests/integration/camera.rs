@@ -3,7 +3,7 @@
 use glam::{DVec3, dvec3};
 use pinhole::{
     math::{Angle, Big, Real},
-    report::numerics::scenes::{self, along},
+    reference::scenes::{self, along},
     scene::{Camera, Lens},
     tracer::Basis,
 };

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
     inspect::{Inspection, inspect},
     probe::{Probe, probe},
-    report::numerics::oracle::{ALL_SIZES, Oracle, length},
+    reference::oracle::{ALL_SIZES, Oracle, length},
     scene::{self, View},
     seen::Visibility,
     tracer::World,

@@ -11,7 +11,7 @@ use std::{
 
 use pinhole::{
     render::Control,
-    report::numerics::{self, Table},
+    report::numerics::{self, NumericsTable},
 };
 
 use crate::effort::{Effort, sampled_and_exhaustive};
@@ -19,7 +19,7 @@ use crate::effort::{Effort, sampled_and_exhaustive};
 /// Number of inputs of each case in every run.
 const INPUTS: u64 = 1_000;
 
-fn run(inputs: u64, threads: Option<usize>) -> Table {
+fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
     let control = Control {
         threads: threads.and_then(NonZero::new),
         ..Control::default()
@@ -28,8 +28,8 @@ fn run(inputs: u64, threads: Option<usize>) -> Table {
 }
 
 /// Returns the table, which is made once for all tests.
-fn table() -> &'static Table {
-    static TABLE: OnceLock<Table> = OnceLock::new();
+fn table() -> &'static NumericsTable {
+    static TABLE: OnceLock<NumericsTable> = OnceLock::new();
     TABLE.get_or_init(|| run(INPUTS, None))
 }
 

@@ -1,109 +1,109 @@
-//! Pixels that show nothing but a checkerboard and few of its lines: most pixels that are not of
+//! Pixels that show only a checkerboard and few of its lines, which are most pixels of more than
 //! one colour. They are computed in batches of eight.
 //!
-//! In: such pixels one by one, in any order, with the squares of their corners. Out: their
-//! integrals of the board's sign. Pixels are sorted by how many lines of either family cross them;
+//! In: such pixels one by one, in any order, with the squares at their corners. Out: the integral
+//! of the board's sign over each. Pixels are sorted by how many lines of either family cross them;
 //! eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors.
-//! A pixel's sum is made of its own numbers, by the same operations whichever others it is computed
-//! with, so that it depends neither on their order nor on which part of a picture is wanted.
+//! The operations on a pixel's numbers are the same whichever others share its batch, so that the
+//! result depends neither on their order nor on which part of a picture is wanted.
 
 use super::{
-    homography::Sum,
-    strips_simd::{Lines, PIXELS, Room, STRIPS},
+    homography::BoundedSum,
+    strips_simd::{BoardLanes, MAX_STRIP_LINES, PIXELS, StripBuffer},
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// At most so many lines cross the strips. For each pair of numbers there is a batch of pixels, and
-/// pixels with more lines are few. (Measured: with 8 or 128 times differ by about a tenth at most.)
-const MOST: usize = 32;
+/// Maximum number of lines of a family that cross the strips. There is a batch for each pair of
+/// numbers of lines, and pixels with more lines are few. (Measured: with 8 or 128, times differ by
+/// about a tenth at most.)
+const MAX_LINES: usize = 32;
 
-/// A pixel that shows nothing but a checkerboard.
+/// A pixel that shows only a checkerboard.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::exact) struct BoardPixel {
-    /// Its column.
+    /// Column.
     pub x: u32,
-    /// Its row.
+    /// Row.
     pub y: u32,
     /// The checkerboard.
     pub candidate: VisibilityCandidate,
 }
 
-/// The pixels that wait, by the numbers of lines that cross them.
+/// Queued pixels, by the numbers of lines that cross them.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,
-    room: Room,
+    buffer: StripBuffer,
 }
 
-/// Pixels that the same numbers of lines cross.
+/// Queued pixels that the same numbers of lines cross.
 #[derive(Debug, Default)]
 struct Batch {
-    /// Which pixels they are: no more than are computed together.
+    /// The pixels, no more than are computed at once.
     pixels: Vec<BoardPixel>,
-    lines: Lines,
+    lines: BoardLanes,
 }
 
 impl BoardBatches {
-    /// None so far.
+    /// Starts without pixels.
     pub fn new() -> Self {
-        let batches = (0..=STRIPS).flat_map(|_| (0..=MOST).map(|_| Batch::default()));
+        let batches = (0..=MAX_STRIP_LINES).flat_map(|_| (0..=MAX_LINES).map(|_| Batch::default()));
         Self {
             batches: batches.collect(),
-            room: Room::default(),
+            buffer: StripBuffer::default(),
         }
     }
 
-    /// Queues a pixel. `tell` is called for each pixel of a batch that becomes full, with its
-    /// integral, positive for the first colour; and at once, without one, for a pixel that too
-    /// many lines cross.
+    /// Queues a pixel. Calls `emit` for each pixel of a batch that becomes full, with its integral,
+    /// which is positive for the first colour. Calls `emit` at once, without an integral, for a
+    /// pixel that too many lines cross.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
         checks: &CheckerPixel,
-        tell: &mut impl FnMut(BoardPixel, Option<Sum>),
+        emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>),
     ) {
         let ranges = checks.ranges();
         let [a, b] = ranges.map(|(low, high)| high - low);
-        let (few, many, families) = match a <= b {
-            true => (a, b, [0, 1]),
-            false => (b, a, [1, 0]),
-        };
-        if few > STRIPS as f64 || many > MOST as f64 {
-            return tell(pixel, None);
+        let families = if a <= b { [0, 1] } else { [1, 0] };
+        let [few, many] = families.map(|family| [a, b][family]);
+        if few > MAX_STRIP_LINES as f64 || many > MAX_LINES as f64 {
+            return emit(pixel, None);
         }
         let crossing = [few as usize, many as usize];
-        let batch = &mut self.batches[crossing[0] * (MOST + 1) + crossing[1]];
+        let batch = &mut self.batches[crossing[0] * (MAX_LINES + 1) + crossing[1]];
         let first = ranges.map(|(low, _)| low);
         let lines = &mut batch.lines;
         lines.set(batch.pixels.len(), checks, families, first);
         batch.pixels.push(pixel);
         if batch.pixels.len() == PIXELS {
-            batch.compute(crossing, &mut self.room, tell);
+            batch.compute(crossing, &mut self.buffer, emit);
         }
     }
 
-    /// Computes all that still wait.
-    pub fn finish(mut self, tell: &mut impl FnMut(BoardPixel, Option<Sum>)) {
+    /// Computes all pixels that are still queued.
+    pub fn finish(mut self, emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>)) {
         for (i, batch) in self.batches.iter_mut().enumerate() {
-            batch.compute([i / (MOST + 1), i % (MOST + 1)], &mut self.room, tell);
+            let crossing = [i / (MAX_LINES + 1), i % (MAX_LINES + 1)];
+            batch.compute(crossing, &mut self.buffer, emit);
         }
     }
 }
 
 impl Batch {
-    /// The integrals of the pixels, after which there are none.
+    /// Computes the integrals of the queued pixels and removes these.
     fn compute(
         &mut self,
         crossing: [usize; 2],
-        room: &mut Room,
-        tell: &mut impl FnMut(BoardPixel, Option<Sum>),
+        buffer: &mut StripBuffer,
+        emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>),
     ) {
         if self.pixels.is_empty() {
             return;
         }
-        let sums = self.lines.sums(crossing, room);
+        let sums = self.lines.sums(crossing, buffer);
         for (i, pixel) in self.pixels.drain(..).enumerate() {
-            tell(pixel, Some(sums.of(i)));
+            emit(pixel, Some(sums.pixel(i)));
         }
     }
 }
@@ -113,9 +113,9 @@ mod tests {
     use super::*;
     use crate::{
         area::Area,
-        exact::{ENOUGH, budget::Budget, clip::PIXEL, region::Checkered},
+        exact::{DEFAULT_TOLERANCE, budget::PixelBudget, clip::PIXEL, region::LocalBoard},
         math::Angle,
-        report::numerics::scenes::{board, camera, scene},
+        reference::scenes::{board, camera, scene},
         scene::{Camera, Lens},
         tracer::{PicturePart, Quartering, SubPixel, World},
     };
@@ -131,12 +131,12 @@ mod tests {
         World::new(&scene)
     }
 
-    /// The sums of all pixels of which the squares of the corners are known.
-    fn sums(world: &World) -> Vec<(BoardPixel, Option<Sum>)> {
+    /// The integrals of all pixels with known squares at their corners.
+    fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
         let mut known = Vec::new();
-        let mut tell = |pixel, sum| known.push((pixel, sum));
+        let mut emit = |pixel, sum| known.push((pixel, sum));
         let mut visit = |part: PicturePart| {
             if let PicturePart::Pixel {
                 x,
@@ -146,13 +146,13 @@ mod tests {
             } = part
             {
                 let candidate = *candidate;
-                batches.push(BoardPixel { x, y, candidate }, checks, &mut tell);
+                batches.push(BoardPixel { x, y, candidate }, checks, &mut emit);
             }
             ControlFlow::Continue(())
         };
         let whole = Area::whole(width, height);
         let _ = Quartering::new(world).parts(whole, &mut Default::default(), &mut visit);
-        batches.finish(&mut tell);
+        batches.finish(&mut emit);
         known
     }
 
@@ -165,7 +165,7 @@ mod tests {
         let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
-        // Of 18 rows of 24 pixels more than half lie below the horizon.
+        // More than half of the 18 rows of 24 pixels lie below the horizon.
         assert!(sharp > 100, "{sharp}");
     }
 
@@ -197,13 +197,14 @@ mod tests {
             let (sums, mut compared) = (sums(&world), 0);
             let are_all_flat = sums.is_empty();
             for (BoardPixel { x, y, .. }, sum) in sums {
-                // None where too many lines cross; not a number where squares are as large as numbers can be.
+                // There is no sum if too many lines cross; it is NaN if squares are as large as
+                // numbers can be.
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };
-                let seen = Checkered::new(&world, 0, SubPixel::pixel(x, y)).expect("a board");
+                let seen = LocalBoard::new(&world, 0, SubPixel::pixel(x, y)).expect("a board");
                 let cancel = AtomicBool::new(false);
-                let budget = Budget::of_pixel(ENOUGH, &cancel);
+                let budget = PixelBudget::new(DEFAULT_TOLERANCE, &cancel);
                 let other = seen.board.over(&PIXEL, &budget);
                 let value = if seen.odd { -other.value } else { other.value };
                 let off = (sum.value - value).abs();

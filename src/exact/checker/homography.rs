@@ -1,41 +1,40 @@
-//! The homography from a pixel to a checkerboard, and what the rounding of its forms may do.
+//! The homography from a pixel to a checkerboard, and the effect of the rounding of its forms.
 //!
 //! In: a board's three linear forms as the tracer has them for a sub-pixel. Out: places and depths
 //! on the floor, the depth's slopes and the density of the floor in the picture, and a bound on how
-//! far roundings move what a polygon shows (a first-order perturbation of the forms by four
-//! roundings each, taken back to the picture by the inverse of their matrix).
+//! far roundings displace what a polygon shows (a first-order perturbation of the forms by four
+//! roundings each, mapped back to the picture by the inverse of their matrix).
 
 use glam::DVec2;
 
 use super::super::clip::{Chord, measure, split};
 use crate::math::{Double, Real, two_product};
 
-/// The unit roundoff of `f64`.
+/// Unit roundoff of `f64`.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// A determinant of less than this, of forms whose largest factors are about 1, is taken for
-/// singular and replaced by it, so that its inverse and products with that are numbers; what is
-/// computed then is in doubt as a whole.
-const LEAST_DETERMINANT: f64 = 1e-100;
+/// Determinant below which a matrix counts as singular, for forms whose largest factors are 1 to 2.
+/// It replaces the determinant, so that the inverse and its products are finite; the error bound
+/// then covers the whole polygon.
+const MIN_DETERMINANT: f64 = 1e-100;
 
-/// If roundings displace points by no more than this, in pixels, a corner that only they keep off
-/// the horizon is said to be on it: what that changes is in the bound, and a hundredth of what is
-/// asked for.
-const BESIDE: f64 = 1e-11;
+/// Displacement by rounding, in pixels, up to which a corner is set on the horizon if only rounding
+/// keeps it off. The change is counted in the bound, and is a hundredth of the usual tolerance.
+const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// A number and a bound on its absolute error, in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::exact) struct Sum {
+pub(in crate::exact) struct BoundedSum {
     pub value: f64,
     pub bound: f64,
 }
 
 /// The infinite board as a pixel sees it.
 ///
-/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ either way), shows
-/// the point (a, b) = (N_a/L, N_b/L) of the floor, in squares; each of N_a, N_b, L is a linear form
-/// c0·x + c1·y + c2, and L > 0 is the side of the horizon where the floor is. The sign of a square
-/// is s(a)·s(b) with s the square wave.
+/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ in each direction),
+/// shows the point (a, b) = (N_a/L, N_b/L) of the floor, in squares. N_a, N_b and L are linear
+/// forms c0·x + c1·y + c2, and L > 0 on the floor's side of the horizon. The sign of a square is
+/// s(a)·s(b), where s is the square wave.
 ///
 /// With M the matrix of the three forms, 1/L = m(a, b) = p·a + q·b + r is the third row of M⁻¹: a
 /// depth, linear on the floor. A piece da·db of floor covers J = K/m³ square pixels, K = 1/|det M|.
@@ -43,30 +42,31 @@ pub(in crate::exact) struct Sum {
 pub(in crate::exact) struct Homography {
     /// N_a and N_b.
     pub across: [[f64; 3]; 2],
-    /// L, by a power of two that brings its largest factor between 1 and 2.
+    /// L, scaled by a power of two so that its largest factor is between 1 and 2.
     pub below: [f64; 3],
     /// ∂m/∂a and ∂m/∂b.
     pub slope: [f64; 2],
     /// K.
     pub density: f64,
-    /// How far K may be from that of the forms as they are rounded, relative to it.
-    pub misfit: f64,
-    /// Whether the floor is seen mirrored: the sign of det M.
-    pub handed: f64,
-    /// How far, in pixels (|dx| + |dy|), rounding may displace a corner or a line of the board.
+    /// Maximum relative difference of K from that of the rounded forms.
+    pub density_error: f64,
+    /// Sign of det M, which tells whether the floor is seen mirrored.
+    pub orientation: f64,
+    /// Maximum displacement of a corner or a line of the board by rounding, in pixels (|dx| +
+    /// |dy|).
     displacement: f64,
-    /// The direction of the horizon, of length 1.
+    /// Unit vector along the horizon.
     horizon: DVec2,
-    /// How far rounding may displace across the direction of the horizon: where L is 0, and so
-    /// much more for each unit of L.
-    upwards: [f64; 2],
-    /// Up to this L a point may lie on the horizon but for roundings, and is said to.
-    horizon_off: f64,
+    /// Maximum displacement by rounding across the horizon's direction, in pixels: where L is 0,
+    /// and its increase per unit of L.
+    across_horizon: [f64; 2],
+    /// L up to which a point counts as on the horizon because of rounding.
+    horizon_tolerance: f64,
 }
 
-/// A corner of a region: what floor it shows, and m there.
+/// A corner of a region: the floor that it shows, and m there.
 ///
-/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges leave for
+/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges approach
 /// it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
@@ -74,35 +74,34 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon where L ≥ 0, and what of it is on the horizon.
+/// The part of a convex polygon where L ≥ 0, with its segment on the horizon.
 #[derive(Debug)]
-pub(super) struct Visible {
+pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
     horizon: Chord,
 }
 
-impl Sum {
-    /// Of a polygon of which nothing is known: the mean of both colours.
-    pub fn nothing_known(polygon: &[DVec2]) -> Self {
-        Self {
-            value: 0.0,
-            bound: measure(polygon).0.abs(),
-        }
+impl BoundedSum {
+    /// Returns 0 with a bound.
+    pub fn zero_within(bound: f64) -> Self {
+        Self { value: 0.0, bound }
     }
 
-    /// This sum over so much area; the mean of both colours if it is out of the range of numbers or
-    /// its bound is no less than the area.
+    /// Returns the sum of a polygon of which nothing is known: the mean of both colours.
+    pub fn unknown(polygon: &[DVec2]) -> Self {
+        Self::zero_within(measure(polygon).0.abs())
+    }
+
+    /// Returns the sum over an area, or the mean of both colours if it overflowed or its bound is
+    /// not less than the area.
     pub fn or_unknown(self, area: f64) -> Self {
-        match self.value.is_finite() && self.bound < area {
-            true => self,
-            false => Self {
-                value: 0.0,
-                bound: area,
-            },
+        if self.value.is_finite() && self.bound < area {
+            return self;
         }
+        Self::zero_within(area)
     }
 
-    /// The same of a sum over a polygon.
+    /// Returns the sum over a polygon, or the mean of both colours if that is no worse.
     pub fn within(self, polygon: &[DVec2]) -> Self {
         self.or_unknown(measure(polygon).0.abs())
     }
@@ -113,17 +112,18 @@ impl Sum {
     }
 }
 
-/// A form's value at a point.
+/// Evaluates a form at a point.
 pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-/// What the terms of a form add up to at most.
+/// Bounds the sum of the absolute terms of a form.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
-/// A form by a power of two that brings its largest factor between 1 and 2, and that power.
+/// Scales a form by a power of two so that its largest factor is between 1 and 2, and returns that
+/// power.
 fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
     let exponent = libm::ilogb(largest);
@@ -131,37 +131,40 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Of three linear forms, N_a and N_b, and L; they may have any common positive factor. The
-    /// nearer the origin of a and b is to the pixel, the smaller the bounds.
+    /// Derives the homography of the forms N_a and N_b, and L, which may share any positive factor.
+    /// The closer the origin of a and b is to the pixel, the smaller the bounds.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
-        // Squares may be of any size; the inverse is that of forms of about the same size.
+        // Squares may be of any size; the inverse is that of forms of about equal size.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // The columns of det M·M⁻¹, each part to within two roundings of itself.
+        // The columns of det M·M⁻¹, each component accurate to two roundings of itself.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
-        let is_singular = det.abs() <= LEAST_DETERMINANT;
-        let det = if is_singular { LEAST_DETERMINANT } else { det };
+        let is_singular = det.abs() <= MIN_DETERMINANT;
+        let det = if is_singular { MIN_DETERMINANT } else { det };
         let products: f64 = (0..3)
             .map(|i| {
                 let [j, k] = [(i + 1) % 3, (i + 2) % 3];
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // How far det M may be off, relative to it, where each of the three factors of a product is
-        // off by so much of itself, or each of its sums and products in double-double by
-        // two units; and 1/det M by its own roundings.
-        let det_off = |unit: f64| match is_singular {
-            true => f64::INFINITY,
-            false => 8.0 * unit * products / det.abs() + 4.0 * UNIT,
+        // The maximum relative error of det M, if each of the three factors of a product has a
+        // relative error of one unit and each of its sums and products in double-double two; and of
+        // 1/det M by its own roundings.
+        let det_off = |unit: f64| {
+            if is_singular {
+                f64::INFINITY
+            } else {
+                8.0 * unit * products / det.abs() + 4.0 * UNIT
+            }
         };
-        // A form's value is off by at most three roundings of its largest terms; the fourth is for
-        // the quotient.
+        // A form's value is off by at most three roundings of its largest terms; the fourth is that
+        // of the quotient.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // v = M⁻¹·e is how far errors e of the forms displace a point; L(v) = e_L. Coordinates
-        // themselves are rounded, too.
+        // v = M⁻¹·e is the displacement of a point by errors e of the forms; L(v) = e_L.
+        // Coordinates are rounded, too.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -172,82 +175,81 @@ impl Homography {
             across,
             below,
             slope: [(0, of_a), (1, of_b)].map(|(i, by)| libm::ldexp(columns[i][2] / det, -by)),
-            // Beyond the range of f64 an exponent is the largest there is, and this is no number.
+            // Exponents beyond the range of f64 saturate; the density is then no number anyway.
             density: libm::ldexp(1.0 / det.abs(), (-of_a).saturating_sub(of_b)),
-            misfit: det_off(Double::UNIT),
-            handed: det.signum(),
+            density_error: det_off(Double::UNIT),
+            orientation: det.signum(),
             displacement,
             horizon: DVec2::new(below[1], -below[0]) / steepness,
-            upwards: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
-            horizon_off: match displacement <= BESIDE {
-                true => 0.5 * errors[2],
-                false => 0.0,
+            across_horizon: [errors[2] / steepness + 4.0 * UNIT, tilt / steepness],
+            horizon_tolerance: if displacement <= MAX_HORIZON_DISPLACEMENT {
+                0.5 * errors[2]
+            } else {
+                0.0
             },
         }
     }
 
-    /// The part of a convex polygon that shows the floor.
-    pub(super) fn visible(&self, polygon: &[DVec2]) -> Visible {
+    /// Returns the part of a convex polygon that shows the floor.
+    pub(super) fn visible(&self, polygon: &[DVec2]) -> VisiblePart {
         let (mut above, mut visible) = (Vec::new(), Vec::with_capacity(polygon.len() + 1));
         let level = |at| form(&self.below, at);
         let horizon = split(polygon, level, &mut above, &mut visible);
-        Visible {
+        VisiblePart {
             polygon: visible,
             horizon,
         }
     }
 
-    /// What a point of what is visible shows.
-    pub(super) fn corner(&self, at: DVec2, visible: &Visible) -> Corner {
+    /// Returns what a point of the visible part shows.
+    pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
-        let level = match visible.horizon.is_some_and(is_on_horizon) {
-            true => 0.0,
-            false => form(&self.below, at),
+        let level = if visible.horizon.is_some_and(is_on_horizon) {
+            0.0
+        } else {
+            form(&self.below, at)
         };
         let floor = self.across.map(|across| form(&across, at));
-        let depth = match level <= self.horizon_off {
-            true => f64::INFINITY,
-            false => 1.0 / level,
+        let depth = if level <= self.horizon_tolerance {
+            f64::INFINITY
+        } else {
+            1.0 / level
         };
-        // Where even the quotient overflows there is nothing but the horizon.
+        // If even the quotient overflows, the point counts as on the horizon.
         let places = floor.map(|n| n * depth);
-        match depth.is_finite() && places.iter().all(|place| place.is_finite()) {
-            true => Corner {
-                floor: places,
-                depth,
-            },
-            false => Corner {
-                floor,
-                depth: f64::INFINITY,
-            },
+        if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
+            let depth = f64::INFINITY;
+            return Corner { floor, depth };
         }
+        let floor = places;
+        Corner { floor, depth }
     }
 
-    /// Whether a point is said to be on the horizon just because of roundings.
-    pub(super) fn is_beside_horizon(&self, at: DVec2) -> bool {
+    /// Returns whether a point is set on the horizon only because of rounding.
+    pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
-        level > 0.0 && level <= self.horizon_off
+        level > 0.0 && level <= self.horizon_tolerance
     }
 
-    /// Where along an axis the floor is that a point shows, where L has a value above 0, and how
-    /// far roundings may be off.
+    /// Returns the coordinate along an axis of the floor that a point shows, and its maximum
+    /// rounding error. `level` is the value of L there, greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // Three roundings in the factors of either form, four in its value, and one in the
-        // quotient; twice that, where ℓ is off by half of itself at most.
+        // quotient; twice all that, because L may be off by half of itself.
         (place, 16.0 * UNIT / level * terms)
     }
 
-    /// How much rounding may change what a polygon shows of the board, in square pixels: what the
+    /// Bounds the change of a polygon's integral by rounding, in square pixels: the area that the
     /// displacement of its boundary sweeps.
     ///
-    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L: near the horizon points
-    /// hardly move across it, however far they may move along it.
-    pub(in crate::exact) fn displaced(&self, polygon: &[DVec2]) -> f64 {
+    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L. Near the horizon, points
+    /// therefore hardly move across it, however far they move along it.
+    pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         let levels = polygon.iter().map(|&p| form(&self.below, p));
-        let [least, more] = self.upwards;
+        let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);
         let mut before = polygon.last().copied().unwrap_or_default();
         let sides = polygon.iter().fold(0.0, |sum, &point| {
@@ -260,12 +262,12 @@ impl Homography {
     }
 }
 
-/// A cross product, each part to within two roundings of itself.
+/// Returns a cross product, each component accurate to two roundings of itself.
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
 }
 
-/// The determinant, whose products are added in double-double.
+/// Returns the determinant, whose products are added in double-double.
 fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
     let products = minors(a, b)
         .map(|[plus, minus]| plus.minus(&minus))
@@ -279,7 +281,7 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// The products, without an error, of which a cross product's parts are the differences.
+/// Returns the exact products whose differences are the components of a cross product.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }

@@ -1,32 +1,33 @@
 //! The board's integral where its squares are near: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture on which ℓ > 0. Out: the sum of the signed areas of the
+//! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
 //! squares in it, with a bound. The lines of one family cut the polygon into rows, and those of the
-//! other cut each row into squares (`clip`). The bound adds up how far each cut may be from the
-//! true line, times its length, and the roundings of the areas.
+//! other cut each row into squares (`clip`). The bound adds the error of each cut times its length,
+//! and the roundings of the areas.
 
 use glam::DVec2;
 
 use super::{
     super::{
-        budget::Budget,
+        budget::PixelBudget,
         clip::{measure, split},
     },
-    homography::{Homography, Sum, UNIT, form},
+    homography::{BoundedSum, Homography, UNIT, form},
     special::square_wave,
 };
 use crate::math::two_sum;
 
-/// A cut should add one corner, and all cuts of a family two. Where these are so many more, lines
-/// are closer to each other than roundings, and what is left is given up.
-const SPARE_CORNERS: usize = 32;
+/// Number of extra corners above which the rest of a polygon is given up. Each cut should add one
+/// corner, and all cuts of a family two; with many more, lines are closer to each other than
+/// roundings.
+const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Beyond this a square's number is no longer exact in `f64` together with its neighbours'.
-const LAST_SQUARE: f64 = 1e15;
+/// Number of a square beyond which it and its neighbours are not exact in `f64`.
+const MAX_SQUARE: f64 = 1e15;
 
-/// The integral over a convex polygon that does not reach the horizon. It is 0 with the polygon's
-/// area as its bound if there are more squares than the budget allows.
-pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum {
+/// Integrates over a convex polygon that does not reach the horizon. Returns 0 with the polygon's
+/// area as the bound if there are more squares than the budget affords.
+pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();
     let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
     rows.start(polygon);
@@ -34,25 +35,25 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
     if squares.count() < rows.count() {
         std::mem::swap(&mut rows, &mut squares);
     }
-    if !budget.spend(rows.count()) {
-        return Sum::nothing_known(polygon);
+    if !budget.try_charge(rows.count()) {
+        return BoundedSum::unknown(polygon);
     }
     while let Some(row) = rows.next(&mut tally) {
         if budget.is_cancelled() {
-            return Sum::nothing_known(polygon);
+            return BoundedSum::unknown(polygon);
         }
         squares.start(&rows.piece);
-        if !budget.spend(squares.count()) {
+        if !budget.try_charge(squares.count()) {
             tally.add(0.0, measure(&rows.piece).0.abs());
             continue;
         }
         while let Some(square) = squares.next(&mut tally) {
             if budget.is_cancelled() {
-                return Sum::nothing_known(polygon);
+                return BoundedSum::unknown(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // For each corner three roundings of products of two distances, which are half the
-            // perimeter at most, and one of the sum.
+            // Three roundings per corner of products of two distances, each at most half the
+            // perimeter, and one of the sum.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -63,17 +64,17 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &Budget) -> Sum
     tally.sum()
 }
 
-/// A convex polygon from which the strips between the lines of one family are cut off, one after
-/// the other.
+/// Cuts a convex polygon into the strips between neighbouring lines of one family, one after the
+/// other.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
     rest: Vec<DVec2>,
     piece: Vec<DVec2>,
     spare: Vec<DVec2>,
-    /// The next strip and the last one; none if they are out of the range of numbers.
+    /// The next strip and the last one; `None` if they are out of the range of numbers.
     strips: Option<(i64, i64)>,
-    /// With how many corners nothing is said of what is left any more.
+    /// Number of corners above which the rest is given up.
     too_many: usize,
 }
 
@@ -86,19 +87,19 @@ impl Cutter {
             piece: Vec::new(),
             spare: Vec::new(),
             strips: None,
-            too_many: SPARE_CORNERS,
+            too_many: MAX_EXTRA_CORNERS,
         }
     }
 
-    /// Begins with a polygon.
+    /// Starts with a polygon.
     fn start(&mut self, polygon: &[DVec2]) {
         self.rest.clear();
         self.rest.extend(polygon);
-        self.too_many = self.rest.len() + SPARE_CORNERS;
+        self.too_many = self.rest.len() + MAX_EXTRA_CORNERS;
         let place = |&at: &DVec2| form(&self.across, at) / form(&self.below, at);
         let places = || self.rest.iter().map(place);
         self.strips =
-            (!self.rest.is_empty() && places().all(|at| at.abs() < LAST_SQUARE)).then(|| {
+            (!self.rest.is_empty() && places().all(|at| at.abs() < MAX_SQUARE)).then(|| {
                 let squares = places().map(|at| at.floor() as i64);
                 squares.fold((i64::MAX, i64::MIN), |(low, high), i| {
                     (low.min(i), high.max(i))
@@ -106,13 +107,13 @@ impl Cutter {
             });
     }
 
-    /// How many strips are left.
+    /// Returns the number of strips that are left.
     fn count(&self) -> f64 {
         self.strips
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
     }
 
-    /// Makes `piece` the part of the rest between the lines i and i + 1, and returns i.
+    /// Cuts the part between the lines i and i + 1 off the rest into `piece`, and returns i.
     fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
@@ -128,7 +129,7 @@ impl Cutter {
         Some(i as f64)
     }
 
-    /// Makes `piece` the part of the rest before the line n.
+    /// Cuts the part before line n off the rest into `piece`.
     fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
         let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
         self.piece.clear();
@@ -148,16 +149,16 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors are off by three roundings of these, the form's value by four, and the point
-        // by four of its own.
+        // The factors are off by three roundings of these sizes, the form's value by four, and the
+        // point by four of its own.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
     }
 }
 
-/// A sum of many numbers with a bound on its error. The roundings of the additions are kept and
-/// added in the end.
+/// A sum of many numbers with an error bound. The rounding errors of the additions are added at the
+/// end.
 #[derive(Default)]
 struct CompensatedSum {
     value: f64,
@@ -173,10 +174,10 @@ impl CompensatedSum {
         self.bound += bound;
     }
 
-    fn sum(&self) -> Sum {
-        Sum {
+    fn sum(&self) -> BoundedSum {
+        BoundedSum {
             value: self.value + self.rest,
-            // The last sum is 1 at most, and those of the rest are far smaller.
+            // The last sum is at most 1, and the rounding errors are far smaller.
             bound: self.bound + 2.0 * UNIT,
         }
     }

@@ -1,38 +1,38 @@
-//! Special functions: Euler's polynomials made periodic, exponential integrals of imaginary
-//! arguments, and the complex numbers they need.
+//! Special functions: periodic Euler polynomials, and exponential integrals of imaginary arguments
+//! with the complex numbers they need.
 //!
 //! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF
-//! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are right to a
-//! few roundings of their greatest value.
+//! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are accurate to
+//! a few roundings of their greatest value.
 //!
-//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19):
-//! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). They are right to
-//! some 1e-14 of their value.
+//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19).
+//! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). Their relative
+//! error is about 1e-14.
 
 use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// A term of a series that is no more than this, by the sum, changes nothing: a tenth of a
-/// rounding.
+/// Relative size below which a term of a series is dropped: a tenth of a rounding.
 const VANISHING: f64 = 1e-17;
 
-/// A real and an imaginary part.
+/// Real and imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// t less the nearest even number, t being counted in half turns: between −1 and 1.
-pub(super) fn turn(x: f64) -> f64 {
+/// Reduces a number of half turns by whole turns, to between −1 and 1.
+pub(super) fn reduce(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
 }
 
-/// The same of a double-double number; what is left of both parts together may be a rounding more.
-pub(super) fn turn_exactly(x: &Double) -> Double {
-    Double::from_f64(turn(x.hi)).plus(&Double::from_f64(turn(x.lo)))
+/// Reduces a double-double number of half turns by whole turns. The sum of both reduced parts may
+/// exceed 1 by a rounding.
+pub(super) fn reduce_double(x: &Double) -> Double {
+    Double::from_f64(reduce(x.hi)).plus(&Double::from_f64(reduce(x.lo)))
 }
 
-/// n times an angle that is given without whole turns, without whole turns: to within a rounding of
-/// itself, however small that is, as long as double-double numbers tell. n is below 2^51.
-pub(super) fn turned_times(n: f64, angle: &Double) -> f64 {
+/// Returns n times a reduced angle, reduced by whole turns. The relative error is one rounding,
+/// however small the result, within double-double. n is below 2^51.
+pub(super) fn reduced_multiple(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
     (hi - 2.0 * turns) + (lo + n * angle.lo)
@@ -46,24 +46,24 @@ pub(super) fn square(a: Complex) -> Complex {
     times(a, a)
 }
 
-pub(super) fn phase(x: f64) -> Complex {
+pub(super) fn cis(x: f64) -> Complex {
     [libm::cos(x), libm::sin(x)]
 }
 
-/// What bounds it from above: |x| + |y|.
+/// Bounds the absolute value by |x| + |y|.
 fn size(z: Complex) -> f64 {
     z[0].abs() + z[1].abs()
 }
 
-/// One more than the highest order there is.
+/// Number of orders of the waves, from 0.
 const ORDERS: usize = 22;
 
-/// How many even powers of η there are in the waves of the highest order.
+/// Number of even powers of η in the waves of the highest order.
 const POWERS: usize = ORDERS / 2;
 
-/// The coefficients of 1/cosh(x/2) in even powers of x, from those of cosh(x/2), 1/(4^i·(2i)!),
-/// with which their product is 1. Errors do not grow: all terms of a coefficient are about as large
-/// as it is.
+/// Coefficients of 1/cosh(x/2) in even powers of x. They follow from those of cosh(x/2),
+/// 1/(4^i·(2i)!), because the product is 1. Errors do not grow: all terms of a coefficient are
+/// about as large as the coefficient.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -80,8 +80,8 @@ const SECH: [f64; POWERS] = {
     all
 };
 
-/// The factors of η^i, i even or odd as k is, in A_k on a square: in the row k the factor of η^2j,
-/// or η^(2j+1), at j.
+/// Coefficients of A_k on a square in powers of η. Row k has the coefficient of η^2j at j if k is
+/// even, and that of η^(2j+1) if k is odd.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
@@ -110,8 +110,9 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// How far t is from the middle of its square, and the square wave there. At a tie either neighbour
-/// will do, for the waves are continuous. t is below 2^51, up to which [`ROUND`] works.
+/// Returns the distance of t from the middle of its square, and the square wave there. At a tie
+/// either neighbour is right, because the waves are continuous. t is below 2^51, the limit of
+/// [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -120,23 +121,21 @@ fn from_middle(t: f64) -> (f64, f64) {
     (middle - (shifted - ROUND), sign)
 }
 
-/// A_1(t) … A_TERMS+1(t), at their own index; what stands at index 0 and above is not meant to be
-/// read.
+/// Returns A_1(t) … A_TERMS+1(t), each at its own index; other entries are meaningless.
 ///
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t −
 /// floor(t) − ½, Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2;
 /// Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are continuous from k
 /// = 1 on, and |A_k| ≤ ½π^(1−k).
 ///
-/// The number of terms is known to the compiler, which makes vectors of many places; there must be
-/// two rows more than terms.
+/// TERMS is a constant so that the compiler can vectorise over many t. ROWS must be TERMS + 2.
 #[inline(always)]
 pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
     let (square, odd) = (eta * eta, sign * eta);
     let mut all = [0.0; ROWS];
-    // Horner's rule in η², spelled out for the orders that are wanted most, since loops over them
-    // would not become vectors.
+    // Horner's rule in η², unrolled for each order, because the compiler does not vectorise loops
+    // over the orders.
     macro_rules! order {
         ($k:literal, $first:expr, $($factor:literal)*) => {
             if TERMS + 1 >= $k {
@@ -170,28 +169,30 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// The order of the first exponential integral that is asked for.
+/// Order of the first exponential integral.
 const ORDER: u32 = 3;
 
-/// Below this power series are good, and from there on an asymptotic series.
+/// Argument |y| below which the power series is used.
 const SMALL: f64 = 3.0;
+/// Argument |y| from which on the asymptotic series is used.
 const LARGE: f64 = 64.0;
 
-/// Between them are Taylor's series about numbers so far apart, of so many terms: the first term
-/// that is left out is at most (¼/3)^16 = 5e-18.
+/// Distance between the expansion points of Taylor's series, which are used from `SMALL` to
+/// `LARGE`.
 const STEP: f64 = 0.5;
+/// Number of terms of a Taylor series. The first omitted term is at most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 
-/// F_3, F_4 and F_5.
+/// Returns F_3, F_4 and F_5.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let third = third(y);
     let fourth = next(y, third, 3.0);
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// F_3.
+/// Returns F_3.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {
@@ -208,15 +209,15 @@ fn third(y: f64) -> Complex {
     }
 }
 
-/// The integral of the next order, by the recurrence.
+/// Returns the integral of the next order, by the recurrence.
 fn next(y: f64, integral: Complex, order: f64) -> Complex {
     [(1.0 - y * integral[1]) / order, y * integral[0] / order]
 }
 
-/// DLMF 8.20.2: (1/z)·Σ (−1)^k (s)_k z^−k, until the terms vanish.
+/// Evaluates (1/z)·Σ (−1)^k (s)_k z^−k (DLMF 8.20.2) until the terms are negligible.
 fn asymptotic(y: f64) -> Complex {
     let u = 1.0 / y;
-    // 1/z = i/y, so that with every term the factor is −i(k + s)/y.
+    // 1/z = i/y, so that each term is the one before times −i(k + s)/y.
     let (mut term, mut sum) = (u, [0.0; 2]);
     for k in 0..40 {
         match k % 4 {
@@ -233,25 +234,25 @@ fn asymptotic(y: f64) -> Complex {
     sum
 }
 
-/// Between 3 and 64.
+/// Evaluates the Taylor series for y from 3 to 64.
 fn expanded(expansions: &[Expansion], y: f64) -> Complex {
     let middle = f64::from((y / STEP + 0.5) as u32);
     let step = y - middle * STEP;
     at_step(&expansions[(middle - SMALL / STEP) as usize], step)
 }
 
-/// Taylor's series so far from its middle.
+/// Evaluates a Taylor series at a step from its expansion point.
 fn at_step(terms: &Expansion, step: f64) -> Complex {
     terms.iter().rev().fold([0.0; 2], |sum, term| {
         [sum[0] * step + term[0], sum[1] * step + term[1]]
     })
 }
 
-/// Taylor's series from 3 to 64, each but the last begun by the one above it, half a step down.
-/// (F_s is 1/y times a number near 1, while a solution of the equation without its −1 falls as
-/// y^(s−1) downwards, so that errors vanish on the way.) That (s − 1)·F_s = 1 + iy·F_s−1 (DLMF
-/// 8.19.12) and F_s′ = i·(F_s−1 − F_s) is y·F_s′ = (s − 1 − iy)·F_s − 1, so that (k + 1)·y·c_k+1 =
-/// (s − 1 − k − iy)·c_k − i·c_k−1, and 1 less where k is 0.
+/// Computes the Taylor series from 3 to 64, from the last to the first: each starts with the value
+/// of the one above, half a step down. (F_s is 1/y times a number near 1, while a solution of the
+/// equation without its −1 falls as y^(s−1) downwards, so that errors decay on the way.) By (s −
+/// 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s), y·F_s′ = (s − 1 − iy)·F_s − 1,
+/// so that (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1, minus 1 if k is 0.
 fn expansions() -> Vec<Expansion> {
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
@@ -279,7 +280,7 @@ fn expansions() -> Vec<Expansion> {
     all
 }
 
-/// F_3 near 0, by twice the recurrence.
+/// Computes F_3 near 0, by two steps of the recurrence.
 fn power_series(y: f64) -> Complex {
     let first = first(y);
     // 1 − z·h with −z = iy.
@@ -287,8 +288,8 @@ fn power_series(y: f64) -> Complex {
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }
 
-/// F_1 near 0: E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where it has a pole of a
-/// logarithm, the 0 that y·F_1 is.
+/// Computes F_1 near 0 by E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where F_1 has a
+/// logarithmic pole, it returns the limit 0 of y·F_1.
 fn first(y: f64) -> Complex {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if y == 0.0 {
@@ -305,7 +306,7 @@ fn first(y: f64) -> Complex {
             break;
         }
     }
-    times(first, phase(-y))
+    times(first, cis(-y))
 }
 
 #[cfg(test)]
@@ -320,8 +321,8 @@ mod tests {
                 let mut sum = 0.0;
                 for n in (1..4001).step_by(2) {
                     let x = f64::from(n) * PI;
-                    let phase = f64::from(n) * PI * t - k as f64 * PI / 2.0;
-                    sum += 4.0 / f64::from(n) * libm::sin(phase) / libm::pow(x, k as f64);
+                    let cis = f64::from(n) * PI * t - k as f64 * PI / 2.0;
+                    sum += 4.0 / f64::from(n) * libm::sin(cis) / libm::pow(x, k as f64);
                 }
                 sum /= PI;
                 assert!(
@@ -354,10 +355,10 @@ mod tests {
             let mut sum = [0.0; 2];
             for i in 0..STEPS {
                 let x = (f64::from(i) + 0.5) / f64::from(STEPS);
-                let wave = phase(y * x / (1.0 - x));
+                let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1, where waves are too fast for the rule, (1 − x)² is left of them.
+            // Near x = 1, waves are too fast for the rule, and the error is of order (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

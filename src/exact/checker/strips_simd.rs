@@ -1,21 +1,20 @@
-//! The integral of the board's sign over eight pixels at once, in lanes, which the compiler makes
-//! vectors of.
+//! The integral of the board's sign over eight pixels at once, in lanes that the compiler
+//! vectorises.
 //!
-//! In: eight pixels that show nothing but a checkerboard, and are all crossed by the same number of
-//! lines of the one family and of the other. Out: their integrals, each with a bound: roundings of
-//! areas, and how far each line may be from the computed one.
+//! In: eight pixels that show only a checkerboard and are crossed by the same numbers of lines of
+//! both families. Out: their integrals, each with a bound on the roundings of areas and on the
+//! distance of each line from the computed one.
 //!
-//! The lines of one family, of which there are fewer, cut the pixel into strips; in strip i the
-//! sign of their squares is σ_i. Beyond line k of the other family lies the signed area W_k = Σ
-//! σ_i·|strip i ∩ H_k|, W_0 being all of it, and the sign changes from line to line:
+//! The lines of the family with fewer lines cut the pixel into strips; in strip i the sign of their
+//! squares is σ_i. Beyond line k of the other family lies the signed area W_k = Σ σ_i·|strip i ∩
+//! H_k|, where W_0 is the whole area, and the sign changes from line to line:
 //!
 //! ∬ s(a) s(b) dx dy = s_0·(W_0 + 2 Σ_k (−1)^k W_k).
 //!
-//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q, f
-//! being the part of the side that lies beyond, if O is on the line: then what the line itself
-//! contributes is 0. A side of the pixel has a part, which may have no length, in each
-//! strip; a part without length starts and ends at the same number, so that it adds 0, which takes
-//! no rounding.
+//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q,
+//! where f is the fraction of the side that lies beyond, if O is on the line: then the line itself
+//! contributes 0. A side of the pixel has a part, which may be empty, in each strip. An empty part
+//! starts and ends at the same number, so that it adds exactly 0.
 
 use std::array;
 
@@ -24,41 +23,42 @@ use multiversion::multiversion;
 
 use super::{
     super::clip::PIXEL,
-    homography::{Sum, UNIT},
+    homography::{BoundedSum, UNIT},
     special::square_wave,
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// At most so many lines cut the pixels into strips: their sides, 34 of 320 bytes, stay in the
-/// first-level cache.
-pub(super) const STRIPS: usize = 6;
+/// Maximum number of lines that cut the pixels into strips. The sides of the strips, 34 of 320
+/// bytes, then stay in the first-level cache.
+pub(super) const MAX_STRIP_LINES: usize = 6;
 
-/// So many pixels at a time: as many numbers as the widest vectors have.
+/// Number of pixels that are computed at once, as many as the widest vectors have lanes.
 pub(super) const PIXELS: usize = 8;
 
-/// A number of each pixel.
-type Row = [f64; PIXELS];
+/// One number per pixel.
+type Lanes = [f64; PIXELS];
 
-/// Sides of strips: parts of the sub-pixel's four, and a chord for each line.
-const SIDES: usize = 4 * (STRIPS + 1) + STRIPS;
+/// Number of sides of strips: parts of the pixel's four sides, and a chord for each line.
+const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
-/// The boards of some pixels, the family with fewer lines first.
+/// The boards of eight pixels, the family with fewer lines first.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Of each pixel, −1 where its first squares of both families have the second colour.
-    sign: Row,
-    /// In which squares of the first family the corners lie, from the first of them.
-    squares: [Row; 4],
+    /// Sign of each pixel: −1 if the square where its first strips of both families meet has the
+    /// second colour.
+    sign: Lanes,
+    /// Squares of the first family at the corners, counted from the first square.
+    squares: [Lanes; 4],
 }
 
-/// A linear form of each pixel: the factors of x, y and 1, and how far its values may be off.
+/// A linear form per pixel: the factors of x, y and 1, and the maximum error of its values.
 #[derive(Debug, Default)]
 struct FormRows {
-    factors: [Row; 3],
-    rad: Row,
+    factors: [Lanes; 3],
+    rad: Lanes,
 }
 
 impl FormRows {
@@ -70,45 +70,44 @@ impl FormRows {
     }
 }
 
-/// Directed sides of strips, from `start` on by `step`, one of each pixel, with the signs of the
-/// strips that they bound.
+/// One directed side of a strip per pixel: its start, its extent, and the sign of the strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
-    start: [Row; 2],
-    step: [Row; 2],
-    sign: Row,
+    start: [Lanes; 2],
+    step: [Lanes; 2],
+    sign: Lanes,
 }
 
-/// Room for the sides of strips, which is used again.
+/// Buffer for the sides of strips, which is reused.
 #[derive(Debug)]
-pub(super) struct Room([Sides; SIDES]);
+pub(super) struct StripBuffer([Sides; SIDES]);
 
-impl Default for Room {
+impl Default for StripBuffer {
     fn default() -> Self {
         Self([Sides::default(); SIDES])
     }
 }
 
-/// What several pixels sum up to; positive for the first colour.
-pub(super) struct Sums {
-    values: Row,
-    bounds: Row,
+/// The integral over each pixel, positive for the first colour.
+pub(super) struct LaneSums {
+    values: Lanes,
+    bounds: Lanes,
 }
 
-impl Sums {
-    pub fn of(&self, pixel: usize) -> Sum {
+impl LaneSums {
+    pub fn pixel(&self, pixel: usize) -> BoundedSum {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
-        Sum {
+        BoundedSum {
             value,
-            // Of squares as large as numbers can be products are lost.
+            // For extremely large squares, products overflow.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
 }
 
-impl Lines {
-    /// Sets one of the pixels: the family with fewer lines comes first, and lines are counted from
-    /// each family's first square.
+impl BoardLanes {
+    /// Sets one of the pixels. `families` names the family with fewer lines first, and `first` is
+    /// the first square of each family.
     pub fn set(
         &mut self,
         place: usize,
@@ -130,13 +129,13 @@ impl Lines {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// The integrals over the pixels, which so many lines of either family cross.
-    pub fn sums(&self, lines: [usize; 2], room: &mut Room) -> Sums {
-        sums_simd(self, lines, room)
+    /// Computes the integrals over the pixels, all of which the given numbers of lines cross.
+    pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
+        sums_simd(self, lines, buffer)
     }
 
     #[inline(always)]
-    fn compute(&self, [few, many]: [usize; 2], Room(sides): &mut Room) -> Sums {
+    fn compute(&self, [few, many]: [usize; 2], StripBuffer(sides): &mut StripBuffer) -> LaneSums {
         let sides = &mut sides[..4 * (few + 1) + few];
         let failed = self.strips(few, sides);
         let (mut sums, mut lengths, mut offs) = ([0.0; PIXELS], [0.0; PIXELS], [0.0; PIXELS]);
@@ -161,14 +160,14 @@ impl Lines {
                 sums[i] += sign * beyond[i];
             }
         }
-        // For every line: a side's part has eight operations, on its length and a distance of √2 at
-        // most; each of its 5 sums a strip is rounded, and those of the lines twice. Each
-        // line that cuts, and the two next to them, may be off by 4 roundings of a point besides.
-        // What a displaced line sweeps is as long as the pixel's diagonal, √2, and its sign
-        // changes: 2√2 is less than 3.
+        // For every line, a side's part has eight operations, on its length and a distance of at
+        // most √2; each of its 5 sums per strip is rounded, and the sum over lines twice. Each line
+        // that cuts, and its two neighbours, may also be off by 4 roundings of a point. A displaced
+        // line sweeps at most the pixel's diagonal, √2, and the sign changes there: 2√2 is less
+        // than 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
-        Sums {
+        LaneSums {
             values: array::from_fn(|i| self.sign[i] * sums[i]),
             bounds: array::from_fn(|i| {
                 let roundings = UNIT * lines * (16.0 * lengths[i] + 8.0 * strips + 2.0 * lines);
@@ -178,10 +177,10 @@ impl Lines {
         }
     }
 
-    /// Adds how far line n of a family may be from the computed one: its forms are off, its factors
-    /// have three roundings, its value four.
+    /// Adds the maximum distance of line n of a family from the computed one. The forms have
+    /// errors, their factors have three roundings, and their values four.
     #[inline(always)]
-    fn add_off(&self, across: &FormRows, n: f64, out: &mut Row) {
+    fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
         let below = &self.below;
         for (i, out) in out.iter_mut().enumerate() {
             let size = |k: usize| across.factors[k][i].abs() + (n * below.factors[k][i]).abs();
@@ -192,13 +191,13 @@ impl Lines {
         }
     }
 
-    /// Cuts the pixels into strips. The square wave is 1 in the first of them. 0 for each that
-    /// could be cut, else infinite.
+    /// Cuts the pixels into strips, of which the first has the sign 1. Returns 0 for each pixel
+    /// that could be cut, or else infinity.
     #[inline(always)]
-    fn strips(&self, few: usize, sides: &mut [Sides]) -> Row {
+    fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];
         let (parts, chords) = sides.split_at_mut(4 * (few + 1));
-        // Along each side how far the part in the next strip reaches.
+        // The fraction of each side that the part in the next strip reaches.
         let mut reached = [[0.0; PIXELS]; 4];
         for (corner, reached) in reached.iter_mut().enumerate() {
             let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
@@ -226,7 +225,7 @@ impl Lines {
                     let place = start / (start - end);
                     let place = if place > 0.0 { place } else { 0.0 };
                     let place = if place < 1.0 { place } else { 1.0 };
-                    // Beyond the last line there is nothing.
+                    // There is nothing beyond the last line.
                     let (starts_below, ends_below) =
                         (is_last | (here[i] < n), is_last | (next[i] < n));
                     let is_up = next[i] >= here[i];
@@ -236,7 +235,7 @@ impl Lines {
                     } else {
                         whole
                     };
-                    // Where both ends are on the line, no place can be told.
+                    // If both ends are on the line, the crossing is undetermined.
                     let known = if start == end { f64::INFINITY } else { 1.0 };
                     crossed[0][i] = if starts_below & !ends_below {
                         known
@@ -276,7 +275,7 @@ impl Lines {
                 break;
             };
             // The strip above runs along its chord from where the boundary leaves it to where it
-            // came in.
+            // enters.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
@@ -291,10 +290,10 @@ impl Lines {
         failed
     }
 
-    /// Twice the signed area of the strips beyond a line of the second family, counted from its
-    /// first.
+    /// Returns twice the signed area of the strips beyond a line of the second family, counted from
+    /// its first square.
     #[inline(always)]
-    fn beyond(&self, line: f64, sides: &[Sides]) -> Row {
+    fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];
         let (mut form, mut origin) = ([[0.0; PIXELS]; 3], [[0.0; PIXELS]; 2]);
         for i in 0..PIXELS {
@@ -313,7 +312,7 @@ impl Lines {
                 let value = |x: f64, y: f64| (form[0][i] * x + form[1][i] * y) + form[2][i];
                 let (here, there) = (value(x, y), value(x + across, y + down));
                 let beyond = here.max(0.0) + there.max(0.0);
-                // A side that lies on the line as a whole contributes nothing either way.
+                // A side that lies entirely on the line contributes nothing either way.
                 let all = here.abs() + there.abs() + f64::MIN_POSITIVE;
                 let twice = (x - origin[0][i]) * down - (y - origin[1][i]) * across;
                 area[i] += sign[i] * twice * (beyond / all);
@@ -327,6 +326,6 @@ impl Lines {
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
 ))]
-fn sums_simd(pixels: &Lines, lines: [usize; 2], room: &mut Room) -> Sums {
-    pixels.compute(lines, room)
+fn sums_simd(pixels: &BoardLanes, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
+    pixels.compute(lines, buffer)
 }

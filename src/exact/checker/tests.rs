@@ -1,5 +1,5 @@
-//! The board's integral against a sum over squares that shares nothing with it, against itself in
-//! pieces, and at the horizon.
+//! The board's integral compared with an independent sum over squares, with itself in pieces, and
+//! at the horizon.
 
 use std::sync::atomic::AtomicBool;
 
@@ -7,24 +7,28 @@ use glam::{DMat3, DVec2};
 use proptest::prelude::*;
 
 use super::{
-    super::{ENOUGH, budget::Budget, clip::PIXEL, conic_segment::Arc},
-    Homography, Sum,
+    super::{DEFAULT_TOLERANCE, budget::PixelBudget, clip::PIXEL, conic_segment::Arc},
+    BoundedSum, Homography,
 };
+use crate::cancel;
 
-/// Nothing is cancelled here.
-static WANTED: AtomicBool = AtomicBool::new(false);
+/// Returns a budget that is never cancelled.
+fn budget() -> PixelBudget<'static> {
+    PixelBudget::new(DEFAULT_TOLERANCE, &cancel::NEVER)
+}
 
 impl Homography {
-    /// The integral over a polygon that nobody cancels.
-    pub(super) fn alone(&self, polygon: &[DVec2]) -> Sum {
-        self.over(polygon, &Budget::of_pixel(ENOUGH, &WANTED))
+    /// Integrates over a polygon without cancellation.
+    pub(super) fn alone(&self, polygon: &[DVec2]) -> BoundedSum {
+        self.over(polygon, &budget())
     }
 }
 
-/// What a level camera sees: its height in squares, its focal length in pixels, where it looks in
-/// degrees, and the pixel's place from the centre of the horizon, rightwards and downwards.
+/// The view of a level camera: its height in squares, its focal length in pixels, its direction in
+/// degrees, the pixel's place relative to the centre of the horizon (rightwards and downwards), and
+/// the point of the board below the eye.
 #[derive(Clone, Copy, Debug)]
-struct View {
+struct PixelView {
     height: f64,
     focal: f64,
     degrees: f64,
@@ -32,7 +36,7 @@ struct View {
     foot: DVec2,
 }
 
-impl View {
+impl PixelView {
     fn forms(&self) -> [[f64; 3]; 3] {
         let Self {
             height,
@@ -93,8 +97,7 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Every square on its own: its corners brought to the picture, and what is left of it between the
-/// polygon's sides.
+/// Projects the corners of every square to the picture, and clips the square to the polygon.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -148,8 +151,8 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     sum
 }
 
-fn view(degrees: f64, depth: f64) -> View {
-    View {
+fn view(degrees: f64, depth: f64) -> PixelView {
+    PixelView {
         height: 3.5,
         focal: 704.0,
         degrees,
@@ -158,12 +161,19 @@ fn view(degrees: f64, depth: f64) -> View {
     }
 }
 
-fn agree(found: Sum, expected: f64, most: f64, what: impl std::fmt::Debug) {
+fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug) {
     agree_in_size(found, expected, 1.0, most, what);
 }
 
-/// What is expected has roundings of its own, of products of coordinates up to half a size.
-fn agree_in_size(found: Sum, expected: f64, size: f64, most: f64, what: impl std::fmt::Debug) {
+/// Compares with an expected value that has rounding errors of its own, of products of coordinates
+/// up to half of `size`.
+fn agree_in_size(
+    found: BoundedSum,
+    expected: f64,
+    size: f64,
+    most: f64,
+    what: impl std::fmt::Debug,
+) {
     const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
     let error = (found.value - expected).abs();
     assert!(
@@ -180,8 +190,8 @@ fn pixels_of_many_squares() {
             agree(
                 view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
-                // What is asked of a mean, which is half of the integral.
-                2.0 * ENOUGH,
+                // The tolerance of a mean, which is half of the integral.
+                2.0 * DEFAULT_TOLERANCE,
                 view,
             );
         }
@@ -194,7 +204,7 @@ fn pixels_of_many_squares() {
 fn wide_views() {
     for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
         for (focal, across, depth) in [(0.5, 6.0, 30.0), (0.05, 2.0, 9.0), (0.02, 40.0, 0.6)] {
-            let view = View {
+            let view = PixelView {
                 height: 1.7,
                 focal,
                 degrees,
@@ -202,7 +212,7 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // The forms' terms are so many times as large as the pixel's side.
+            // The forms' terms are larger than the pixel's side by this factor.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -210,7 +220,7 @@ fn wide_views() {
     }
 }
 
-/// Squares so small that an edge crosses a million lines, from above and aslant, beside the same in
+/// Squares so small that an edge crosses a million lines, from above and tilted, compared with
 /// pieces that cross fewer.
 #[test]
 fn a_million_lines() {
@@ -228,7 +238,7 @@ fn a_million_lines() {
         let board = Homography::new([a, b], [tilt, 0.3 * tilt, 1.0]);
         let whole = board.alone(&PIXEL);
         let strips = 16;
-        let mut pieces = Sum::default();
+        let mut pieces = BoundedSum::default();
         for i in 0..strips * strips {
             let low = DVec2::new(f64::from(i / strips), f64::from(i % strips)) / f64::from(strips);
             let square = PIXEL.map(|p| low + (p + 0.5) / f64::from(strips) - 0.5);
@@ -262,10 +272,10 @@ fn the_horizon() {
             view.place = DVec2::new(0.5, y);
             let board = view.board();
             let found = board.alone(&PIXEL);
-            // Of the sum of signs: twice what the mean may be off.
+            // The bound of the integral is twice that of the mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // In slices, which look at other crossings from other places on.
-            let mut slices = Sum::default();
+            // Slices have other crossings, counted from other places.
+            let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
                 slices
@@ -282,7 +292,8 @@ fn the_horizon() {
     }
 }
 
-/// The part of a horizon pixel between two depths, once as an end less an end and once by itself.
+/// The part of a horizon pixel between two depths: as the difference of two integrals, and
+/// directly.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -295,7 +306,7 @@ fn the_end_is_the_limit() {
         let lower = [DVec2::new(-0.5, line), DVec2::new(0.5, line), c, d];
         let expected = brute(view.forms(), &lower);
         let all = board.alone(&PIXEL);
-        let difference = Sum {
+        let difference = BoundedSum {
             value: all.value - upper.value,
             bound: all.bound + upper.bound,
         };
@@ -304,9 +315,9 @@ fn the_end_is_the_limit() {
 }
 
 /// What a pixel far to the side sees in the limit of a view of 180 degrees: one straight line on
-/// the floor, a and b both linear in q = height·x/y. Between the places where one of them is whole,
-/// the parts of the polygon that q cuts out.
-fn brute_limit(view: &View, polygon: &[DVec2], most: f64) -> (f64, f64) {
+/// the floor, with a and b both linear in q = height·x/y. Sums the parts of the polygon between
+/// values of q at which one of them is an integer.
+fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
     let q = |p: DVec2| view.height * (p.x + view.place.x) / (p.y + view.place.y);
@@ -340,8 +351,8 @@ fn brute_limit(view: &View, polygon: &[DVec2], most: f64) -> (f64, f64) {
     (sum, area(polygon).abs() - area_before)
 }
 
-fn widest(focal: f64, degrees: f64) -> View {
-    View {
+fn widest(focal: f64, degrees: f64) -> PixelView {
+    PixelView {
         height: 1.7,
         focal,
         degrees,
@@ -350,9 +361,9 @@ fn widest(focal: f64, degrees: f64) -> View {
     }
 }
 
-/// In the widest of views squares are so many, and a pixel sees so narrow a strip of them, that
-/// roundings are not small by what they displace points: a and b hardly differ but by a factor.
-/// Below the horizon, and with it.
+/// In the widest views, squares are so many, and a pixel sees such a narrow strip of them, that
+/// displacements by rounding are not small: a and b are nearly proportional. Below the horizon, and
+/// including it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {
@@ -364,7 +375,7 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // The limit is off by lines that are displaced by the focal length.
+                // The limit is off because lines are displaced by the focal length.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
                     "{degrees} {focal:e} {y}: {found:?}, not {expected} to {left:e}: {error:e}"
@@ -375,7 +386,7 @@ fn the_widest_views() {
 }
 
 proptest! {
-    // Each takes 20 ms: a quarter of the usual number.
+    // Each case takes 20 ms: a quarter of the usual number.
     #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 4, ..ProptestConfig::default() })]
 
     #[test]
@@ -391,11 +402,11 @@ proptest! {
         let bound = whole.bound + left.bound + right.bound;
         prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
         // The region between the arc and its chord, by the exact cuts and by many chords.
-        let sliver = board.sliver(&arc, &Budget::of_pixel(ENOUGH, &WANTED));
+        let segment = board.over_segment(&arc, &budget());
         let points: Vec<DVec2> = (0..=100).map(|i| arc.at(f64::from(i) / 100.0)).collect();
         let chords = board.alone(&points);
         let neglected: f64 = (0..100).map(|i| arc.between(f64::from(i) / 100.0, f64::from(i + 1) / 100.0).area()).sum();
-        prop_assert!((sliver.value - chords.value).abs() <= sliver.bound + chords.bound + neglected, "{sliver:?} {chords:?} {neglected}");
+        prop_assert!((segment.value - chords.value).abs() <= segment.bound + chords.bound + neglected, "{segment:?} {chords:?} {neglected}");
     }
 
 }
@@ -410,7 +421,8 @@ proptest! {
         prop_assume!(matrix.determinant().abs() > 1e-3);
         let found = Homography::new([a, b], below).alone(&PIXEL);
         let expected = brute([a, b, below], &PIXEL);
-        // What is expected takes corners of squares to the picture by the inverse, which is as good as the matrix's condition.
+        // The expected value maps corners of squares to the picture by the inverse, whose accuracy
+        // is the matrix's condition.
         let size = |matrix: DMat3| matrix.to_cols_array().map(f64::abs).iter().sum::<f64>();
         let roundings = 4.0 * f64::EPSILON * size(matrix) * size(matrix.inverse());
         prop_assert!((found.value - expected).abs() <= found.bound + roundings, "{found:?} {expected}");
@@ -432,14 +444,14 @@ fn from_straight_above() {
     );
 }
 
-/// What takes too long, or is not wanted any more, is said to be unknown.
+/// A result that takes too long, or is not wanted any more, is reported as unknown.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
     let board = Homography::new([[31.0, 2.0, 0.3], [3.0, 29.0, 0.2]], below);
     let all = board.alone(&PIXEL);
     let cancelled = AtomicBool::new(true);
-    let nothing = board.over(&PIXEL, &Budget::of_pixel(ENOUGH, &cancelled));
+    let nothing = board.over(&PIXEL, &PixelBudget::new(DEFAULT_TOLERANCE, &cancelled));
     assert!(all.value != 0.0 && nothing.value == 0.0);
     assert!(nothing.bound > all.value.abs(), "{nothing:?} of {all:?}");
     // A row of a billion squares next to the line above which the eye is.
@@ -450,9 +462,9 @@ fn nothing_is_computed_beyond_the_budget() {
 /// The horizon above a single square, whatever its size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
-    // Beyond, the forms are told from singular ones no more.
+    // Beyond this exponent, the forms cannot be distinguished from singular ones.
     for exponent in 0..90 {
-        let view = View {
+        let view = PixelView {
             height: libm::pow(10.0, -f64::from(exponent)),
             focal: 14.0,
             degrees: 3.0,
@@ -460,10 +472,10 @@ fn a_square_that_goes_to_the_horizon_is_known() {
             foot: DVec2::new(0.3, 0.4),
         };
         let board = view.board();
-        let Sum { value, bound } = board.alone(&PIXEL);
+        let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
-        // Half a pixel and a hundredth of it shows the floor, and its other squares are 0.3 of one
-        // away at least.
+        // A little more than half of the pixel, 0.51, shows the floor, and its other squares are at
+        // least 0.3 squares away.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");

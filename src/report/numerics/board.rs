@@ -1,16 +1,16 @@
-//! Planes and checkerboards: horizons, integers, great heights and distances, and surfaces in one
-//! plane.
+//! Planes and checkerboards: horizons, integers, extreme heights and distances, and coplanar
+//! surfaces.
 
 use glam::{DVec3, dvec3};
 
-use super::{
-    case::{Case, Input, Subject::Seen, input},
-    inputs::{MIDDLE, Random},
+use super::case::{Case, CaseScene, Question::Seen, input};
+use super::inputs::{CaseRng, MIDDLE};
+use crate::reference::{
     oracle::ALL_SIZES,
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
 
-/// The cases.
+/// The cases of planes and checkerboards.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },
@@ -24,7 +24,7 @@ pub const CASES: &[Case] = &[
     Case { id: "P8", title: "two boards or two triangles in one plane", bound: 2.0, subject: Seen(coincident) },
 ];
 
-fn horizon(random: &mut Random) -> Input {
+fn horizon(random: &mut CaseRng) -> CaseScene {
     let eye = random.between([-9.0, 0.5, -9.0], [9.0, 4.0, 9.0]);
     let level = random.between([-1.0, 0.0, -1.0], [1.0, 0.0, -1.0]);
     input(along(eye, level), &[board(0.0, 1.0)]).at(move |random| {
@@ -34,7 +34,7 @@ fn horizon(random: &mut Random) -> Input {
     })
 }
 
-fn parallels(random: &mut Random) -> Input {
+fn parallels(random: &mut CaseRng) -> CaseScene {
     let height = random.power(-3.0, 3.0) * random.sign();
     let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
     let level = dvec3(
@@ -53,7 +53,7 @@ fn parallels(random: &mut Random) -> Input {
 }
 
 /// A board, a triangle, and the top of a box at the height of the eye.
-fn edge_on(random: &mut Random) -> Input {
+fn edge_on(random: &mut CaseRng) -> CaseScene {
     let eye = random.vector(3.0);
     let ahead = dvec3(random.within(-0.5, 0.5), random.within(-0.3, 0.3), -1.0);
     let at = eye + dvec3(0.0, 0.0, -4.0);
@@ -67,7 +67,7 @@ fn edge_on(random: &mut Random) -> Input {
     input(along(eye, ahead), &shapes)
 }
 
-fn low(random: &mut Random) -> Input {
+fn low(random: &mut CaseRng) -> CaseScene {
     let height = random.power(-323.0, -9.0);
     let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
     let shapes = [
@@ -78,23 +78,23 @@ fn low(random: &mut Random) -> Input {
     input(along(eye, ahead), &shapes).bits(ALL_SIZES)
 }
 
-fn high(random: &mut Random) -> Input {
+fn high(random: &mut CaseRng) -> CaseScene {
     let height = random.power(9.0, 15.0);
     let eye = random.between([-9.0, height, -9.0], [9.0, height, 9.0]);
     let down = random.between([-1.0, -1.0, -1.0], [1.0, -0.2, -1.0]);
     input(along(eye, down), &[board(0.0, random.power(0.0, 3.0))])
 }
 
-fn displaced(random: &mut Random) -> Input {
-    let distance = |random: &mut Random| random.sign() * random.power(9.0, 15.6);
+fn displaced(random: &mut CaseRng) -> CaseScene {
+    let distance = |random: &mut CaseRng| random.sign() * random.power(9.0, 15.6);
     let eye = dvec3(distance(random), random.within(0.5, 4.0), distance(random));
     let down = random.between([-1.0, -1.0, -1.0], [1.0, -0.2, -1.0]);
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// From a height of 64 squares, with the slope of a 64th from pixel to pixel, a pixel's upper left
-/// corner shows that of a square.
-fn corners(random: &mut Random) -> Input {
+/// From a height of 64 squares, where one pixel corresponds to a slope of 1/64, a pixel's upper
+/// left corner shows that of a square.
+fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;
     let mut camera = along(eye, DVec3::NEG_Y);
@@ -111,9 +111,9 @@ fn corners(random: &mut Random) -> Input {
     })
 }
 
-fn from_below(random: &mut Random) -> Input {
+fn from_below(random: &mut CaseRng) -> CaseScene {
     let y = random.within(-2.0, 2.0);
-    let at = |random: &mut Random| random.between([-1.5, y, -1.5], [1.5, y, 1.5]);
+    let at = |random: &mut CaseRng| random.between([-1.5, y, -1.5], [1.5, y, 1.5]);
     let eye = at(random) - DVec3::Y * random.within(1.0, 5.0);
     let (one, other) = (at(random), at(random));
     let mut shapes = [
@@ -130,7 +130,7 @@ fn from_below(random: &mut Random) -> Input {
     input(camera(eye, at(random)), &shapes).mixed()
 }
 
-fn coincident(random: &mut Random) -> Input {
+fn coincident(random: &mut CaseRng) -> CaseScene {
     let y = random.within(-2.0, 2.0);
     let (eye, at) = (random.vector(3.0) + DVec3::Y * 6.0, random.vector(1.0));
     let normal = random.wholes([-9, 1, -9], [9, 9, 9]);

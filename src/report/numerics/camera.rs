@@ -5,20 +5,22 @@ use glam::{DVec3, dvec3};
 
 use super::{
     case::{
-        Case, Input,
-        Subject::{Axes, Seen},
+        Case, CaseScene,
+        Question::{Axes, Seen},
         input,
     },
-    inputs::Random,
-    oracle::ALL_VIEWS,
-    scenes::{along, board, camera, cuboid, sphere, triangle},
+    inputs::CaseRng,
 };
 use crate::{
     math::Angle,
+    reference::{
+        oracle::ALL_VIEWS,
+        scenes::{along, board, camera, cuboid, sphere, triangle},
+    },
     scene::{Camera, Lens},
 };
 
-/// The cases: those of the axes, and those of what is seen.
+/// The cases of the camera: first its axes, then what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },
@@ -31,12 +33,12 @@ pub const CASES: &[Case] = &[
     Case { id: "K3", title: "objects cut by both planes", bound: 2.0, subject: Seen(cut) },
 ];
 
-fn nearly_parallel(random: &mut Random) -> Camera {
+fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // Up is as near to the view direction as f64s have it; where they are all equal, the world's
-    // axes have room.
+    // Up is as close to the view direction as f64 allows. If all neighbouring f64s are equal, the
+    // world's axes leave more room.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -45,7 +47,7 @@ fn nearly_parallel(random: &mut Random) -> Camera {
     camera
 }
 
-fn differences(random: &mut Random) -> Camera {
+fn differences(random: &mut CaseRng) -> Camera {
     let least = f64::from_bits(1);
     let far = random.unit() * random.power(6.0, 12.0);
     let (eye, lookat) = match random.below(3) {
@@ -56,8 +58,8 @@ fn differences(random: &mut Random) -> Camera {
     camera(eye, lookat)
 }
 
-fn lengths(random: &mut Random) -> Camera {
-    let length = |random: &mut Random| {
+fn lengths(random: &mut CaseRng) -> Camera {
+    let length = |random: &mut CaseRng| {
         let exponent = random.sign() * random.within(0.0, 307.0);
         random.power(exponent, exponent)
     };
@@ -66,18 +68,19 @@ fn lengths(random: &mut Random) -> Camera {
     camera
 }
 
-/// A world behind lenses that see nearly everything, and behind those that see next to nothing.
+/// A world behind lenses that see nearly everything, and behind lenses that see next to nothing.
 ///
-/// The widest ones make of whole rows of the picture rays that are parallel to the board up to d.
-/// That is a tie from 2^−90 on, which we take for one from 2^−310 on, the oracle from 2^−500 on:
-/// lenses between are not asked.
-fn lenses(random: &mut Random) -> Input {
+/// Through the widest lenses, the rays of whole rows of the picture are parallel to the board up to
+/// d. Such a ray is a tie from 2^−90 on, which Pinhole treats as a tie from 2^−310 on and the
+/// oracle from 2^−500 on: lenses in between are not tested.
+fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);
     let wide = random.below(2) == 0;
-    let (d, eye) = match wide {
-        true => (1.0 / d, dvec3(0.1, 2.0, 3.0)),
-        false => (d, dvec3(0.1, 2.0, 3.0) * d.min(1e14)),
+    let (d, eye) = if wide {
+        (1.0 / d, dvec3(0.1, 2.0, 3.0))
+    } else {
+        (d, dvec3(0.1, 2.0, 3.0) * d.min(1e14))
     };
     let mut camera = camera(eye, DVec3::ZERO);
     camera.lens = Lens::Distance(d);
@@ -91,7 +94,7 @@ fn lenses(random: &mut Random) -> Input {
     input(camera, &shapes).bits(ALL_VIEWS)
 }
 
-fn rolls(random: &mut Random) -> Camera {
+fn rolls(random: &mut CaseRng) -> Camera {
     let mut camera = along(DVec3::ZERO, random.unit());
     let turns = random.whole(-1_000_000, 1_000_000) * libm::exp2(random.whole(0, 40));
     let degrees = match random.below(2) {
@@ -105,7 +108,7 @@ fn rolls(random: &mut Random) -> Camera {
     camera
 }
 
-fn wide(random: &mut Random) -> Input {
+fn wide(random: &mut CaseRng) -> CaseScene {
     let eye = random.between([-1.0, 9.0, -1.0], [1.0, 9.0, 1.0]);
     let mut camera = along(eye, dvec3(random.within(-0.2, 0.2), -1.0, -0.1));
     let mut shapes = vec![board(0.0, random.within(0.01, 1.0))];
@@ -121,7 +124,7 @@ fn wide(random: &mut Random) -> Input {
     input
 }
 
-/// View directions with a length that is a whole number, so that depths can be.
+/// View directions whose length is an integer, so that depths can be integers.
 const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(0.0, 0.0, -1.0), 1.0),
     (dvec3(3.0, 0.0, -4.0), 5.0),
@@ -129,8 +132,9 @@ const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(6.0, 3.0, -2.0), 7.0),
 ];
 
-/// A wall across the view, at a depth that is one of the two planes' or a neighbouring f64.
-fn exactly_there(random: &mut Random) -> Input {
+/// A wall perpendicular to the view, at the depth of one of the two clip planes or at a
+/// neighbouring f64.
+fn exactly_there(random: &mut CaseRng) -> CaseScene {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;
     let depth = length * steps;
@@ -146,7 +150,7 @@ fn exactly_there(random: &mut Random) -> Input {
     input(camera, &[shape]).anywhere()
 }
 
-fn cut(random: &mut Random) -> Input {
+fn cut(random: &mut CaseRng) -> CaseScene {
     let at = random.vector(1.0);
     let eye = at + random.unit() * random.within(4.0, 8.0);
     let distance = (at - eye).length();

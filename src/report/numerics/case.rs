@@ -1,52 +1,53 @@
-//! A hard case: what makes its inputs, and where in a scene it asks.
+//! A hard case: how its inputs are generated, and where in the scene they are tested.
 
 use super::{
-    inputs::{Point, Random},
-    oracle::USUAL_SIZES,
-    scenes::scene,
-    trial::{Tally, Trial, axes},
+    inputs::{CaseRng, SamplePoint},
+    trial::{CaseTally, Trial, axes},
 };
-use crate::scene::{Camera, Scene, Shape};
+use crate::{
+    reference::{oracle::USUAL_SIZES, scenes::scene},
+    scene::{Camera, Scene, Shape},
+};
 
 /// A row of the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Its name.
+    /// Name.
     pub id: &'static str,
-    /// What is hard about it.
+    /// What makes the case hard.
     pub title: &'static str,
-    /// The greatest error that is claimed; no decision is wrong.
+    /// Maximum error that is claimed; no decision is wrong.
     pub bound: f64,
-    pub(super) subject: Subject,
+    pub(super) subject: Question,
 }
 
-/// What questions are asked of.
+/// What a case tests.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Subject {
-    /// What is seen in a scene, of which many questions are asked: errors of distances and points
-    /// are counted in units in the last place.
-    Seen(fn(&mut Random) -> Input),
-    /// The axes of a camera: errors of the components of unit vectors are counted in units of
+pub(super) enum Question {
+    /// What is seen in a scene, which is tested at many points. Errors of distances and points are
+    /// counted in units in the last place.
+    Seen(fn(&mut CaseRng) -> CaseScene),
+    /// The axes of a camera. Errors of the components of unit vectors are counted in units of
     /// 2^−53.
-    Axes(fn(&mut Random) -> Camera),
+    Axes(fn(&mut CaseRng) -> Camera),
 }
 
 impl Case {
-    /// Whether something is decided, and not only computed.
+    /// Returns whether the case tests decisions, not only numbers.
     pub fn decides(&self) -> bool {
-        matches!(self.subject, Subject::Seen(_))
+        matches!(self.subject, Question::Seen(_))
     }
 
-    /// What errors are counted in.
+    /// Returns the unit of its errors.
     pub fn unit(&self) -> &'static str {
         if self.decides() { "ulp" } else { "u" }
     }
 
-    /// Asks so many questions.
-    pub(super) fn ask(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+    /// Tests `count` inputs.
+    pub(super) fn ask(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let input = match self.subject {
-            Subject::Seen(input) => input(random),
-            Subject::Axes(camera) => return (0..count).for_each(|_| axes(&camera(random), tally)),
+            Question::Seen(input) => input(random),
+            Question::Axes(camera) => return (0..count).for_each(|_| axes(&camera(random), tally)),
         };
         let trial = Trial::new(input.scene, input.bits);
         let at_points = count * input.halves / 2;
@@ -57,48 +58,49 @@ impl Case {
     }
 }
 
-/// A scene and where in its picture questions are asked.
-pub(super) struct Input {
+/// A scene, and the points of its picture that are tested.
+pub(super) struct CaseScene {
     pub scene: Scene,
-    /// Those that the oracle computes with.
+    /// Number of bits of the oracle's arithmetic.
     bits: usize,
-    /// Makes points of the picture: anywhere if nothing is said.
-    points: Box<dyn Fn(&mut Random) -> Point>,
-    /// How many of the questions are asked there, in halves of all; the others close to
+    /// Generates points of the picture; by default they lie anywhere.
+    points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
+    /// Number of inputs tested at these points, in halves of all inputs; the others lie close to
     /// boundaries.
     halves: u64,
 }
 
-/// Points close to boundaries of what a camera sees of some shapes.
-pub(super) fn input(camera: Camera, shapes: &[Shape]) -> Input {
-    Input {
+/// Tests points close to the boundaries of what a camera sees of the shapes.
+pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
+    CaseScene {
         scene: scene(camera, shapes),
         bits: USUAL_SIZES,
-        points: Box::new(Random::point),
+        points: Box::new(CaseRng::point),
         halves: 0,
     }
 }
 
-impl Input {
-    /// So many bits for the oracle.
+impl CaseScene {
+    /// Sets the number of bits of the oracle's arithmetic.
     pub fn bits(self, bits: usize) -> Self {
         Self { bits, ..self }
     }
 
-    /// Points anywhere.
+    /// Tests points anywhere.
     pub fn anywhere(self) -> Self {
         Self { halves: 2, ..self }
     }
 
-    /// These points.
-    pub fn at(self, point: impl Fn(&mut Random) -> Point + 'static) -> Self {
+    /// Tests points that `point` generates.
+    pub fn at(self, point: impl Fn(&mut CaseRng) -> SamplePoint + 'static) -> Self {
         Self {
             points: Box::new(point),
             ..self.anywhere()
         }
     }
 
-    /// Points anywhere, or those that were named, and as many close to boundaries.
+    /// Tests half of the inputs at points anywhere, or at those of `at`, and half close to
+    /// boundaries.
     pub fn mixed(self) -> Self {
         Self { halves: 1, ..self }
     }

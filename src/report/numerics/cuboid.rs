@@ -2,14 +2,14 @@
 
 use glam::{DVec3, dvec3};
 
-use super::{
-    case::{Case, Input, Subject::Seen, input},
-    inputs::{MIDDLE, Random},
-    scenes::{along, camera, cuboid, sphere},
+use super::case::{Case, CaseScene, Question::Seen, input};
+use super::inputs::{CaseRng, MIDDLE};
+use crate::{
+    math::Angle,
+    reference::scenes::{along, camera, cuboid, sphere},
 };
-use crate::math::Angle;
 
-/// The cases.
+/// The cases of boxes.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },
@@ -19,9 +19,9 @@ pub const CASES: &[Case] = &[
     Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
-/// The eye looks along −z from a place whose x and y are a face's or not, and rays leave it in the
-/// planes x = e_x and y = e_y.
-fn in_planes(random: &mut Random) -> Input {
+/// The eye looks along −z from a place whose x and y are those of a face or not, and rays leave it
+/// in the planes x = e_x and y = e_y.
+fn in_planes(random: &mut CaseRng) -> CaseScene {
     let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
     let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
     let middle = (min + max) / 2.0;
@@ -41,7 +41,7 @@ fn in_planes(random: &mut Random) -> Input {
     })
 }
 
-fn inside(random: &mut Random) -> Input {
+fn inside(random: &mut CaseRng) -> CaseScene {
     let min = random.vector(2.0);
     let max = min + random.between([0.5; 3], [3.0; 3]);
     let mut place = |axis: usize| {
@@ -60,7 +60,7 @@ fn inside(random: &mut Random) -> Input {
     input(camera(eye, wall), &shapes)
 }
 
-fn thin(random: &mut Random) -> Input {
+fn thin(random: &mut CaseRng) -> CaseScene {
     let min = random.vector(2.0);
     let mut max = min + random.within(0.5, 2.0);
     let axis = random.below(3) as usize;
@@ -72,7 +72,7 @@ fn thin(random: &mut Random) -> Input {
     input(camera(eye, (min + max) / 2.0), &shapes)
 }
 
-fn silhouettes(random: &mut Random) -> Input {
+fn silhouettes(random: &mut CaseRng) -> CaseScene {
     let place = random.unit() * random.power(0.0, 9.0);
     let min = place + random.vector(1.0);
     let max = min + random.between([0.5; 3], [2.0; 3]);
@@ -82,7 +82,7 @@ fn silhouettes(random: &mut Random) -> Input {
 }
 
 /// The eye is beside the shared face's plane or in it.
-fn neighbours(random: &mut Random) -> Input {
+fn neighbours(random: &mut CaseRng) -> CaseScene {
     let seam = random.within(-1.0, 1.0);
     let mut shapes = [
         cuboid(dvec3(seam - 1.3, -1.0, -3.0), dvec3(seam, 1.0, -2.0)),
@@ -96,7 +96,7 @@ fn neighbours(random: &mut Random) -> Input {
     if beside != 0.0 {
         return input;
     }
-    let in_plane = |random: &mut Random| {
+    let in_plane = |random: &mut CaseRng| {
         let row = random.pixel();
         let column = random.pick(&[MIDDLE[1], MIDDLE[0]]);
         [column, (row, random.within(-0.5, 0.5))]

@@ -1,14 +1,15 @@
-//! Spheres: tangents, small and far ones, huge ones, and eyes inside and on the surface.
+//! Spheres: tangents, small and distant ones, huge ones, and eyes inside and on the surface.
 
 use glam::{DVec3, dvec3};
 
-use super::{
-    case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
-    scenes::{SIZE, along, camera, cuboid, sphere},
+use super::case::{Case, CaseScene, Question::Seen, input};
+use super::inputs::CaseRng;
+use crate::{
+    reference::scenes::{SIZE, along, camera, cuboid, sphere},
+    scene::Lens,
 };
 
-/// The cases.
+/// The cases of spheres.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },
@@ -22,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "S8", title: "centre and eye 1e9 … 1e300 m from the origin", bound: 1.0, subject: Seen(displaced) },
 ];
 
-fn silhouettes(random: &mut Random) -> Input {
+fn silhouettes(random: &mut CaseRng) -> CaseScene {
     let center = random.vector(2.0);
     let eye = center + random.unit() * random.within(3.0, 8.0);
     let camera = camera(eye, center + random.vector(0.2));
@@ -30,10 +31,10 @@ fn silhouettes(random: &mut Random) -> Input {
     input(camera, &[shape])
 }
 
-/// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z): of
-/// the rays in that plane, which are those of the middle of the picture, none meets the sphere, and
-/// of those on the other side of it one next to it does.
-fn touches(random: &mut Random) -> Input {
+/// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z). Of
+/// the rays in that plane, which are those of the middle of the picture, none meets the sphere; of
+/// the rays on one side of it, one next to it does.
+fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
     let depth = random.whole(16, 400);
@@ -52,18 +53,18 @@ fn touches(random: &mut Random) -> Input {
     })
 }
 
-fn far_and_small(random: &mut Random) -> Input {
+fn far_and_small(random: &mut CaseRng) -> CaseScene {
     let eye = random.vector(1.0);
     let radius = random.power(-3.0, 3.0);
     let distance = radius * random.power(6.0, 15.0);
     let center = eye + random.unit() * distance;
     let mut camera = camera(eye, center);
-    camera.lens = crate::scene::Lens::Distance(distance);
+    camera.lens = Lens::Distance(distance);
     camera.view_height = 3.0 * radius;
     input(camera, &[sphere(center, radius)])
 }
 
-fn inside(random: &mut Random) -> Input {
+fn inside(random: &mut CaseRng) -> CaseScene {
     let (center, radius) = (random.vector(2.0), random.within(1.0, 3.0));
     let eye = center + random.unit() * radius * random.within(0.0, 0.999);
     let wall = center + random.unit() * radius;
@@ -76,8 +77,8 @@ fn inside(random: &mut Random) -> Input {
     input(camera(eye, wall), &shapes)
 }
 
-fn at_the_surface(random: &mut Random) -> Input {
-    // 3, 4 and 5: the eye is on the surface exactly, but for what is added.
+fn at_the_surface(random: &mut CaseRng) -> CaseScene {
+    // 3, 4 and 5: the eye is exactly on the surface before `above` is applied.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),
@@ -92,7 +93,7 @@ fn at_the_surface(random: &mut Random) -> Input {
     input(camera, &shapes)
 }
 
-fn globes(random: &mut Random) -> Input {
+fn globes(random: &mut CaseRng) -> CaseScene {
     let radius = random.power(6.0, 15.0);
     let eye = dvec3(random.within(-1.0, 1.0), 1.0, 0.2);
     let shapes = [
@@ -102,7 +103,7 @@ fn globes(random: &mut Random) -> Input {
     input(camera(eye, dvec3(3.0, 0.9, -4.0)), &shapes)
 }
 
-fn out_of_range(random: &mut Random) -> Input {
+fn out_of_range(random: &mut CaseRng) -> CaseScene {
     let exponent = random.within(160.0, 300.0) * random.sign();
     let size = random.power(exponent, exponent);
     let center = random.vector(2.0) * size;
@@ -114,7 +115,7 @@ fn out_of_range(random: &mut Random) -> Input {
     input(camera(eye, center), &shapes)
 }
 
-fn concentric(random: &mut Random) -> Input {
+fn concentric(random: &mut CaseRng) -> CaseScene {
     let center = random.vector(2.0);
     let radius = random.within(0.5, 2.0);
     let radii = random.pick(&[
@@ -127,7 +128,7 @@ fn concentric(random: &mut Random) -> Input {
     input(camera(eye, center + random.vector(0.3)), &shapes).anywhere()
 }
 
-fn displaced(random: &mut Random) -> Input {
+fn displaced(random: &mut CaseRng) -> CaseScene {
     let distance = random.power(9.0, 300.0);
     let center = random.unit() * distance;
     let radius = distance * random.power(-12.0, -2.0);

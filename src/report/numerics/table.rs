@@ -4,47 +4,47 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use super::{case::Case, trial::Tally};
+use super::{case::Case, trial::CaseTally};
 use crate::numbers::grouped;
 
-/// What came out of a case.
+/// Result of a case.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
-    /// What was asked.
+pub struct CaseResult {
+    /// The case.
     pub case: &'static Case,
-    /// What was counted and measured.
-    pub tally: Tally,
+    /// Counts and measurements.
+    pub tally: CaseTally,
 }
 
-/// What came out of all cases.
+/// Results of all cases.
 #[derive(Clone, Debug)]
-pub struct Table {
-    /// The cases in the order of the catalogue.
-    pub rows: Vec<Row>,
-    /// How many inputs were to be asked.
+pub struct NumericsTable {
+    /// The results in the order of the catalogue.
+    pub rows: Vec<CaseResult>,
+    /// Number of inputs that were planned.
     pub planned: u64,
 }
 
-impl Table {
-    /// How many decisions of ours were wrong.
+impl NumericsTable {
+    /// Returns the number of Pinhole's wrong decisions.
     pub fn wrong(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.wrong[1]).sum()
     }
 
-    /// How many questions were asked.
+    /// Returns the number of inputs tested.
     pub fn inputs(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.inputs).sum()
     }
 
-    /// Whether every input was asked.
+    /// Returns whether every planned input was tested.
     pub fn is_complete(&self) -> bool {
         self.inputs() == self.planned
     }
 
-    /// The same for programs. An error that is no number, as of a distance that is not found at
-    /// all, is null, as are what was not measured and what a case does not ask.
+    /// Converts the table for programs. An infinite error, such as that of a distance that is not
+    /// found at all, is null, and so are numbers that were not measured or do not apply to a case.
     pub fn to_json(&self) -> Value {
-        let rows = self.rows.iter().map(|Row { case, tally }| {
+        let rows = self.rows.iter().map(|CaseResult { case, tally }| {
             let side = |i: usize| {
                 json!({
                     "wrong": case.decides().then_some(tally.wrong[i]),
@@ -65,8 +65,8 @@ impl Table {
     }
 }
 
-/// The same for people.
-impl fmt::Display for Table {
+/// Formats the table for people.
+impl fmt::Display for NumericsTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heads = [
             ["", "", "wrong", "wrong", "error", "error", "bound"],
@@ -86,23 +86,25 @@ impl fmt::Display for Table {
             grouped(self.inputs()),
             grouped(self.wrong())
         )?;
-        match self.is_complete() {
-            true => Ok(()),
-            false => writeln!(
+        if self.is_complete() {
+            Ok(())
+        } else {
+            writeln!(
                 f,
                 "The table is incomplete: it was interrupted before {} inputs were asked.",
                 grouped(self.planned)
-            ),
+            )
         }
     }
 }
 
-/// A row: the case, what is hard about it, wrong decisions and errors of the textbook and of
-/// Pinhole, and the bound.
-fn cells(Row { case, tally }: &Row) -> [String; 7] {
-    let [theirs, ours] = match case.decides() {
-        true => [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])],
-        false => Default::default(),
+/// Returns the cells of a row: the case, its title, wrong decisions and errors of the textbook and
+/// of Pinhole, and the bound.
+fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
+    let [theirs, ours] = if case.decides() {
+        [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])]
+    } else {
+        Default::default()
     };
     let [their_error, our_error] = tally.error.map(size);
     let bound = format!("{} {}", case.bound, case.unit());
@@ -110,7 +112,7 @@ fn cells(Row { case, tally }: &Row) -> [String; 7] {
     [id, title, theirs, ours, their_error, our_error, bound]
 }
 
-/// A share of the inputs in per cent, with an exponent where it is small.
+/// Formats a share of the inputs in per cent, with an exponent if it is small.
 fn share(count: u64, inputs: u64) -> String {
     let percent = 100.0 * count as f64 / inputs as f64;
     match count {
@@ -120,7 +122,7 @@ fn share(count: u64, inputs: u64) -> String {
     }
 }
 
-/// An error with two digits; nothing of what was not measured.
+/// Formats an error with two digits, or a dash if none was measured.
 fn size(error: Option<f64>) -> String {
     let Some(error) = error else {
         return "-".to_owned();

@@ -1,35 +1,35 @@
-//! How inputs are judged: what the oracle, the textbook and we see at a sample point.
+//! Judges inputs: what the oracle, the textbook and Pinhole see at a sample point.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
 
-use super::{
-    inputs::{Point, Random},
-    oracle::{ALL_SIZES, N, Oracle, V, length},
-    scenes::{color, scene},
-    textbook::Textbook,
-};
+use super::inputs::{CaseRng, SamplePoint};
 use crate::{
     color::Color,
     math::Real,
+    reference::{
+        formulas,
+        oracle::{ALL_SIZES, N, Oracle, V, length},
+        scenes::{color, scene},
+        textbook::Textbook,
+    },
     scene::{Camera, Scene},
-    textbook,
     tracer::{Basis, World, ray},
 };
 
-/// What was counted and measured, of the textbook's formulas and of ours.
+/// Counts and measurements of the textbook (first) and of Pinhole (second).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
-    /// How many questions were asked.
+pub struct CaseTally {
+    /// Number of inputs tested.
     pub inputs: u64,
-    /// Decisions that exact arithmetic makes otherwise.
+    /// Number of decisions that differ from exact arithmetic.
     pub wrong: [u64; 2],
-    /// The greatest error of a number, if any was measured.
+    /// Greatest error of a number; `None` if none was measured.
     pub error: [Option<f64>; 2],
 }
 
-impl Tally {
-    /// Both together.
+impl CaseTally {
+    /// Adds up two tallies.
     pub fn plus(self, other: Self) -> Self {
         Self {
             inputs: self.inputs + other.inputs,
@@ -38,29 +38,32 @@ impl Tally {
         }
     }
 
-    /// Counts the errors of the two, where they were measured.
+    /// Records a pair of errors, as far as they were measured.
     pub fn errors(&mut self, errors: [Option<f64>; 2]) {
         self.error = [0, 1].map(|i| greater(self.error[i], errors[i]));
     }
 }
 
-/// The greater of two numbers, as far as they are there.
+/// Returns the greater of two optional numbers.
 fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// The axes of a camera: their errors in units of 2^−53.
-pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
+/// Measures the errors of a camera's axes in units of 2^−53.
+pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
     let basis = Basis::new(camera, &scene.image);
     let ours = [&basis.u, &basis.v, &basis.w].map(|v| v.each_ref().map(Real::to_f64));
-    let theirs = textbook::axes(camera).map(|v| v.to_array());
+    let theirs = formulas::axes(camera).map(|v| v.to_array());
     let errors = [theirs, ours].map(|axes| {
         let pairs = axes.iter().flatten().zip(oracle.axes.iter().flatten());
-        let errors = pairs.map(|(x, truth)| match x.is_finite() {
-            true => (oracle.number.exact(*x) - truth).to_f64().value().abs(),
-            false => f64::INFINITY,
+        let errors = pairs.map(|(x, truth)| {
+            if x.is_finite() {
+                (oracle.number.exact(*x) - truth).to_f64().value().abs()
+            } else {
+                f64::INFINITY
+            }
         });
         errors.fold(0.0, f64::max) / (f64::EPSILON / 2.0)
     });
@@ -68,7 +71,7 @@ pub(super) fn axes(camera: &Camera, tally: &mut Tally) {
     tally.errors(errors.map(Some));
 }
 
-/// A scene as the oracle, the textbook and we see it.
+/// A scene as seen by the oracle, the textbook and Pinhole.
 #[derive(Debug)]
 pub(super) struct Trial {
     scene: Scene,
@@ -77,15 +80,15 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Numbers are measured at one of so many inputs: a distance takes longer than a decision.
-const MEASURED: u64 = 16;
+/// Number of inputs of which one is measured: a distance takes longer than a decision.
+const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// One of so many boundaries is found by the oracle: to do so takes some six times as long as to
-/// ask beside it.
-const BY_THE_ORACLE: u64 = 8;
+/// Number of boundaries of which one is found by the oracle. Finding a boundary takes about six
+/// times as long as testing beside it.
+const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene; the oracle computes with so many bits.
+    /// Prepares a scene; the oracle computes with `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -95,8 +98,8 @@ impl Trial {
         }
     }
 
-    /// Asks all three what is seen at a sample point.
-    pub fn decide(&self, point: Point, tally: &mut Tally) {
+    /// Compares what all three see at a sample point.
+    pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
         let pixels = DVec2::from(pixels);
@@ -107,30 +110,31 @@ impl Trial {
         for (wrong, answer) in tally.wrong.iter_mut().zip([textbook, ours]) {
             *wrong += u64::from(answer != truth);
         }
-        if tally.inputs.is_multiple_of(MEASURED) {
+        if tally.inputs.is_multiple_of(INPUTS_PER_MEASUREMENT) {
             self.measure(pixels, tally);
         }
     }
 
-    fn truth(&self, [(x, dx), (y, dy)]: Point) -> Color {
+    fn truth(&self, [(x, dx), (y, dy)]: SamplePoint) -> Color {
         let r = self.oracle.direction(x, y, dvec2(dx, dy));
         let seen = self.oracle.seen(&r);
         self.color(seen.map(|seen| (seen.object, seen.odd)))
     }
 
-    fn ours(&self, [(x, dx), (y, dy)]: Point) -> Color {
+    fn ours(&self, [(x, dx), (y, dy)]: SamplePoint) -> Color {
         self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
     }
 
-    /// What an object shows, a board perhaps in its second colour, or else the background.
+    /// Returns the colour of an object, where a board may show its second colour, or the
+    /// background.
     fn color(&self, seen: Option<(usize, bool)>) -> Color {
         let background = self.scene.image.background;
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
     /// Measures the distance and the point that are seen through a point of the picture, in units
-    /// of the last place: of the distance, and of the greatest coordinate.
-    fn measure(&self, pixels: DVec2, tally: &mut Tally) {
+    /// in the last place: of the distance, and of the greatest coordinate.
+    fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
             return;
@@ -149,7 +153,7 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// How far a distance and a point are from the true ones.
+    /// Returns the error of a distance and a point, in units in the last place.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -158,7 +162,7 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// The error of a number in units in the last place of another.
+    /// Returns the error of a number in units in the last place of `of`.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;
@@ -168,18 +172,18 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Asks close to the boundaries that random rows and columns cross: at the neighbouring `f64`s
-    /// on both sides of each, and at distances from it that are spread evenly on a logarithmic
-    /// scale. Most of them are found by our own decisions, and some by the oracle's, in case we
-    /// should not see that there is one.
-    pub fn boundaries(&self, random: &mut Random, count: u64, tally: &mut Tally) {
+    /// Tests close to the boundaries that random rows and columns cross: at the neighbouring `f64`s
+    /// on both sides of each, and at distances from it that are uniform on a logarithmic scale.
+    /// Pinhole's own decisions find most of them, and the oracle's find some, in case Pinhole does
+    /// not see a boundary at all.
+    pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // A picture without a boundary is asked anywhere.
+        // A picture without boundaries is tested anywhere.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
             let axis = random.below(2) as usize;
-            let found = match random.below(BY_THE_ORACLE) {
+            let found = match random.below(BOUNDARIES_PER_ORACLE_SEARCH) {
                 0 => self.boundary(random, axis, &|point| self.truth(point)),
                 _ => self.boundary(random, axis, &|point| self.ours(point)),
             };
@@ -192,14 +196,14 @@ impl Trial {
         }
     }
 
-    /// A place where what is seen changes along a row (axis 0) or column (axis 1): a pixel, and the
-    /// last offset before.
+    /// Returns a place where what is seen changes along a row (axis 0) or column (axis 1): a pixel,
+    /// and the last offset before the change.
     fn boundary(
         &self,
-        random: &mut Random,
+        random: &mut CaseRng,
         axis: usize,
-        seen: &dyn Fn(Point) -> Color,
-    ) -> Option<Point> {
+        seen: &dyn Fn(SamplePoint) -> Color,
+    ) -> Option<SamplePoint> {
         let size = [self.scene.image.width, self.scene.image.height];
         let mut point = random.point_of(size);
         let at = |index: u32, offset: f64| {
@@ -219,32 +223,33 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // It is the pixel's edge.
+            // The change is at the pixel's edge.
             low = high;
         }
-        // Down to neighbours; near 0 these are closer than anything that matters.
+        // Bisects down to neighbouring numbers; near 0 these are closer than anything that matters.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {
                 break;
             }
-            match at(ends[0], middle) == first {
-                true => low = middle,
-                false => high = middle,
+            if at(ends[0], middle) == first {
+                low = middle
+            } else {
+                high = middle
             }
         }
         point[axis] = (ends[0], low);
         Some(point)
     }
 
-    /// Asks on both sides of a boundary.
+    /// Tests on both sides of a boundary.
     fn beside(
         &self,
-        random: &mut Random,
+        random: &mut CaseRng,
         axis: usize,
-        boundary: Point,
+        boundary: SamplePoint,
         count: u64,
-        tally: &mut Tally,
+        tally: &mut CaseTally,
     ) {
         let (pixel, at) = boundary[axis];
         let unit = at.abs().next_up() - at.abs();

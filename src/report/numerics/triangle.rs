@@ -3,14 +3,14 @@
 
 use glam::{DVec3, dvec3};
 
-use super::{
-    case::{Case, Input, Subject::Seen, input},
-    inputs::Random,
-    scenes::{SIZE, along, camera, spun, triangle},
+use super::case::{Case, CaseScene, Question::Seen, input};
+use super::inputs::CaseRng;
+use crate::{
+    reference::scenes::{SIZE, along, camera, spun, triangle},
+    scene::Lens,
 };
-use crate::scene::Lens;
 
-/// The cases.
+/// The cases of triangles.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },
@@ -23,10 +23,10 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// The sides of the assignment's triangle.
+/// Sides of the assignment's triangle.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
-fn tiny(random: &mut Random) -> Input {
+fn tiny(random: &mut CaseRng) -> CaseScene {
     let size = random.power(-9.0, -3.0);
     let normal = random.unit();
     let eye = (normal + random.unit() * 0.5) * 3.0;
@@ -36,7 +36,7 @@ fn tiny(random: &mut Random) -> Input {
     input(camera, &[shape]).mixed()
 }
 
-fn slivers(random: &mut Random) -> Input {
+fn slivers(random: &mut CaseRng) -> CaseScene {
     let height = random.power(-15.0, -3.0);
     let (centroid, normal) = (random.vector(2.0), random.unit());
     let aside = normal.cross(random.unit()).normalize();
@@ -48,12 +48,13 @@ fn slivers(random: &mut Random) -> Input {
     input(camera, &[shape])
 }
 
-/// Two triangles, the second one the first turned by 180° about the middle of one of its edges.
-/// With these sides the vertices lie at (∓9, −4) and (0, 8) from the centroid, so the edges are
-/// shared exactly where the plane is one of the world's.
+/// Sides of two triangles, of which the second is the first rotated by 180° about the middle of one
+/// of its edges. The vertices lie at (∓9, −4) and (0, 8) from the centroid, so that the edges
+/// coincide exactly if the plane is one of the world's.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// Centroids of the turned triangle for each edge, and points of that edge, as seen from the first centroid.
+/// For each edge, the centroid of the rotated triangle and points of the edge, relative to the
+/// first centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
@@ -61,7 +62,7 @@ const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([-9.0, 4.0], &[[-9.0, -4.0], [-6.0, 0.0], [-3.0, 4.0], [0.0, 8.0]]),
 ];
 
-fn shared_edges(random: &mut Random) -> Input {
+fn shared_edges(random: &mut CaseRng) -> CaseScene {
     let normal = random.pick(&[DVec3::X, DVec3::Y, DVec3::Z]) * random.sign();
     let size = libm::exp2(random.whole(-8, 8));
     let (right, top) = match normal.y {
@@ -81,8 +82,8 @@ fn shared_edges(random: &mut Random) -> Input {
     input(camera(eye, middle), &shapes)
 }
 
-/// Seen from a distance of 64 the corners of pixels are the points of the lattice.
-fn lattice_points(random: &mut Random) -> Input {
+/// From a distance of 64, the corners of pixels are the points of the lattice.
+fn lattice_points(random: &mut CaseRng) -> CaseScene {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);
     let place = [random.whole(-8, 8), random.whole(-8, 8)];
@@ -111,7 +112,7 @@ fn lattice_points(random: &mut Random) -> Input {
     })
 }
 
-fn needles(random: &mut Random) -> Input {
+fn needles(random: &mut CaseRng) -> CaseScene {
     let width = random.power(-12.0, -3.0);
     let normal = random.unit();
     let eye = (normal + random.unit() * 0.3) * 3.0;
@@ -125,7 +126,7 @@ fn needles(random: &mut Random) -> Input {
     input(camera, &[shape])
 }
 
-fn normals(random: &mut Random) -> Input {
+fn normals(random: &mut CaseRng) -> CaseScene {
     let tilt = random.pick(&[0.0, 1.0, 1.0]) * random.power(-300.0, -1.0);
     let nearly_vertical = dvec3(tilt * random.within(-1.0, 1.0), random.sign(), tilt);
     let exponent = random.pick(&[1.0, -1.0]) * random.within(150.0, 307.0);
@@ -139,7 +140,7 @@ fn normals(random: &mut Random) -> Input {
     input(camera(eye, centroid), &[shape])
 }
 
-fn displaced(random: &mut Random) -> Input {
+fn displaced(random: &mut CaseRng) -> CaseScene {
     let distance = random.power(6.0, 15.0);
     let centroid = random.unit() * distance;
     let size = (distance * 1e-14).max(1.0);
@@ -149,7 +150,7 @@ fn displaced(random: &mut Random) -> Input {
     input(camera(eye, centroid), &[shape])
 }
 
-fn around(random: &mut Random) -> Input {
+fn around(random: &mut CaseRng) -> CaseScene {
     let (centroid, normal) = (random.vector(2.0), random.unit());
     let aside = normal.cross(random.unit()).normalize();
     let eye = centroid + aside * random.within(0.0, 9.0) + normal * random.power(-6.0, 0.5);

@@ -1,8 +1,8 @@
-//! Error against time and against samples, as SVG.
+//! Charts of error against time and against samples, as SVG.
 //!
-//! Both axes are logarithmic. A line is labelled at its end, so that nobody has to look up a
-//! legend, and its marker and dash say in black and white what its colour says otherwise. Black is
-//! written as the current colour, so that a page may be dark.
+//! Both axes are logarithmic. A line is labelled at its end, so that no legend is needed, and its
+//! marker and dash identify it in black and white. Black is written as the current colour, so that
+//! the page may be dark.
 
 use std::ops::Range;
 
@@ -20,36 +20,36 @@ use plotters::{
 };
 
 use super::{
-    line_style::{Canvas, Drawn, LineStyle, Place},
+    line_style::{Canvas, CanvasPoint, Drawn, LineStyle},
     notation::{asked_error, seconds},
-    results::{Measurement, Point, Run},
+    results::{Measurement, Run, SeriesPoint},
     summary::printable,
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// The size in pixels: small, so that the letters are still legible on a telephone, whose screen is
-/// 400 of its pixels wide.
+/// Size of a chart in pixels: small, so that its letters are still legible on a phone, whose screen
+/// is 400 of these pixels wide.
 const SIZE: (u32, u32) = (560, 440);
 
-/// Room at the right for the labels, the longest of which is `multi_jittered`.
+/// Width to the right of the chart for labels, in pixels; the longest is `multi_jittered`.
 const LABELS: i32 = 162;
 
-/// Labels are at least so far apart.
+/// Minimum distance of labels, in pixels.
 const LABEL_HEIGHT: i32 = 21;
 
-/// What a chart shows errors against.
-struct Against {
+/// The quantity of the horizontal axis.
+struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
-    of: fn(&Point) -> f64,
+    of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Where the exact method is, whose error is off the scale.
+    /// Value of the exact method, whose error is off the scale.
     exact: Option<f64>,
 }
 
-/// The chart of error against CPU time. The exact method is a vertical line.
+/// Draws error against CPU time. The exact method is a vertical line.
 pub fn against_time(measured: &Measurement) -> String {
-    let time = Against {
+    let time = HorizontalAxis {
         title: "Error against CPU time",
         name: "CPU time of a render",
         of: |point| point.typical().cpu,
@@ -59,9 +59,9 @@ pub fn against_time(measured: &Measurement) -> String {
     svg(measured, &time)
 }
 
-/// The chart of error against samples per pixel.
+/// Draws error against samples per pixel.
 pub fn against_samples(measured: &Measurement) -> String {
-    let samples = Against {
+    let samples = HorizontalAxis {
         title: "Error against samples",
         name: "samples per pixel",
         of: |point| point.per_pixel as f64,
@@ -71,20 +71,20 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// The errors that are asked for, but for those that are far away from all that were measured.
+/// Returns the requested errors, except those that are far from all measured ones.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
     let is_near = |wanted: &f64| {
-        let mut found = found.iter();
-        found.any(|error| (error / 30.0..error * 30.0).contains(wanted))
+        let is_close = |error: &f64| (error / 30.0..error * 30.0).contains(wanted);
+        found.iter().any(is_close)
     };
     measured.errors.iter().copied().filter(is_near).collect()
 }
 
-fn svg(measured: &Measurement, against: &Against) -> String {
+fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
     let mut svg = String::new();
-    // Into a string: nothing can go wrong but the layout of text, and no text is laid out.
+    // Writing to a string fails only in the layout of text, which is not used.
     let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     let done = draw(canvas, measured, against);
     debug_assert!(done.is_ok(), "{done:?}");
@@ -100,13 +100,13 @@ fn svg(measured: &Measurement, against: &Against) -> String {
         .replacen(">\n", &head, 1)
 }
 
-fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
+fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Drawn {
     let wanted = shown_errors(measured);
-    // What has no logarithm has no place.
+    // A number without logarithm has no place.
     let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
     let lines = measured.series.iter().map(|series| {
-        let points = series.points.iter();
-        let points = points.map(|point| ((against.of)(point), point.typical().error));
+        let place = |point: &SeriesPoint| ((against.of)(point), point.typical().error);
+        let points = series.points.iter().map(place);
         let points: Vec<_> = points.filter(|&(x, y)| x > 0.0 && y > 0.0).collect();
         (series.method, points)
     });
@@ -158,7 +158,7 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
         .collect();
     let labels = ends.iter().zip(spread_out(&ends, &rows));
     for (((method, _), places), (end, height)) in lines.iter().zip(&places).zip(labels) {
-        let style = LineStyle::of(*method);
+        let style = LineStyle::new(*method);
         style.line(&canvas, places)?;
         let marker = (columns.end + 20, height);
         for &place in places.iter().chain([&marker]) {
@@ -172,22 +172,23 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &Against) -> Drawn {
     canvas.present()
 }
 
-/// The vertical line of the exact method, with an arrow to where its error lies; its name stands
-/// where the lines of the others are not, which come from the top left and go to the bottom right.
+/// Draws the vertical line of the exact method, with an arrow to where its error lies. Its label
+/// stands where the lines of the others are not, which run from the top left to the bottom right.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
     for line in [&[(x, rows.start), (x, end)][..], &head] {
         canvas.draw(&PathElement::new(line, BLACK.stroke_width(2)))?;
     }
-    let place = match x < (columns.start + columns.end) / 2 {
-        true => (x + 9, rows.end - 14),
-        false => (x - 54, rows.start + 12),
+    let place = if x < (columns.start + columns.end) / 2 {
+        (x + 9, rows.end - 14)
+    } else {
+        (x - 54, rows.start + 12)
     };
     write(canvas, "exact", place)
 }
 
-fn write(canvas: &Canvas, text: &str, at: Place) -> Drawn {
+fn write(canvas: &Canvas, text: &str, at: CanvasPoint) -> Drawn {
     let style = letters(18.0).pos(Pos::new(HPos::Left, VPos::Center));
     canvas.draw(&Text::new(text, at, style))
 }
@@ -196,19 +197,20 @@ fn letters(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// The ends of an axis that holds these values, with some room.
+/// Returns the range of an axis that contains the values, with some margin.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
-    match low <= high {
-        true => low / 1.5..high * 1.5,
+    if low <= high {
+        low / 1.5..high * 1.5
+    } else {
         // Nothing to show: any axis will do.
-        false => 0.1..1.0,
+        0.1..1.0
     }
 }
 
-/// A logarithmic axis with numbers at 1, 2 and 5 times powers of ten, or at the powers alone where
-/// those would be many, and lines at all digits.
+/// Returns a logarithmic axis with labels at 1, 2 and 5 times powers of ten, or only at the powers
+/// if there would be many, and lines at all digits.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;
@@ -226,18 +228,19 @@ fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
         .with_light_points(marks(&[1, 2, 3, 4, 5, 6, 7, 8, 9]))
 }
 
-/// Heights for labels near the ends of their lines, in the order of the ends, none upon another.
-fn spread_out(ends: &[Place], rows: &Range<i32>) -> Vec<i32> {
+/// Returns heights for labels near the ends of their lines, in the order of the ends, without
+/// overlap.
+fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
     let mut order: Vec<_> = (0..ends.len()).collect();
     order.sort_by_key(|&at| ends[at].1);
     let mut heights = vec![0; ends.len()];
-    // Down from the top, each as high as it may be, ...
+    // Down from the top, each as high as possible, ...
     let mut free = rows.start;
     for &at in &order {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // ... and up from the bottom, where they hang out.
+    // ... and up from the bottom, where labels exceed the chart.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -1,51 +1,51 @@
-//! What an error takes of each method, and which methods take the least time.
+//! Estimates of what each method needs for an error, and a ranking of the methods by time.
 
 use super::{
-    results::{Measurement, Point, Run, Series},
+    results::{Measurement, MethodSeries, Run, SeriesPoint},
     statistics::PowerLaw,
 };
 use crate::scene::Method;
 
-/// What an error takes of a method.
+/// What a method needs for an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Samples per pixel; none of the exact method.
+    /// Samples per pixel; `None` for the exact method.
     pub per_pixel: Option<f64>,
     /// CPU time in seconds.
     pub cpu: f64,
-    /// The least and the greatest CPU time that a single run says.
+    /// The least and the greatest CPU time by single runs, in seconds.
     pub cpu_runs: [f64; 2],
     /// Wall time in seconds.
     pub wall: f64,
-    /// Whether it lies beyond what was measured.
+    /// Whether the estimate lies beyond the measured range.
     pub is_extrapolated: bool,
 }
 
 impl Estimate {
-    /// Whether two times are so close that the runs do not tell which is less: one lies within the
+    /// Returns whether the runs do not determine which of two times is less: one lies within the
     /// spread of the other's runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that come to an error.
+/// The methods that reach an error.
 pub struct Ranking {
-    /// The one with the least CPU time, and those that are about as fast.
+    /// The method with the least CPU time, and those that are about as fast.
     pub fastest: Vec<(Method, Estimate)>,
     /// The others, by CPU time.
     pub others: Vec<(Method, Estimate)>,
 }
 
 impl Measurement {
-    /// What an error takes of a sampled method. None if more samples do not help, or if the
-    /// reference is not known well enough to tell such an error from none: by the root of the
-    /// mean of its bounds' squares, since errors are such means.
-    pub fn estimate(&self, series: &Series, error: f64) -> Option<Estimate> {
+    /// Estimates what a sampled method needs for an error. Returns `None` if more samples do not
+    /// help, or if the error is not above the reference's own: the root of the mean of its squared
+    /// bounds, since errors are such means.
+    pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// The same of the exact method, if that was measured.
+    /// Estimates what the exact method needs for an error; `None` if it was not measured.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -62,15 +62,14 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// The methods that come to an error. What is extrapolated comes after all that was measured,
-    /// however fast it seems.
+    /// Ranks the methods that reach an error. Extrapolated ones come after all measured ones,
+    /// however fast they seem.
     pub fn ranking(&self, error: f64) -> Ranking {
-        let sampled = self.series.iter();
-        let sampled = sampled.filter_map(|it| Some((it.method, self.estimate(it, error)?)));
-        let exact = self.exact_estimate(error);
-        let exact = exact.map(|estimate| (Method::Exact, estimate));
+        let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
+        let sampled = self.series.iter().filter_map(estimate);
+        let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // Where the system does not tell the CPU time, no method has the least.
+        // If the system does not report CPU time, no method has the least.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -86,22 +85,22 @@ impl Measurement {
     }
 }
 
-/// A number of samples per pixel and what it came to, in one run or in all.
-type Step = (f64, Run);
+/// A number of samples per pixel and its result, of one run or of all.
+type Measured = (f64, Run);
 
-impl Series {
-    /// Errors are taken to fall as a power of the samples: between two numbers of samples that were
-    /// measured by the line in logarithms through both, beyond the last with the slope of the
-    /// line through the last three, as with few samples errors may fall at another rate: `scatter`
-    /// leaves pixels empty then. Times are taken to grow evenly with the samples. Where the
-    /// least number is enough, it is that.
+impl MethodSeries {
+    /// Estimates what the method needs for an error. Errors are assumed to fall as a power of the
+    /// samples: between two measured numbers of samples by the line in logarithms through both,
+    /// beyond the last with the slope of the line through the last three. (With few samples, errors
+    /// may fall at another rate, because `scatter` then leaves pixels empty.) Times are assumed to
+    /// grow linearly with the samples. If the least number suffices, it is the estimate.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
-        let estimate = |run: &dyn Fn(&Point) -> Run| {
-            let steps = self.points.iter();
-            let steps = steps.map(|point| (point.per_pixel as f64, run(point)));
-            self.estimate_by(&steps.collect::<Vec<_>>(), error)
+        let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
+            let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
+            let steps: Vec<_> = self.points.iter().map(step).collect();
+            self.estimate_by(&steps, error)
         };
-        let of_all = estimate(&Point::typical)?;
+        let of_all = estimate(&SeriesPoint::typical)?;
         let runs = self.points.iter().map(|point| point.runs.len()).min()?;
         let of_each = (0..runs).filter_map(|run| estimate(&|point| point.runs[run]));
         Some(Estimate {
@@ -110,13 +109,13 @@ impl Series {
         })
     }
 
-    fn estimate_by(&self, steps: &[Step], error: f64) -> Option<Estimate> {
+    fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // From here on no error that was measured is greater.
+        // From here on, no measured error is greater.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Fewer may be enough, too, but nobody has tried.
+            // Fewer samples may suffice, but none were measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -136,13 +135,14 @@ impl Series {
         })
     }
 
-    /// The samples that an error takes between that of a few, which is greater, and that of many,
-    /// which is not.
-    fn between(&self, (few, of_few): &Step, (many, of_many): &Step, error: f64) -> f64 {
-        let share = match of_many.error == 0.0 {
-            // Without any error, these are enough for whatever is asked for.
-            true => 1.0,
-            false => libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error),
+    /// Returns the samples that an error needs, between a few with a greater error and many
+    /// without.
+    fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
+        let share = if of_many.error == 0.0 {
+            // Without any error, these samples suffice for every request.
+            1.0
+        } else {
+            libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error)
         };
         let per_pixel = (few * libm::pow(many / few, share)).ceil();
         match self.method {
@@ -152,23 +152,20 @@ impl Series {
     }
 }
 
-/// The next number of samples that is a square or the product of two neighbours. What lies between
-/// such numbers holds for them alone where the method makes a grid of as many cells, which of a
-/// prime number is a single row.
+/// Returns the next number of samples that is a square or the product of two neighbours.
+/// Interpolation between such numbers holds for them alone, because the method makes a grid of that
+/// many cells, which is a single row for a prime number.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
-    let grids = [
-        root * root,
-        root * (root + 1.0),
-        (root + 1.0) * (root + 1.0),
-    ];
-    let mut grids = grids.into_iter();
-    grids.find(|&grid| grid >= per_pixel).unwrap_or(per_pixel)
+    let next = root + 1.0;
+    let grids = [root * root, root * next, next * next];
+    let enough = grids.into_iter().find(|&grid| grid >= per_pixel);
+    enough.unwrap_or(per_pixel)
 }
 
-/// The time that so many samples take, no fewer than the first step's: by the line between the
-/// steps on either side, or between the first and the last.
-fn time_at(steps: &[Step], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
+/// Returns the time that a number of samples takes, no fewer than the first step's: by the line
+/// between the steps on either side, or between the first and the last.
+fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
     let [first, .., last] = times.as_slice() else {
@@ -183,7 +180,7 @@ fn time_at(steps: &[Step], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     }
 }
 
-/// The least and the greatest of some values.
+/// Returns the least and the greatest of some values.
 fn range(value: f64, others: impl Iterator<Item = f64>) -> [f64; 2] {
     others.fold([value; 2], |[low, high], other| {
         [low.min(other), high.max(other)]

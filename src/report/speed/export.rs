@@ -1,4 +1,4 @@
-//! The measurement for programs: CSV, a row for each method and number of samples, and JSON.
+//! The measurement for programs: CSV, with a row for each method and number of samples, and JSON.
 
 use std::io;
 
@@ -7,15 +7,14 @@ use serde_json::{Value, json};
 
 use super::{
     estimate::Estimate,
-    results::{Measurement, Run, Series},
+    results::{Measurement, MethodSeries, Run},
     summary::verdicts,
 };
 
-/// A row of the CSV file. Times are medians in seconds, CPU times unless they are called wall;
-/// errors are in linear light. The exact method has a row without samples, and a bound in place of
-/// an error.
+/// A row of the CSV file. Times are medians in seconds, CPU times except in `wall`; errors are in
+/// linear light. The exact method has a row without samples, and a bound in place of an error.
 #[derive(Default, Serialize)]
-struct Row {
+struct CsvRow {
     method: &'static str,
     per_pixel: Option<u64>,
     runs: usize,
@@ -27,13 +26,13 @@ struct Row {
     bound: Option<f64>,
 }
 
-/// A row for each method and number of samples, after a row of names.
+/// Writes a row for each method and number of samples, after a row of names.
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {
         let fit = series.fit();
         for point in &series.points {
-            writer.serialize(Row {
+            writer.serialize(CsvRow {
                 per_pixel: Some(point.per_pixel),
                 rmse: Some(point.typical().error),
                 slope: fit.map(|fit| fit.slope),
@@ -43,7 +42,7 @@ pub fn to_csv(measured: &Measurement) -> io::Result<String> {
         }
     }
     if let Some(exact) = &measured.exact {
-        writer.serialize(Row {
+        writer.serialize(CsvRow {
             bound: Some(measured.reference.bound()),
             ..row("exact", exact)
         })?;
@@ -52,18 +51,18 @@ pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     String::from_utf8(bytes).map_err(io::Error::other)
 }
 
-fn row(method: &'static str, runs: &[Run]) -> Row {
+fn row(method: &'static str, runs: &[Run]) -> CsvRow {
     let Run { cpu, wall, .. } = Run::typical(runs);
-    Row {
+    CsvRow {
         method,
         runs: runs.len(),
         time: cpu,
         wall,
-        ..Row::default()
+        ..CsvRow::default()
     }
 }
 
-/// What runs took and came to, together and each.
+/// Converts runs: their median and each of them.
 fn of_runs(runs: &[Run]) -> Value {
     let each = |number: fn(&Run) -> f64| runs.iter().map(number).collect::<Vec<_>>();
     let Run { cpu, wall, error } = Run::typical(runs);
@@ -75,7 +74,7 @@ fn of_runs(runs: &[Run]) -> Value {
     })
 }
 
-/// All that was measured. A number that is not finite is null.
+/// Converts the whole measurement. A number that is not finite is null.
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);
@@ -84,7 +83,7 @@ pub fn to_json(measured: &Measurement) -> Value {
         exact["bound"] = reference.bound().into();
         exact
     });
-    let methods = measured.series.iter();
+    let method = |series| of_series(measured, series);
     json!({
         "scene": measured.subject.name,
         "overrides": measured.subject.overrides,
@@ -102,12 +101,12 @@ pub fn to_json(measured: &Measurement) -> Value {
             "root_mean_square_bound": reference.root_mean_square_bound(),
         },
         "exact": exact,
-        "methods": methods.map(|series| of_series(measured, series)).collect::<Vec<_>>(),
+        "methods": measured.series.iter().map(method).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),
     })
 }
 
-fn of_series(measured: &Measurement, series: &Series) -> Value {
+fn of_series(measured: &Measurement, series: &MethodSeries) -> Value {
     let fit = series.fit();
     let needed = measured.errors.iter().map(|&error| {
         let estimate = measured.estimate(series, error);

@@ -1,5 +1,5 @@
-//! How a method is drawn: a colour, a marker and a dash, each of which tells it from the others
-//! nearby on its own.
+//! Line styles of the methods: a colour, a marker and a dash, each of which is enough to tell a
+//! method from its neighbours.
 
 use std::io;
 
@@ -13,36 +13,36 @@ use plotters::{
 
 use crate::scene::Method;
 
-/// What is drawn on.
+/// The canvas of a chart.
 pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// What drawing yields.
+/// Result of drawing.
 pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
-/// A place in pixels.
-pub type Place = (i32, i32);
+/// A point of the canvas, in pixels.
+pub type CanvasPoint = (i32, i32);
 
-/// How a method is drawn.
+/// The style of a method's line.
 #[derive(Clone, Copy)]
 pub struct LineStyle {
     pub color: RGBColor,
-    /// The length of dashes and gaps in pixels; a solid line if there is none.
+    /// Length of dashes and gaps in pixels; `None` for a solid line.
     dash: Option<(u32, u32)>,
-    /// The line around the marker, from its middle, and whether it is filled.
-    marker: (&'static [Place], bool),
+    /// Outline of the marker relative to its middle, and whether it is filled.
+    marker: (&'static [CanvasPoint], bool),
 }
 
-const SQUARE: &[Place] = &[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -5)];
-const UP: &[Place] = &[(-5, 4), (5, 4), (0, -5)];
-const DOWN: &[Place] = &[(-5, -4), (5, -4), (0, 5)];
-const DIAMOND: &[Place] = &[(-5, 0), (0, -5), (5, 0), (0, 5)];
-const CROSS: &[Place] = &[(-4, -4), (4, 4), (0, 0), (-4, 4), (4, -4)];
-const PLUS: &[Place] = &[(-5, 0), (5, 0), (0, 0), (0, -5), (0, 5)];
+const SQUARE: &[CanvasPoint] = &[(-4, -4), (4, -4), (4, 4), (-4, 4), (-4, -5)];
+const UP: &[CanvasPoint] = &[(-5, 4), (5, 4), (0, -5)];
+const DOWN: &[CanvasPoint] = &[(-5, -4), (5, -4), (0, 5)];
+const DIAMOND: &[CanvasPoint] = &[(-5, 0), (0, -5), (5, 0), (0, 5)];
+const CROSS: &[CanvasPoint] = &[(-4, -4), (4, 4), (0, 0), (-4, 4), (4, -4)];
+const PLUS: &[CanvasPoint] = &[(-5, 0), (5, 0), (0, 0), (0, -5), (0, 5)];
 #[rustfmt::skip]
-const DISC: &[Place] = &[(5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (-4, -3), (-3, -4), (0, -5), (3, -4), (4, -3), (5, 0)];
+const DISC: &[CanvasPoint] = &[(5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (-4, -3), (-3, -4), (0, -5), (3, -4), (4, -3), (5, 0)];
 
 impl LineStyle {
-    pub fn of(method: Method) -> Self {
+    pub fn new(method: Method) -> Self {
         let (color, marker, dash) = match method {
             Method::Regular => (0x77_77_77, (SQUARE, true), Some((2, 3))),
             Method::Random => (0xcc_33_11, (CROSS, false), None),
@@ -63,8 +63,8 @@ impl LineStyle {
         }
     }
 
-    /// Draws a line through these places.
-    pub fn line(self, canvas: &Canvas, places: &[Place]) -> Drawn {
+    /// Draws a line through the points.
+    pub fn line(self, canvas: &Canvas, places: &[CanvasPoint]) -> Drawn {
         let (places, style) = (places.to_vec(), self.color.stroke_width(2));
         match self.dash {
             None => canvas.draw(&PathElement::new(places, style)),
@@ -73,12 +73,13 @@ impl LineStyle {
     }
 
     /// Draws the marker.
-    pub fn marker(self, canvas: &Canvas, (x, y): Place) -> Drawn {
+    pub fn marker(self, canvas: &Canvas, (x, y): CanvasPoint) -> Drawn {
         let (line, is_filled) = self.marker;
         let line: Vec<_> = line.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
-        match is_filled {
-            true => canvas.draw(&Polygon::new(line, self.color.filled())),
-            false => canvas.draw(&PathElement::new(line, self.color.stroke_width(2))),
+        if is_filled {
+            canvas.draw(&Polygon::new(line, self.color.filled()))
+        } else {
+            canvas.draw(&PathElement::new(line, self.color.stroke_width(2)))
         }
     }
 }

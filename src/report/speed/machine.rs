@@ -1,21 +1,20 @@
-//! What the times were measured on.
+//! The machine on which times were measured.
 
 use std::{num::NonZero, thread};
 
 use crate::files::read_system_text;
 
-/// A machine, as far as it matters for times.
+/// Properties of a machine that affect times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// The processor's model, as the system names it; its architecture where the system does not
-    /// say.
+    /// The processor's model as the system names it, or else its architecture.
     pub processor: String,
-    /// How many processors this process may use.
+    /// Number of processors that this process may use.
     pub processors: usize,
 }
 
 impl Machine {
-    /// This one.
+    /// Returns this machine.
     pub fn here() -> Self {
         Self {
             processor: model().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
@@ -24,7 +23,7 @@ impl Machine {
     }
 }
 
-/// What Linux calls the processor; other systems tell only those who link with them.
+/// Returns Linux's name of the processor; other systems only provide it through their libraries.
 fn model() -> Option<String> {
     let table = read_system_text("/proc/cpuinfo")?;
     let line = table.lines().find(|line| line.starts_with("model name"))?;

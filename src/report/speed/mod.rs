@@ -1,9 +1,10 @@
 //! Speed against error, method by method.
 //!
-//! In: a scene and a [`Request`]: the methods, how many samples and runs. [`measure`] times renders
-//! and compares them with the exact picture. Out: a [`Measurement`], plain data. [`text()`] makes a
-//! table of it for a terminal, [`to_csv`] and [`to_json`] make files for programs, [`against_time`]
-//! and [`against_samples`] charts, and [`page()`] makes HTML with all of that and pictures.
+//! In: a scene and a [`Request`]: the methods, the numbers of samples and of runs. [`measure`]
+//! times renders and compares them with the exact picture. Out: a [`Measurement`], plain data.
+//! [`text()`] formats it as a table for a terminal, [`to_csv`] and [`to_json`] as files for
+//! programs, [`against_time`] and [`against_samples`] as charts, and [`page()`] as HTML with all of
+//! these and pictures.
 
 mod chart;
 mod estimate;
@@ -24,7 +25,7 @@ pub use self::{
     export::{to_csv, to_json},
     machine::Machine,
     page::page,
-    results::{Measurement, Point, Request, Run, Series, Shown, Subject},
+    results::{MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run, SeriesPoint},
     session::measure,
     summary::verdict,
     text::text,

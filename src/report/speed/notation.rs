@@ -1,31 +1,32 @@
-//! How errors, times, numbers of samples and slopes are written.
+//! Formats of errors, times, numbers of samples and slopes.
 
 use super::{estimate::Estimate, statistics::PowerLaw};
 use crate::numbers;
 
-/// What stands for a number that is not known.
+/// Stands for an unknown number.
 pub const UNKNOWN: &str = "–";
 
-/// An error that somebody asks for, in full: as a fraction of light where that is shorter, such as
-/// 1/256.
+/// Formats a requested error in full, or as a fraction of light if that is shorter, such as 1/256.
 pub fn asked_error(error: f64) -> String {
-    let decimal = match error < 1e-4 {
-        true => format!("{error:e}"),
-        false => format!("{error}"),
+    let decimal = if error < 1e-4 {
+        format!("{error:e}")
+    } else {
+        format!("{error}")
     };
     let inverse = (1.0 / error).round();
-    match 1.0 / inverse == error && inverse < 1e6 && decimal.len() > 6 {
-        true => format!("1/{inverse}"),
-        false => decimal,
+    if 1.0 / inverse == error && inverse < 1e6 && decimal.len() > 6 {
+        format!("1/{inverse}")
+    } else {
+        decimal
     }
 }
 
-/// An error that was measured, with two digits.
+/// Formats a measured error with two digits.
 pub fn error(error: f64) -> String {
     significant(error, 2)
 }
 
-/// A time in seconds or milliseconds, with so many digits.
+/// Formats a time in seconds or milliseconds, with `digits` significant digits.
 pub fn seconds(seconds: f64, digits: usize) -> String {
     match seconds {
         _ if seconds.is_nan() => UNKNOWN.to_owned(),
@@ -34,15 +35,16 @@ pub fn seconds(seconds: f64, digits: usize) -> String {
     }
 }
 
-/// How long an error takes: of what is extrapolated no more than two digits are worth reading.
+/// Formats the time of an estimate; an extrapolated one has no more than two meaningful digits.
 pub fn time(estimate: &Estimate, time: f64) -> String {
-    match estimate.is_extrapolated {
-        true => format!("~{}", seconds(time, 2)),
-        false => seconds(time, 3),
+    if estimate.is_extrapolated {
+        format!("~{}", seconds(time, 2))
+    } else {
+        seconds(time, 3)
     }
 }
 
-/// The samples per pixel that an error takes; nothing of the exact method.
+/// Formats the samples per pixel of an estimate, or nothing for the exact method.
 pub fn samples(estimate: &Estimate) -> String {
     match estimate.per_pixel {
         None => String::new(),
@@ -51,7 +53,7 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// A slope with its standard error.
+/// Formats a slope with its standard error.
 pub fn slope(fit: Option<PowerLaw>) -> String {
     let signed = |number: f64| format!("{number:.3}").replace('-', "−");
     match fit {
@@ -63,7 +65,7 @@ pub fn slope(fit: Option<PowerLaw>) -> String {
     }
 }
 
-/// A number of things.
+/// Formats a count with its noun.
 pub fn plural(count: usize, what: &str) -> String {
     match count {
         1 => format!("1 {what}"),
@@ -71,8 +73,8 @@ pub fn plural(count: usize, what: &str) -> String {
     }
 }
 
-/// So many significant digits, zeros at the end included; what is very large or small has an
-/// exponent.
+/// Formats a number with `digits` significant digits, including trailing zeros; with an exponent if
+/// it is very large or small.
 fn significant(number: f64, digits: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();

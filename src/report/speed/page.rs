@@ -1,8 +1,8 @@
-//! The measurements as one page of HTML: for each scene which method to use, the charts, the table
-//! and the pictures.
+//! The measurements as one page of HTML: for each scene the verdict, the charts, the table and the
+//! pictures.
 //!
-//! The page stands alone: its charts are inline SVG, its pictures `data:` URIs, and it runs
-//! nothing. It is well-formed XML as well.
+//! The page is self-contained: its charts are inline SVG, its pictures `data:` URIs, and it runs no
+//! script. It is also well-formed XML.
 
 use std::{fmt::Write, io};
 
@@ -11,7 +11,7 @@ use upon::{Engine, Value, fmt, value};
 use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
-    results::{Measurement, Run, Shown},
+    results::{Measurement, MethodPicture, Run},
     summary::{heading, notes, printable, table, verdicts},
 };
 use crate::{
@@ -19,16 +19,16 @@ use crate::{
     film::{self, Film},
 };
 
-/// The picture as a whole is at most so wide and high: a page is not much wider, and its file stays
-/// small.
+/// Maximum width and height of the whole picture, in pixels. A page is not much wider, and the file
+/// stays small.
 const WHOLE: [u32; 2] = [640, 480];
 
-/// The page, with a section for each scene.
+/// Returns the page, with a section for each scene.
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     let sections = measurements.iter().map(section);
     let sections = sections.collect::<io::Result<Vec<_>>>()?;
     let mut engine = Engine::new();
-    // What a text says is never HTML, unless the template says that it is.
+    // Text is never HTML, unless the template says so.
     engine.set_default_formatter(&write_escaped);
     engine.add_formatter("html", fmt::default);
     let template = engine.compile(include_str!("page.html"));
@@ -49,15 +49,15 @@ fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
     }
 }
 
-/// What the template fills in for a scene.
+/// Returns the template's values for a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
-    let overrides = measured.subject.overrides.iter();
-    let overrides = overrides.map(|set| printable(set));
+    let overrides = measured.subject.overrides.iter().map(|set| printable(set));
     let fits = || measured.series.iter().filter_map(|series| series.fit());
-    let charts = match measured.series.is_empty() {
-        true => Vec::new(),
-        false => vec![against_time(measured), against_samples(measured)],
+    let charts = if measured.series.is_empty() {
+        Vec::new()
+    } else {
+        vec![against_time(measured), against_samples(measured)]
     };
     let (part, pictures) = pictures(measured)?;
     let only_method = match shown_methods(measured)[..] {
@@ -84,18 +84,18 @@ fn section(measured: &Measurement) -> io::Result<Value> {
     })
 }
 
-/// The methods of which a picture is shown, by their names.
-fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &Shown)> {
+/// Returns the methods with a picture, by their names.
+fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> {
     let series = measured.series.iter();
     let shown = series.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
     shown.collect()
 }
 
-/// Which part of the picture is shown of every method, and that part as the exact method and the
-/// others make it; nothing without the others.
+/// Returns a description of the part that is shown of every method, and its pictures by the exact
+/// method and the others; nothing if there are no others.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = shown_methods(measured);
-    let Some(&(first, &Shown { part, .. })) = shown.first() else {
+    let Some(&(first, &MethodPicture { part, .. })) = shown.first() else {
         return Ok(Default::default());
     };
     let exact = measured.reference.film.part(part);
@@ -124,9 +124,10 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
 fn whole(measured: &Measurement) -> io::Result<Value> {
     let film = film::reduced(&measured.reference.film, WHOLE).map_err(io::Error::other)?;
     let (width, height) = (film.width(), film.height());
-    let about = match width == measured.whole().width {
-        true => "the whole picture".to_owned(),
-        false => format!("the whole picture, reduced to {width} × {height} pixels"),
+    let about = if width == measured.whole().width {
+        "the whole picture".to_owned()
+    } else {
+        format!("the whole picture, reduced to {width} × {height} pixels")
     };
     picture(&film, "the exact picture as a whole", about)
 }

@@ -1,4 +1,4 @@
-//! What is asked for and what was measured: plain data, and the numbers that follow from it.
+//! The request and the results of a measurement: plain data, and numbers derived from it.
 
 use std::time::Duration;
 
@@ -8,106 +8,105 @@ use super::{
 };
 use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
-/// The scene that is measured.
+/// The measured scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Subject {
-    /// What the user calls it.
+pub struct MeasuredScene {
+    /// The user's name for it.
     pub name: String,
-    /// What the command line changes in it.
+    /// The values that the command line overrides.
     pub overrides: Vec<String>,
 }
 
-/// What the user asks for.
+/// The user's request.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The methods, `exact` among them or not.
+    /// The methods, possibly including `exact`.
     pub methods: Vec<Method>,
-    /// Samples per pixel; powers of 4 as far as the time goes if there are none.
+    /// Samples per pixel; if empty, powers of 4 as far as the time permits.
     pub samples: Vec<u64>,
-    /// Runs of each method and number of samples; as many as the time allows if this is `None`.
+    /// Runs per method and number of samples; `None` for as many as the time permits.
     pub runs: Option<u64>,
-    /// The errors for which samples and time are told, in linear light.
+    /// The errors for which samples and time are estimated, in linear light.
     pub errors: Vec<f64>,
-    /// How long it may take, as far as there is a choice.
+    /// The time available, as far as there is a choice.
     pub budget: Duration,
 }
 
-/// What came out.
+/// Results of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
-    /// What was measured.
-    pub subject: Subject,
-    /// What it was measured on.
+    /// The measured scene.
+    pub subject: MeasuredScene,
+    /// The machine.
     pub machine: Machine,
-    /// How many threads rendered.
+    /// Number of rendering threads.
     pub threads: usize,
-    /// The scene's seed, of which the seeds of the runs are made.
+    /// The scene's seed, from which the runs' seeds are derived.
     pub seed: u64,
     /// Samples per pixel, ascending.
     pub rungs: Vec<u64>,
-    /// The errors that are asked for.
+    /// The requested errors.
     pub errors: Vec<f64>,
     /// The exact picture.
     pub reference: Exact,
-    /// The renders by the exact method, if that was measured.
+    /// The renders by the exact method, if they were requested.
     pub exact: Option<Vec<Run>>,
-    /// The sampled methods that were measured, in the order of the language's table.
-    pub series: Vec<Series>,
-    /// Whether the user ended it.
+    /// The sampled methods, in the order of the language's table.
+    pub series: Vec<MethodSeries>,
+    /// Whether the user interrupted it.
     pub interrupted: bool,
 }
 
-/// What was measured of a sampled method.
+/// Results of a sampled method.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct MethodSeries {
     /// The method.
     pub method: Method,
     /// By samples per pixel, ascending.
-    pub points: Vec<Point>,
-    /// What it renders in the same time as the others.
-    pub picture: Option<Shown>,
+    pub points: Vec<SeriesPoint>,
+    /// Its picture with the CPU time that all methods have.
+    pub picture: Option<MethodPicture>,
 }
 
-/// What was measured of a method with a number of samples.
+/// Results of a method with one number of samples.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
-    /// Samples per pixel, of `scatter` on average.
+pub struct SeriesPoint {
+    /// Samples per pixel, for `scatter` on average.
     pub per_pixel: u64,
     /// Its renders.
     pub runs: Vec<Run>,
 }
 
-/// A render that was timed.
+/// A timed render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
-    /// CPU time of the whole process in seconds, all threads together. NaN where the system does
-    /// not tell.
+    /// CPU time of the whole process in seconds, all threads added up. NaN if the system does not
+    /// report it.
     pub cpu: f64,
-    /// From the beginning to the end by the clock, in seconds.
+    /// Elapsed time in seconds.
     pub wall: f64,
-    /// The root of the mean squared difference to the exact picture, in linear light. NaN of the
-    /// exact method, whose error has a bound instead.
+    /// Root mean square difference from the exact picture, in linear light. NaN for the exact
+    /// method, whose error has a bound instead.
     pub error: f64,
 }
 
-/// A picture to look at.
+/// A method's picture for comparison.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
-    /// Its samples per pixel.
+pub struct MethodPicture {
+    /// Samples per pixel.
     pub per_pixel: u64,
-    /// The CPU time that it took, in seconds.
+    /// CPU time of the render, in seconds.
     pub cpu: f64,
-    /// The error of the whole picture.
+    /// Error of the whole picture.
     pub rmse: f64,
-    /// The part that is shown, the same of every method.
+    /// The part that is shown, the same for every method.
     pub part: Area,
-    /// What is seen there.
+    /// Picture of that part.
     pub film: Film,
 }
 
 impl Run {
-    /// Some renders as one: with the median times, and the error of all together, the root of the
-    /// mean of their squares.
+    /// Combines renders: the median times, and the root mean square of their errors.
     pub fn typical(runs: &[Self]) -> Self {
         let all = |pick: fn(&Self) -> f64| runs.iter().map(pick).collect::<Vec<_>>();
         Self {
@@ -118,28 +117,25 @@ impl Run {
     }
 }
 
-impl Point {
-    /// Its renders as one.
+impl SeriesPoint {
+    /// Returns its renders combined.
     pub fn typical(&self) -> Run {
         Run::typical(&self.runs)
     }
 }
 
-impl Series {
-    /// How the error falls with the samples, if it is not 0.
+impl MethodSeries {
+    /// Fits the error as a power of the samples; `None` if the error is 0.
     pub fn fit(&self) -> Option<PowerLaw> {
-        let points = self.points.iter();
-        let points: Vec<_> = points
-            .map(|point| (point.per_pixel as f64, point.typical().error))
-            .collect();
+        let place = |point: &SeriesPoint| (point.per_pixel as f64, point.typical().error);
+        let points: Vec<_> = self.points.iter().map(place).collect();
         PowerLaw::fit(&points)
     }
 
-    /// So many samples per pixel take about this CPU time, between the numbers of samples that were
-    /// measured.
+    /// Interpolates the samples per pixel that take this CPU time, within the measured range.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
-        let slower = |pair: &&[Point]| pair[1].typical().cpu > cpu;
+        let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;
         let Some([a, b]) = self.points.windows(2).find(slower) else {
             return Some(last.per_pixel);
         };
@@ -150,12 +146,12 @@ impl Series {
 }
 
 impl Measurement {
-    /// The picture's area.
+    /// Returns the picture's area.
     pub fn whole(&self) -> Area {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// How many runs were begun.
+    /// Returns the number of runs that were started.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.runs.len()).max();

@@ -1,12 +1,12 @@
-//! Renders are timed and compared with the exact picture.
+//! Times renders and compares them with the exact picture.
 //!
 //! The exact picture comes first: it is the reference, and it warms the machine up, so that its
-//! time does not count. A round then renders by every method with every number of samples once; the
-//! first one with ever more of them, as long as there is time for a few such rounds, each further
-//! one in an order that is shuffled anew by a fixed rule, so that what else the machine does falls
-//! on all of them alike. What is timed is the way from the scene in memory to the film in memory:
-//! preparing the objects and the samples, starting the threads, rendering. Neither reading the
-//! scene nor comparing nor encoding is.
+//! time does not count. A round then renders with every method and every number of samples once.
+//! The first round uses more and more samples, as long as there is time for a few such rounds. Each
+//! further round is in an order that a fixed rule shuffles, so that other load on the machine
+//! affects all of them alike. The timed part is the way from the scene in memory to the film in
+//! memory: preparing the objects and the samples, starting the threads, and rendering, but not
+//! reading the scene, comparing or encoding.
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
-    results::{Measurement, Point, Request, Run, Series, Shown, Subject},
+    results::{MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run, SeriesPoint},
 };
 use crate::{
     area::Area,
@@ -27,23 +27,24 @@ use crate::{
     tracer::World,
 };
 
-/// The samples are so many powers of 4 at least, as a slope through fewer points has no standard
-/// error, and so many at most.
+/// Minimum and maximum number of powers of 4 of samples. A slope through fewer points has no
+/// standard error.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// So many runs are wanted, as the median of fewer is one that something else may have delayed, and
-/// no more than so many are made.
+/// Number of runs that is aimed at, and its maximum. Among fewer runs, the median may be one that
+/// something else delayed.
 const RUNS: (u64, u64) = (3, 9);
 
-/// The pictures are shown that the methods make in the CPU time in which the slowest one takes so
-/// many samples per pixel: enough for the methods to differ, few enough for the eye to see it.
+/// Samples per pixel of the slowest method whose CPU time all pictures get: enough for the methods
+/// to differ, few enough for the eye to see it.
 const SHOWN: u64 = 16;
 
-/// Measures what is asked for. When it is cancelled, what was measured until then comes out, marked
-/// as interrupted; before the exact picture there is nothing. `progress` is told after each render
-/// what share of the whole is done; that of `control` is not.
+/// Measures what the request asks for. If it is cancelled, the measurement so far is returned,
+/// marked as interrupted; before the exact picture is done, there is none. After each render,
+/// `progress` is called with the share of the whole that is done; the progress callback of
+/// `control` is not called.
 pub fn measure(
-    subject: &Subject,
+    subject: &MeasuredScene,
     scene: &Scene,
     request: &Request,
     control: &Control,
@@ -60,7 +61,7 @@ pub fn measure(
     };
     let methods = Method::SAMPLED.into_iter();
     let series = methods.filter(|method| request.methods.contains(method));
-    let series = series.map(|method| Series {
+    let series = series.map(|method| MethodSeries {
         method,
         points: Vec::new(),
         picture: None,
@@ -80,7 +81,7 @@ pub fn measure(
         reference,
         interrupted: false,
     };
-    let mut session = Session {
+    let mut session = Benchmark {
         scene,
         request,
         samples,
@@ -99,11 +100,11 @@ pub fn measure(
     Ok(measured)
 }
 
-/// A measurement that is going on.
-struct Session<'a> {
+/// A measurement in progress.
+struct Benchmark<'a> {
     scene: &'a Scene,
     request: &'a Request,
-    /// The samples that are asked for, ascending, each once.
+    /// The requested samples, ascending, without duplicates.
     samples: Vec<u64>,
     control: &'a Control<'a>,
     progress: &'a dyn Fn(f64),
@@ -111,11 +112,11 @@ struct Session<'a> {
     measured: Measurement,
 }
 
-/// What a round renders: the place of a series and that of a point in it, or the exact picture if
-/// there is none.
+/// A render of a round: the index of a method's series and of a point in it, or `None` for the
+/// exact picture.
 type Task = Option<(usize, usize)>;
 
-impl Session<'_> {
+impl Benchmark<'_> {
     fn run(&mut self) -> Result<(), RenderError> {
         self.first_round()?;
         let first = self.started.elapsed();
@@ -128,7 +129,7 @@ impl Session<'_> {
             if self.request.runs.is_none() && !has_time {
                 break;
             }
-            // An order that depends on the number of the round alone.
+            // The order depends only on the number of the round.
             tasks.shuffle(&mut Key::new(round, 0).rng());
             for &task in &tasks {
                 self.render(task, round)?;
@@ -137,16 +138,17 @@ impl Session<'_> {
         self.pictures()
     }
 
-    /// Every method with the samples that are asked for, or with ever more while there is time.
+    /// Renders every method with the requested samples, or with more and more while there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
         if self.measured.series.is_empty() {
             return Ok(());
         }
         let is_open = self.samples.is_empty();
-        let asked = match is_open {
-            true => (0..RUNGS.1).map(|power| 1 << (2 * power)).collect(),
-            false => self.samples.clone(),
+        let asked = if is_open {
+            (0..RUNGS.1).map(|power| 1 << (2 * power)).collect()
+        } else {
+            self.samples.clone()
         };
         let mut before = Duration::ZERO;
         for (point, per_pixel) in asked.into_iter().enumerate() {
@@ -156,8 +158,8 @@ impl Session<'_> {
                 self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
-            // A time is the sum of one that does not depend on the samples, and one that is four
-            // times as long for four times as many.
+            // A time is the sum of a constant and a part that is four times as long for four times
+            // as many samples.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -167,11 +169,11 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Whether four times as many samples are to be taken, if that takes so long.
+    /// Returns whether to take four times as many samples, if that takes `next`.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
-        let errors = self.measured.series.iter();
-        let mut errors = errors.filter_map(|series| Some(series.points.last()?.typical().error));
+        let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
+        let mut errors = self.measured.series.iter().filter_map(error);
         let round = (self.started.elapsed() + next).as_secs_f64();
         let all = round * self.request.runs.unwrap_or(RUNS.0) as f64;
         let has_time = all <= self.request.budget.as_secs_f64();
@@ -182,15 +184,15 @@ impl Session<'_> {
         let measured = &mut self.measured;
         if let Some((series, point)) = task {
             let per_pixel = measured.rungs[point];
-            // Each run has a seed of its own, as has each number of samples in it: neither are the
-            // runs alike, nor do the points of a line err together.
+            // Each run and each number of samples in it has a seed of its own, so that runs differ
+            // and errors of points are independent.
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
             let (made, run) = timed(|| rendered(self.scene, series.method, samples, self.control))?;
             if series.points.len() == point {
                 let runs = Vec::new();
-                series.points.push(Point { per_pixel, runs });
+                series.points.push(SeriesPoint { per_pixel, runs });
             }
             let error = film::rmse(made.film(), &measured.reference.film);
             series.points[point].runs.push(Run { error, ..run });
@@ -200,11 +202,11 @@ impl Session<'_> {
         } else {
             return Ok(());
         }
-        self.tell();
+        self.report_progress();
         Ok(())
     }
 
-    /// Renders by each method what it makes of the time of the slowest one.
+    /// Renders a picture by each method in the CPU time of the slowest one.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -212,9 +214,8 @@ impl Session<'_> {
         };
         let enough = measured.rungs.iter().position(|&rung| rung >= SHOWN);
         let rung = enough.unwrap_or(last);
-        let series = measured.series.iter();
-        let times = series.map(|it| it.points[rung].typical().cpu);
-        let cpu = times.fold(0.0, f64::max);
+        let time = |it: &MethodSeries| it.points[rung].typical().cpu;
+        let cpu = measured.series.iter().map(time).fold(0.0, f64::max);
         let mut part = None;
         for series in &mut measured.series {
             let Some(per_pixel) = series.samples_in(cpu) else {
@@ -227,7 +228,7 @@ impl Session<'_> {
                 Some(part) => part,
                 None => *part.insert(worst_part(film, reference)?),
             };
-            series.picture = Some(Shown {
+            series.picture = Some(MethodPicture {
                 per_pixel,
                 cpu: run.cpu,
                 rmse: film::rmse(film, reference),
@@ -238,8 +239,9 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Tells how much is done: of the samples if their number is known, or else of the time.
-    fn tell(&self) {
+    /// Reports the share of the samples that are done if their number is known, or else of the
+    /// time.
+    fn report_progress(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
             Some(runs) if !self.samples.is_empty() => {
@@ -255,8 +257,7 @@ impl Session<'_> {
     }
 }
 
-/// Renders by a method with so many samples per pixel and a seed, of which the exact method takes
-/// none.
+/// Renders with a method, a number of samples per pixel and a seed; the exact method ignores both.
 fn rendered(
     scene: &Scene,
     method: Method,
@@ -273,11 +274,11 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// The largest part that is shown: several stand beside each other on a page, and a sample's noise
-/// is to be seen.
+/// Maximum size of the part that is shown, in pixels. Several stand side by side on a page, and the
+/// noise of a sample should be visible.
 const PART: (u32, u32) = (240, 135);
 
-/// The part of a picture where it is most wrong, in steps of half its size.
+/// Returns the part of a picture with the greatest error, in steps of half its size.
 fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
     let places = |length: u32, size: u32| {
@@ -297,8 +298,8 @@ fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     Ok(worst)
 }
 
-/// Does work, and tells its times, and no error. Nothing else runs in the process meanwhile, but
-/// for a progress bar.
+/// Times work, and leaves the error open. Nothing else runs in the process meanwhile, except a
+/// progress bar.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

@@ -1,7 +1,7 @@
-//! The median, the root mean square, and the straight line of least squares.
+//! The median, the root mean square, and the line of least squares.
 
-/// The median of values in any order: of an even number of them, the mean of the middle two. NaN of
-/// no values.
+/// Returns the median of values in any order; for an even number of them, the mean of the middle
+/// two. NaN if there are none.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -12,7 +12,7 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
-/// The root of the mean of the squares; NaN of no values.
+/// Returns the root of the mean of the squares; NaN if there are no values.
 pub fn root_mean_square(values: &[f64]) -> f64 {
     let squares: f64 = values.iter().map(|value| value * value).sum();
     (squares / values.len() as f64).sqrt()
@@ -27,13 +27,14 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 pub struct PowerLaw {
     /// The exponent b.
     pub slope: f64,
-    /// Its standard error; none of fewer than four points, as one residual more than the line has
-    /// parameters says next to nothing.
+    /// The standard error of b; `None` for fewer than four points, since one residual more than the
+    /// line has parameters means next to nothing.
     pub slope_error: Option<f64>,
 }
 
 impl PowerLaw {
-    /// None if fewer than two points have different x, or a number has no logarithm.
+    /// Fits points (x, y). Returns `None` if fewer than two points have different x, or a number
+    /// has no logarithm.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let logs: Vec<_> = points
             .iter()

@@ -1,4 +1,4 @@
-//! What a measurement says in words and in one table, for a terminal and for a page alike.
+//! The measurement as sentences and as one table, for a terminal and for a page.
 
 use super::{
     estimate::{Estimate, Ranking},
@@ -7,15 +7,15 @@ use super::{
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
-/// A line for each method.
-pub struct Table {
-    /// What the columns hold; a line feed stands where a narrow column may break.
+/// A table with a row for each method.
+pub struct SummaryTable {
+    /// Column headings; a line feed marks where a narrow column may break.
     pub heads: Vec<String>,
     /// A method's name and its cells.
     pub rows: Vec<Vec<String>>,
 }
 
-/// What was measured, how often and on what.
+/// Describes what was measured, how often and on what machine.
 pub fn heading(measured: &Measurement) -> String {
     let whole = measured.whole();
     let machine = &measured.machine;
@@ -30,13 +30,13 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Which method to use for each error, and why.
+/// Recommends a method for each error.
 pub fn verdicts(measured: &Measurement) -> Vec<String> {
-    let errors = measured.errors.iter();
-    errors.map(|&error| verdict(measured, error)).collect()
+    let verdict = |&error: &f64| verdict(measured, error);
+    measured.errors.iter().map(verdict).collect()
 }
 
-/// Which method to use for an error, and why, as surely as it is known.
+/// Recommends a method for an error, gives the reason, and says how certain it is.
 pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(wanted);
     let wanted = asked_error(wanted);
@@ -68,14 +68,12 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
             )
         }
         all => {
-            let range = match least == most {
-                true => least,
-                false => format!("{least} to {most}"),
-            };
-            let exact = match all.iter().any(|it| is_exact(&it)) {
-                true => ", and exact makes none",
-                false => "",
-            };
+            let mut range = least;
+            if range != most {
+                range += &format!(" to {most}");
+            }
+            let exact = all.iter().find(is_exact);
+            let exact = exact.map_or("", |_| ", and exact makes none");
             format!("they are about as fast, with {range} of CPU time{exact}")
         }
     };
@@ -85,19 +83,17 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
         .chain(others.iter().find(is_exact))
         .map(cost)
         .collect();
-    let compared = match compared.is_empty() {
-        true => String::new(),
-        false => format!(" For comparison, {}.", compared.join("; ")),
-    };
-    format!("{basis} {names} for an error of {wanted}: {why}.{compared}")
+    let mut verdict = format!("{basis} {names} for an error of {wanted}: {why}.");
+    if !compared.is_empty() {
+        verdict += &format!(" For comparison, {}.", compared.join("; "));
+    }
+    verdict
 }
 
-/// What a method takes.
+/// Describes the cost of a method.
 fn cost((method, estimate): &(Method, Estimate)) -> String {
-    let takes = match estimate.is_extrapolated {
-        true => "would take",
-        false => "takes",
-    };
+    let is_guess = estimate.is_extrapolated;
+    let takes = if is_guess { "would take" } else { "takes" };
     let with = match estimate.per_pixel {
         None => "without error".to_owned(),
         Some(_) => format!("with {}", per_pixel(estimate)),
@@ -107,16 +103,14 @@ fn cost((method, estimate): &(Method, Estimate)) -> String {
 }
 
 fn per_pixel(estimate: &Estimate) -> String {
-    let samples = samples(estimate);
-    match estimate.per_pixel == Some(1.0) {
-        true => format!("{samples} sample per pixel"),
-        false => format!("{samples} samples per pixel"),
-    }
+    let is_one = estimate.per_pixel == Some(1.0);
+    let noun = if is_one { "sample" } else { "samples" };
+    format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// For each method its slope, and for each of some errors the samples, the CPU time and the wall
-/// time that it takes.
-pub fn table(measured: &Measurement, errors: &[f64]) -> Table {
+/// Returns for each method its slope, and for each error the samples, the CPU time and the wall
+/// time that it needs.
+pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
     for wanted in errors.iter().copied().map(asked_error) {
         let columns = ["samples", "CPU time", "wall time"];
@@ -142,10 +136,10 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> Table {
         let estimates = errors.iter().map(|&error| measured.exact_estimate(error));
         rows.push(row(Method::Exact, String::new(), estimates.collect()));
     }
-    Table { heads, rows }
+    SummaryTable { heads, rows }
 }
 
-/// How to read the table.
+/// Explains the table.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let bound = numbers::at_most(measured.reference.bound());
     let mut notes = vec![format!(
@@ -157,8 +151,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Text from outside as it may stand anywhere: with controls made visible, and without the two
-/// characters that XML cannot hold even so.
+/// Makes text from outside safe to print anywhere: controls are made visible, and the two
+/// characters that XML cannot contain even so are replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -7,11 +7,11 @@ use super::{
     summary::{self, heading, notes, printable, verdict},
 };
 
-/// Lines are no longer than this.
+/// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
 
-/// What was measured, and for each error a table and which method to use; in the end how to read
-/// that.
+/// Describes what was measured, and for each error prints a table and the recommended method,
+/// followed by notes on the table.
 pub fn text(measured: &Measurement) -> String {
     let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
     let mut text = format!(

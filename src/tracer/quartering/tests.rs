@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, dvec3};
 use super::{PicturePart, Quartering, Scratch, candidates};
 use crate::{
     area::Area,
-    report::numerics::scenes::{SIZE, along, board, cuboid, scene, sphere, triangle},
+    reference::scenes::{SIZE, along, board, cuboid, scene, sphere, triangle},
     scene::Shape,
     tracer::{World, nearby},
 };

@@ -6,7 +6,8 @@ use pinhole::{
     area::Area,
     render::{Control, render_exact},
     report::speed::{
-        Estimate, Machine, Measurement, Point, Request, Run, Series, Subject, measure,
+        Estimate, Machine, MeasuredScene, Measurement, MethodSeries, Request, Run, SeriesPoint,
+        measure,
         statistics::{PowerLaw, median, root_mean_square},
         verdict,
     },
@@ -48,8 +49,8 @@ fn the_slope_has_the_standard_error_of_the_textbook_formula() {
 }
 
 /// Returns a series of one run, from rows of samples per pixel, seconds and errors.
-fn series(method: Method, points: &[[f64; 3]]) -> Series {
-    let point = |&[per_pixel, cpu, error]: &[f64; 3]| Point {
+fn series(method: Method, points: &[[f64; 3]]) -> MethodSeries {
+    let point = |&[per_pixel, cpu, error]: &[f64; 3]| SeriesPoint {
         per_pixel: per_pixel as u64,
         runs: vec![Run {
             cpu,
@@ -57,7 +58,7 @@ fn series(method: Method, points: &[[f64; 3]]) -> Series {
             error,
         }],
     };
-    Series {
+    MethodSeries {
         method,
         points: points.iter().map(point).collect(),
         picture: None,
@@ -143,8 +144,8 @@ fn multi_jittered_estimates_round_to_a_full_grid() {
     }
 }
 
-fn subject() -> Subject {
-    Subject {
+fn subject() -> MeasuredScene {
+    MeasuredScene {
         name: "a.scn".to_owned(),
         overrides: Vec::new(),
     }
@@ -186,9 +187,9 @@ fn measured(methods: &str) -> Measurement {
         let (name, times) = method.split_once(' ').unwrap();
         match Method::SAMPLED.into_iter().find(|m| m.name() == name) {
             None => exact = Some(timed(times, 1.0, f64::NAN)),
-            Some(method) => sampled.push(Series {
+            Some(method) => sampled.push(MethodSeries {
                 points: [(4, 0.25, 0.2), (16, 1.0, 0.1)]
-                    .map(|(per_pixel, share, error)| Point {
+                    .map(|(per_pixel, share, error)| SeriesPoint {
                         per_pixel,
                         runs: timed(times, share, error),
                     })

@@ -2,10 +2,10 @@
 //! of `numerics` cover the catalogue of hard cases.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-pub use pinhole::report::numerics::scenes::{camera, cuboid, scene, sphere};
+pub use pinhole::reference::scenes::{camera, cuboid, scene, sphere};
 use pinhole::{
     color::Color,
-    report::numerics::{
+    reference::{
         oracle::{ALL_SIZES, Oracle},
         scenes,
     },

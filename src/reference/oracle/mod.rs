@@ -1,9 +1,10 @@
-//! What is seen at a sample point by the formulas of a textbook, in arithmetic of hundreds of bits.
+//! The oracle: what is seen at a sample point according to textbook formulas, in arithmetic of
+//! hundreds of bits.
 //!
-//! Nothing here is shared with the tracer: world coordinates instead of the view plane, the
-//! quadratic formula, signed areas and slabs with divisions. What is smaller than its terms by 5/14
-//! of the bits counts as zero (2^−500 with 1400 bits, 2^−182 with 512): far beyond the 2^−90 where
-//! the language's ties begin, and far before the last bits.
+//! Nothing here is shared with the tracer: it uses world coordinates instead of the view plane, the
+//! quadratic formula, signed areas, and slabs with divisions. A value counts as zero if it is
+//! smaller than its terms by 5/14 of the bits (2^−500 with 1400 bits, 2^−182 with 512): far beyond
+//! the 2^−90 where the language's ties begin, and far from the last bits.
 
 mod number;
 
@@ -19,35 +20,35 @@ use crate::{
     scene::{Lens, Outline, Scene, Shape, View},
 };
 
-/// Enough bits for scenes whose numbers are of whatever sizes an `f64` has.
+/// Number of bits for scenes whose numbers have any size of an `f64`.
 pub const ALL_SIZES: usize = 1400;
 
-/// Enough bits for views so wide or narrow that a step of one pixel and the distance of the view
-/// plane differ by some 2^1000 in size.
+/// Number of bits for views so wide or narrow that a pixel's side and the distance of the view
+/// plane differ in size by about 2^1000.
 pub const ALL_VIEWS: usize = 3000;
 
-/// Enough bits for scenes whose numbers differ by some 2^100 in size.
+/// Number of bits for scenes whose numbers differ in size by about 2^100.
 pub const USUAL_SIZES: usize = 512;
 
-/// A scene, ready to be asked what is seen.
+/// A scene prepared for exact decisions.
 #[derive(Debug)]
 pub struct Oracle {
-    /// Its arithmetic.
+    /// The arithmetic.
     pub number: Number,
     scene: Scene,
-    surfaces: Vec<Surface>,
+    surfaces: Vec<PreparedShape>,
     eye: V,
-    /// The picture's right, its top, and against the view direction.
+    /// The picture's right, its top, and the direction opposite to the view.
     pub axes: [V; 3],
     /// Distance of the view plane.
     d: N,
-    /// The side of a pixel in it.
+    /// Side of a pixel in the view plane.
     pixel: N,
 }
 
-/// What a shape's formulas need that is the same for all rays.
+/// Values of a shape's formulas that are the same for all rays.
 #[derive(Debug)]
-enum Surface {
+enum PreparedShape {
     /// f = eye − centre, f·f and f·f − radius².
     Sphere { f: V, square: N, c: N },
     /// The vertices, the normal n, n·(centroid − eye), which is zero if the eye is in the plane,
@@ -64,19 +65,20 @@ enum Surface {
     Checkerboard { height: N, square: N },
 }
 
-/// A point of a ray on a visible surface.
+/// The visible intersection of a ray, in the oracle's arithmetic.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct OracleHit {
     /// The object's index in the scene.
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// The point is eye + t · direction.
+    /// The parameter of the point eye + t · direction.
     pub t: N,
 }
 
 impl Oracle {
-    /// Prepares a scene. Its up vector must not be parallel to the view direction.
+    /// Prepares a scene for arithmetic of `bits` bits. Its up vector must not be parallel to the
+    /// view direction.
     pub fn new(scene: &Scene, bits: usize) -> Self {
         let number = Number { bits };
         let n = |x| number.exact(x);
@@ -104,7 +106,7 @@ impl Oracle {
                 width / height.clone() * n(camera.view_height) / twice_tan_of_half(angle)
             }
         };
-        let surface = |shape: &Shape| Surface::new(number, shape, &eye);
+        let surface = |shape: &Shape| PreparedShape::new(number, shape, &eye);
         let surfaces = scene.objects.iter().map(|o| surface(&o.shape)).collect();
         Self {
             number,
@@ -117,14 +119,14 @@ impl Oracle {
         }
     }
 
-    /// The direction of the ray through an offset from the centre of the pixel in column `x` and
-    /// row `y`.
+    /// Returns the direction of the ray through an offset from the centre of the pixel in column
+    /// `x` and row `y`.
     pub fn direction(&self, x: u32, y: u32, offset: DVec2) -> V {
         self.direction_through(dvec2(f64::from(x), f64::from(y)) + 0.5, offset)
     }
 
-    /// The direction of the ray through an offset from a point so many pixels from the picture's
-    /// top left corner.
+    /// Returns the direction of the ray through an offset from a point, in pixels from the
+    /// picture's top left corner.
     pub fn direction_through(&self, pixels: DVec2, offset: DVec2) -> V {
         let n = |x| self.number.exact(x);
         let half = |pixels: u32| n(f64::from(pixels) / 2.0);
@@ -134,8 +136,8 @@ impl Oracle {
         axpy(&axpy(&scale(&right, u), &up, v), &-self.d.clone(), w)
     }
 
-    /// What is seen along a direction.
-    pub fn seen(&self, r: &V) -> Option<Seen> {
+    /// Returns what is seen along a direction.
+    pub fn seen(&self, r: &V) -> Option<OracleHit> {
         let (camera, n) = (&self.scene.camera, |x| self.number.exact(x));
         let (near, far) = (n(camera.near), camera.far.map(n));
         let ahead = -dot(r, &self.axes[2]);
@@ -148,39 +150,39 @@ impl Oracle {
             let crossings = self.crossings(object, r);
             Some((object, crossings.into_iter().find(is_visible)?))
         });
-        // On a tie the first one of the file.
+        // On a tie the first object of the file is seen.
         let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
             Ordering::Less => next,
             _ => best,
         })?;
         let odd = match &self.surfaces[object] {
-            Surface::Checkerboard { square, .. } => {
+            PreparedShape::Checkerboard { square, .. } => {
                 let p = self.point(&t, r);
                 self.is_odd(&p[0], square) != self.is_odd(&p[2], square)
             }
             _ => false,
         };
-        Some(Seen { object, odd, t })
+        Some(OracleHit { object, odd, t })
     }
 
-    /// eye + t · r.
+    /// Computes eye + t · r.
     pub fn point(&self, t: &N, r: &V) -> V {
         axpy(&self.eye, t, r)
     }
 
-    /// Whether a coordinate lies in an odd row of squares.
+    /// Returns whether a coordinate lies in an odd row of squares.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // What is so close to an integer is that integer: 1/3 + 2/3 is not 0.999….
+        // A number this close to an integer is that integer: 1/3 + 2/3 is not 0.999….
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
     }
 
-    /// All t > 0 at which the ray eye + t · r meets an object, in order.
+    /// Returns all t > 0 at which the ray eye + t · r meets an object, in order.
     pub fn crossings(&self, index: usize, r: &V) -> Vec<N> {
         match &self.surfaces[index] {
-            Surface::Sphere { f, square, c } => self.sphere(f, square, c, r),
-            Surface::Triangle {
+            PreparedShape::Sphere { f, square, c } => self.sphere(f, square, c, r),
+            PreparedShape::Triangle {
                 vertices,
                 normal,
                 height,
@@ -190,15 +192,15 @@ impl Oracle {
                 .filter(|t| self.is_in_triangle(vertices, normal, scale, &self.point(t, r)))
                 .into_iter()
                 .collect(),
-            Surface::Box { lo, hi } => self.cuboid(lo, hi, r),
-            Surface::Checkerboard { height, .. } => {
+            PreparedShape::Box { lo, hi } => self.cuboid(lo, hi, r),
+            PreparedShape::Checkerboard { height, .. } => {
                 let up = [0.0, 1.0, 0.0].map(|x| self.number.exact(x));
                 self.plane(&up, height, r).into_iter().collect()
             }
         }
     }
 
-    /// The roots of a t² + 2 b t + c, of which only those count that are > 0.
+    /// Returns the positive roots of a t² + 2 b t + c.
     fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
         let (a, b) = (dot(r, r), dot(f, r));
         let bb = &b * &b;
@@ -208,7 +210,7 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // On the surface itself one root is zero, whatever its rounding.
+        // If the eye is on the surface, one root is zero, whatever its rounding.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -216,7 +218,7 @@ impl Oracle {
         roots.into_iter().filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Where the ray meets the plane n·(p − eye) = height.
+    /// Intersects the ray with the plane n·(p − eye) = height.
     fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
         let slope = dot(n, r);
         if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
@@ -226,7 +228,7 @@ impl Oracle {
         (t > N::ZERO).then_some(t)
     }
 
-    /// Whether a point of a triangle's plane lies on the inner side of each edge, or on it.
+    /// Returns whether a point of a triangle's plane lies inside each edge, or on it.
     fn is_in_triangle(&self, [a, b, c]: &[V; 3], normal: &V, scale: &N, p: &V) -> bool {
         let scale = scale + size(normal) * dot(p, p);
         [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
@@ -235,7 +237,8 @@ impl Oracle {
         })
     }
 
-    /// The greatest t of the slabs' entries to the least of their exits.
+    /// Returns the greatest t of entry and the least t of exit of the slabs, if the ray meets the
+    /// box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
@@ -253,7 +256,7 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// The order of two numbers, which are equal if they are equal up to a certain part of the
+    /// Compares two numbers, which are equal if their difference is negligible relative to the
     /// larger one.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
@@ -264,7 +267,7 @@ impl Oracle {
     }
 }
 
-impl Surface {
+impl PreparedShape {
     fn new(number: Number, shape: &Shape, eye: &V) -> Self {
         match shape {
             Shape::Sphere(sphere) => {

@@ -1,16 +1,14 @@
-//! What is seen at a sample point by the formulas of a textbook.
+//! What is seen at a sample point according to the textbook formulas.
 //!
-//! Rays have unit directions, triangles an epsilon, and squares the parity of two floors. It stands
-//! here to be compared with.
+//! Rays have unit directions, triangles an epsilon, and squares the parity of two floors. This
+//! tracer exists for comparison only.
 
 use glam::{DVec2, DVec3};
 
-use crate::{
-    scene::{Checkerboard, Lens, Scene, Shape},
-    textbook::{axes, by_vertices, crossings, radians},
-};
+use super::formulas::{axes, by_vertices, crossings, radians};
+use crate::scene::{Checkerboard, Lens, Scene, Shape};
 
-/// A scene, ready to be asked what is seen.
+/// A scene prepared for the textbook formulas.
 #[derive(Clone, Debug)]
 pub struct Textbook {
     eye: DVec3,
@@ -25,21 +23,21 @@ pub struct Textbook {
     shapes: Vec<Shape>,
 }
 
-/// A point of a ray on a visible surface.
+/// The visible intersection of a ray, by the textbook formulas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct TextbookHit {
     /// The object's index in the scene.
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// The distance.
+    /// The distance from the eye.
     pub t: f64,
-    /// The point.
+    /// The intersection.
     pub point: DVec3,
 }
 
-/// Determinants below this are taken for zero, as Möller and Trumbore's own program does with 10⁻⁶,
-/// and most since with this.
+/// Determinant below which a triangle counts as parallel to the ray. Möller and Trumbore's own
+/// program uses 10⁻⁶, and most programs since use this value.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {
@@ -67,8 +65,8 @@ impl Textbook {
         }
     }
 
-    /// What is seen at a point so many pixels from the picture's top left corner.
-    pub fn seen(&self, pixels: DVec2) -> Option<Seen> {
+    /// Returns what is seen at a point, in pixels from the picture's top left corner.
+    pub fn seen(&self, pixels: DVec2) -> Option<TextbookHit> {
         let [u, v, w] = self.axes;
         let x = self.pixel * (pixels.x - self.size.x / 2.0);
         let y = self.pixel * (self.size.y / 2.0 - pixels.y);
@@ -90,7 +88,7 @@ impl Textbook {
             Shape::Checkerboard(Checkerboard { square, .. }) => is_odd(point, square),
             _ => false,
         };
-        Some(Seen {
+        Some(TextbookHit {
             object,
             odd,
             t,
@@ -99,7 +97,7 @@ impl Textbook {
     }
 }
 
-/// Whether floor(x/square) + floor(z/square) is odd.
+/// Returns whether floor(x/square) + floor(z/square) is odd.
 fn is_odd(point: DVec3, square: f64) -> bool {
     let parity = |x: f64| (x / square).floor().abs() % 2.0;
     parity(point.x) != parity(point.z)

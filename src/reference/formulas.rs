@@ -1,10 +1,10 @@
-//! The formulas of a textbook in `f64`, as they are written down and typed in everywhere: a
-//! camera's axes, a triangle's vertices, and where a ray meets a shape.
+//! The usual textbook formulas in `f64`: a camera's axes, a triangle's vertices, and the
+//! intersection of a ray with a shape.
 //!
-//! The basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals (Kay
-//! and Kajiya 1986), the triangle that of Möller and Trumbore (1997). All of it is right on paper,
-//! and nothing of it is how the tracer computes it: `report` compares its decisions with the
-//! tracer's, and `grading` makes with it what a class would make.
+//! The camera basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals
+//! (Kay and Kajiya 1986), the triangle that of Möller and Trumbore (1997). All of them are right on
+//! paper, and the tracer uses none of them: `report` compares the tracer's decisions with theirs,
+//! and `grading` uses them to imitate students' programs.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -15,8 +15,8 @@ use crate::{
     },
 };
 
-/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, and the roll; along up, u
-/// is that of the language's level direction.
+/// Returns u, v and w: w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, then
+/// the roll. If the view is along up, u is the language's level direction.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let backward = match camera.view {
         View::Lookat(at) => camera.eye - at,
@@ -34,12 +34,12 @@ pub fn axes(camera: &Camera) -> [DVec3; 3] {
     [cos * u - sin * v, sin * u + cos * v, w]
 }
 
-/// π/180 of its degrees.
+/// Converts an angle to radians: its degrees times π/180 plus its radians.
 pub fn radians(angle: Angle) -> f64 {
     angle.degrees * std::f64::consts::PI / 180.0 + angle.radians
 }
 
-/// The vertices of a triangle: as they are written, or left base end, right base end, apex.
+/// Returns the vertices of a triangle: as written, or left base end, right base end, apex.
 pub fn vertices(outline: &Outline) -> [DVec3; 3] {
     match outline {
         Outline::Vertices(vertices) => *vertices,
@@ -47,7 +47,7 @@ pub fn vertices(outline: &Outline) -> [DVec3; 3] {
     }
 }
 
-/// The law of cosines, and a turn about the centroid.
+/// Computes the vertices by the law of cosines and a rotation about the centroid.
 fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
     let n = triangle.normal.normalize();
     let reference = if n.x == 0.0 && n.z == 0.0 {
@@ -71,7 +71,7 @@ fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
     })
 }
 
-/// The corners of a box.
+/// Returns the corners of a box.
 pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|corner| {
         let is_max = |bit: u32| corner >> bit & 1 == 1;
@@ -79,7 +79,7 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// The same shape, a triangle by its vertices: so that they are not computed for each ray.
+/// Replaces a triangle by its vertices, so that these are not computed for each ray.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -90,8 +90,9 @@ pub fn by_vertices(shape: Shape) -> Shape {
     }
 }
 
-/// Where a line through the eye, eye + t d, meets a shape: the lesser t first, twice the same where
-/// it meets a plane. Of a triangle, determinants of less than `epsilon` are taken for zero.
+/// Intersects the line through the eye, eye + t d, with a shape. Returns the lesser t first, and
+/// twice the same t for a flat shape. For a triangle, a determinant less than `epsilon` counts as
+/// zero.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {
@@ -102,7 +103,7 @@ pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f
     }
 }
 
-/// The roots of a t² + b t + c.
+/// Returns the roots of a t² + b t + c.
 fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let f = eye - sphere.center;
     let a = d.dot(d);
@@ -116,7 +117,7 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)])
 }
 
-/// Where the line enters all three slabs, and where it leaves the first.
+/// Returns where the line enters the last of three slabs, and where it leaves the first.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;
@@ -141,7 +142,7 @@ fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([enter, leave])
 }
 
-/// Barycentric coordinates by Cramer's rule.
+/// Computes barycentric coordinates by Cramer's rule.
 fn triangle([a, b, c]: &[DVec3; 3], eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let p = d.cross(other);

@@ -13,28 +13,28 @@ pub type N = FBig<HalfEven, 2>;
 /// A vector of the world.
 pub type V = [N; 3];
 
-/// Numbers of so many bits.
+/// Arithmetic of a fixed precision.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
-    /// How many.
+    /// Number of bits.
     pub bits: usize,
 }
 
 impl Number {
-    /// A number of a scene.
+    /// Converts a number of a scene.
     pub fn exact(self, x: f64) -> N {
         debug_assert!(x.is_finite());
         let x = N::try_from(x).unwrap_or(N::ZERO);
         x.with_precision(self.bits).value()
     }
 
-    /// A vector of a scene.
+    /// Converts a vector of a scene.
     pub fn vector(self, v: DVec3) -> V {
         v.to_array().map(|x| self.exact(x))
     }
 
-    /// The sign of the result of operands of a certain size, which is none up to a certain part of
-    /// it.
+    /// Returns the sign of a result whose operands have a certain size; it is zero if it is smaller
+    /// than these by 5/14 of the bits.
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal
@@ -43,7 +43,7 @@ impl Number {
         }
     }
 
-    /// Sine and cosine of an angle that is a number of degrees plus one of radians.
+    /// Returns sine and cosine of an angle, which is a number of degrees plus a number of radians.
     pub fn sin_cos(self, angle: Angle) -> (N, N) {
         let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
         if angle.radians == 0.0 {
@@ -53,7 +53,7 @@ impl Number {
         (&s * &d + &c * &t, c * d - s * t)
     }
 
-    /// A triangle's vertices: left base end, right base end, apex.
+    /// Returns a triangle's vertices: left base end, right base end, apex.
     pub fn vertices(self, triangle: &CenteredTriangle) -> [V; 3] {
         let CenteredTriangle {
             centroid, normal, ..
@@ -67,7 +67,7 @@ impl Number {
         };
         let right = unit(&cross(&self.vector(reference), &unit_normal));
         let top = cross(&unit_normal, &right);
-        // The law of cosines at the left end, then a turn of everything about the centroid.
+        // The law of cosines at the left end, then a rotation about the centroid.
         let [a, b, c] = triangle.sides.to_array().map(n);
         let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
         let sin = (n(1.0) - &cos * &cos).sqrt();
@@ -84,27 +84,27 @@ impl Number {
     }
 }
 
-/// a − b.
+/// Computes a − b.
 pub fn sub(a: &V, b: &V) -> V {
     [0, 1, 2].map(|i| &a[i] - &b[i])
 }
 
-/// a + k b.
+/// Computes a + k b.
 pub fn axpy(a: &V, k: &N, b: &V) -> V {
     [0, 1, 2].map(|i| &a[i] + k * &b[i])
 }
 
-/// k a.
+/// Computes k a.
 pub fn scale(k: &N, a: &V) -> V {
     [0, 1, 2].map(|i| k * &a[i])
 }
 
-/// The scalar product.
+/// Computes the dot product.
 pub fn dot(a: &V, b: &V) -> N {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// The vector product.
+/// Computes the cross product.
 pub fn cross(a: &V, b: &V) -> V {
     [
         &a[1] * &b[2] - &a[2] * &b[1],
@@ -113,23 +113,23 @@ pub fn cross(a: &V, b: &V) -> V {
     ]
 }
 
-/// The length of a vector.
+/// Returns the length of a vector.
 pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// What bounds the size of a vector, as the scale that something is small on.
+/// Bounds the size of a vector, as a scale for what is negligible.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }
 
-/// a/|a|.
+/// Computes a/|a|.
 pub fn unit(a: &V) -> V {
     let length = length(a);
     [0, 1, 2].map(|i| &a[i] / &length)
 }
 
-/// |x|.
+/// Computes |x|.
 pub fn abs(x: &N) -> N {
     x.clone().abs()
 }

@@ -1,4 +1,4 @@
-//! The scenes of the cases: cameras, shapes, and colours that tell them apart.
+//! Cameras, shapes and scenes for comparisons, with colours that identify the objects.
 
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Columns and rows of the pictures, but where a case says otherwise.
+/// Columns and rows of a picture, unless a test sets others.
 pub const SIZE: u32 = 64;
 
-/// A camera with the language's defaults.
+/// Returns a camera with the language's defaults.
 pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     Camera {
         eye,
@@ -31,7 +31,7 @@ pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     }
 }
 
-/// A camera that looks along a vector.
+/// Returns a camera that looks along a vector.
 pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     Camera {
         view: View::Direction(direction),
@@ -39,7 +39,7 @@ pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     }
 }
 
-/// A sphere.
+/// Returns a sphere.
 pub fn sphere(center: DVec3, radius: f64) -> Shape {
     Shape::Sphere(Sphere {
         center,
@@ -48,7 +48,7 @@ pub fn sphere(center: DVec3, radius: f64) -> Shape {
     })
 }
 
-/// A box.
+/// Returns a box.
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     Shape::Box(Cuboid {
         min,
@@ -58,12 +58,12 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     })
 }
 
-/// A triangle, not spun.
+/// Returns a triangle without spin.
 pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
     spun(centroid, normal, sides, 0.0)
 }
 
-/// A triangle, spun by so many degrees.
+/// Returns a triangle with a spin in degrees.
 pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     Shape::Triangle(Triangle {
         outline: Outline::Centered(CenteredTriangle {
@@ -76,7 +76,7 @@ pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     })
 }
 
-/// A checkerboard.
+/// Returns a checkerboard.
 pub fn board(y: f64, square: f64) -> Shape {
     Shape::Checkerboard(Checkerboard {
         y,
@@ -85,13 +85,13 @@ pub fn board(y: f64, square: f64) -> Shape {
     })
 }
 
-/// The colour that tells an object of a scene apart, or a checkerboard's second one.
+/// Returns the colour that identifies an object of a scene, or the second colour of a checkerboard.
 pub fn color(object: usize, is_odd: bool) -> Color {
     let [low, high] = (object as u16 + 1).to_le_bytes();
     Color::from_bytes([low, u8::from(is_odd), high])
 }
 
-/// A scene whose colours tell its objects apart.
+/// Returns a scene whose colours identify its objects.
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let mut shape = *shape;

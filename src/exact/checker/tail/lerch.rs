@@ -1,0 +1,42 @@
+//! The Lerch series V_s(θ) = Σ_j e^(iθj) (w + j)^(−s) for s = 3, 4, 5, by the expansion at its pole.
+
+use super::super::special::{Complex, integrals};
+
+/// Angle |θ| up to which a Taylor series is used for the rest of the pole. The next term, θ⁹/47900160, is
+/// 100 of the 500 roundings that V may be off by.
+const NEAR_POLE: f64 = 0.2;
+
+/// Computes V_3, V_4 and V_5 at θ, |θ| ≤ π, up to R″. `rotation` is e^iθ.
+pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
+    let (r, slope) = rest_of_pole(theta, rotation);
+    let h = integrals(theta * w);
+    let u = 1.0 / w;
+    let mut power = u * u;
+    [0, 1, 2].map(|i| {
+        let s = (i + 3) as f64;
+        let v = [
+            power * (h[i][0] + u * (0.5 + slope * s * u)),
+            power * (h[i][1] + u * r),
+        ];
+        power *= u;
+        v
+    })
+}
+
+/// Returns r and R′ = 1/4sin²(θ/2) − 1/θ², where R at −iθ is ½ + i·r with r = ½ cot(θ/2) − 1/θ.
+fn rest_of_pole(theta: f64, rotation: Complex) -> (f64, f64) {
+    let square = theta * theta;
+    if theta.abs() < NEAR_POLE {
+        let r = -theta
+            * (1.0 / 12.0 + square * (1.0 / 720.0 + square * (1.0 / 30240.0 + square / 1209600.0)));
+        let slope =
+            1.0 / 12.0 + square * (1.0 / 240.0 + square * (1.0 / 6048.0 + square / 172800.0));
+        return (r, slope);
+    }
+    let gap = 1.0 / (1.0 - rotation[0]);
+    let inverse = 1.0 / theta;
+    (
+        0.5 * rotation[1] * gap - inverse,
+        0.5 * gap - inverse * inverse,
+    )
+}

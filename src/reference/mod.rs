@@ -1,0 +1,10 @@
+//! What Pinhole is compared with: textbook formulas, an oracle of arbitrary precision, and scenes.
+//!
+//! The report on the arithmetic, the tests, and the benchmarks compare the tracer with [`oracle`]
+//! and [`textbook`] on scenes made by [`scenes`]; `grading` imitates students' programs with
+//! [`formulas`]. Nothing here is shared with the tracer, except what the scene itself provides.
+
+pub mod formulas;
+pub mod oracle;
+pub mod scenes;
+pub mod textbook;
