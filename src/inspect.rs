@@ -9,9 +9,7 @@ use crate::{
     area::Area,
     math::{Big, Real},
     numbers::{grouped, short, short_vector},
-    scene::{
-        Camera, Checkerboard, Count, Cuboid, Image, Method, Outline, Scene, Shape, Sphere, Triangle,
-    },
+    scene::{Camera, Count, Image, Method, Scene, Shape},
     seen::{self, LISTED, Visibility},
     source::Source,
     tracer::{Basis, vertices},
@@ -235,7 +233,7 @@ impl fmt::Display for Inspection {
             writeln!(
                 f,
                 "  {index:<3} {kind:<12} {name:<10} line {line:<4} {}",
-                summary(&object.shape)
+                object.shape.summary(vertices)
             )?;
         }
         let more = self.objects.len().saturating_sub(LISTED) as u64;
@@ -345,44 +343,4 @@ pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>
         };
     }
     text
-}
-
-/// Describes a shape in one line.
-pub fn summary(shape: &Shape) -> String {
-    match *shape {
-        Shape::Sphere(Sphere {
-            center,
-            radius,
-            color,
-        }) => format!(
-            "center {}, radius {}, {color}",
-            short_vector(center),
-            short(radius)
-        ),
-        Shape::Triangle(triangle) => {
-            let [a, b, c] = vertices(&triangle).map(short_vector);
-            let Triangle { outline, color } = triangle;
-            match outline {
-                Outline::Centered(_) => format!("base {a} to {b}, apex {c}, {color}"),
-                Outline::Vertices(_) => format!("vertices {a}, {b}, {c}, {color}"),
-            }
-        }
-        Shape::Box(Cuboid {
-            min,
-            max,
-            color,
-            faces,
-        }) => {
-            let (min, max) = (short_vector(min), short_vector(max));
-            match faces {
-                None => format!("from {min} to {max}, {color}"),
-                Some([x, y, z]) => format!("from {min} to {max}, {x}, {y} and {z}"),
-            }
-        }
-        Shape::Checkerboard(Checkerboard { y, square, colors }) => {
-            let [even, odd] = colors;
-            let (y, square) = (short(y), short(square));
-            format!("y {y}, squares of {square}, {even} and {odd}")
-        }
-    }
 }

@@ -10,7 +10,7 @@ use crate::{
     area::Area,
     exact::Integrator,
     projection::Projection,
-    scene::{Place, Scene, Sight, sphere_around},
+    scene::{Outside, Scene, Sight},
     threads::{self, prelude::*},
     tracer::{GRID, World, ray},
 };
@@ -30,7 +30,7 @@ pub enum Visibility {
     /// pixels.
     Part(Area, f64),
     /// The object lies wholly outside of the picture.
-    Outside(Place),
+    Outside(Outside),
     /// Another object, by its index in the file, is seen at the object's centre.
     HiddenBy(usize),
     /// The object is hidden by several others, or too thin to be seen; or it lies outside of the
@@ -98,7 +98,7 @@ fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
 
 /// Returns the object that is seen where an object's centre would be, if it is another one.
 fn hidden_by(scene: &Scene, world: &OnceCell<World>, index: usize) -> Option<usize> {
-    let (middle, _) = sphere_around(&scene.objects[index].shape)?;
+    let middle = scene.objects[index].shape.center()?;
     let projection = Projection::new(&scene.camera, &scene.image);
     let at = projection.point(middle)?;
     let is_inside = at.cmpge(DVec2::ZERO).all() && at.cmple(projection.size).all();

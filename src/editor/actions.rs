@@ -1,4 +1,4 @@
-//! Changes of the text: the ways out of diagnostics, and the canonical layout.
+//! Changes of the text: the fixes of diagnostics, and the canonical layout.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// The ways out of the problems that a range touches, each with its problem. A problem counts where
-/// its first place is: the place that an editor underlines.
+/// Returns the fixes of the problems in a range, each with its problem. The place of a problem is
+/// its first label, which editors underline.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,
@@ -32,8 +32,8 @@ pub fn fixes<'a>(
     })
 }
 
-/// Where the values stand that the author is to replace, in a text that a placeholder writes:
-/// numbers and lists, or all of it.
+/// Returns the ranges of made-up values, which the author is to replace, in the text of a
+/// placeholder: numbers and lists, or else the whole text.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);
@@ -63,21 +63,21 @@ pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     values
 }
 
-/// All that can be put right without being asked, as one change; none if nothing can.
+/// Returns all safe fixes as one change; `None` if there are none.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
     let fixed = scene::fix_all(analysis.model.sources(), Applicability::Safe);
     let edit = change(analysis.text(), &fixed.text);
     (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed safely", edit).safe())
 }
 
-/// What leads to the canonical layout; none if the text has mistakes of syntax.
+/// Returns the edits that lead to the canonical layout; `None` if the text has syntax errors.
 pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<Edit>> {
     let formatted = format_parsed(analysis.source(), &analysis.model.parsed)?;
     let edit = change(analysis.text(), &formatted);
     Some(edit.into_iter().collect())
 }
 
-/// What has to take the place of what for a text to become another one; none if it is the same.
+/// Returns the smallest edit that turns one text into another; `None` if they are equal.
 fn change(text: &str, new: &str) -> Option<Edit> {
     if text == new {
         return None;

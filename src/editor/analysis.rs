@@ -1,8 +1,8 @@
-//! A text with everything that the answers are made from.
+//! A text with its tree, its meaning and its tokens, from which all answers are made.
 
 use std::cell::OnceCell;
 
-use super::tokens::{self, Token};
+use super::tokens::{self, RoleToken};
 use crate::{
     diagnostic::Diagnostic,
     scene::{self, Object, Parts, Scene, SemanticModel},
@@ -11,31 +11,32 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
-/// A text with its tokens, its tree, and what it means. Making one takes a few milliseconds for a
+/// A text with its tree, its meaning and its tokens. Making one takes a few milliseconds for a
 /// thousand objects, so that nobody has to keep it.
 #[derive(Debug)]
 pub struct Analysis<'s> {
-    /// What is known of it.
+    /// The tree and the meaning.
     pub model: SemanticModel<'s>,
-    /// Read when they are asked for: neither a picture nor a list of problems needs them.
-    tokens: OnceCell<Vec<Token>>,
+    /// The tokens, which are read when they are needed first: neither a picture nor a list of
+    /// problems needs them.
+    tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// What stands at a place of the tree, from the whole to the smallest part.
+/// The nodes of the tree at a place of the text, from the whole to the smallest part.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
-    /// The definition.
+    /// The definition around the place.
     pub definition: Option<&'a Definition<'s>>,
-    /// The block.
+    /// The block around the place.
     pub block: Option<&'a Block<'s>>,
-    /// The field in it.
+    /// The field of the block around the place.
     pub field: Option<&'a Field<'s>>,
-    /// The values, each a part of the one before it.
+    /// The values around the place, each a part of the one before it.
     pub values: Vec<&'a tree::Value<'s>>,
 }
 
 impl<'s> Analysis<'s> {
-    /// Reads a text.
+    /// Reads and lowers a text.
     pub fn new(sources: &'s Sources) -> Self {
         Self {
             model: scene::analyze(sources),
@@ -43,49 +44,49 @@ impl<'s> Analysis<'s> {
         }
     }
 
-    /// The words and signs, by their places.
-    pub fn tokens(&self) -> &[Token] {
+    /// Returns the words and signs in the order of the text.
+    pub fn tokens(&self) -> &[RoleToken] {
         self.tokens.get_or_init(|| tokens::tokens(&self.model))
     }
 
-    /// The file.
+    /// Returns the file.
     pub fn source(&self) -> &'s Source {
         &self.model.sources().file
     }
 
-    /// The text.
+    /// Returns the text.
     pub fn text(&self) -> &'s str {
         self.source().text()
     }
 
-    /// The text under a span.
+    /// Returns the text of a span.
     pub fn slice(&self, span: Span) -> &'s str {
         self.source().slice(span.range())
     }
 
-    /// What is wrong with it: the same list as everywhere.
+    /// Returns the problems, as every command reports them.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.model.diagnostics
     }
 
-    /// What it means; none where it has errors.
+    /// Returns the scene; `None` if the text has errors.
     pub fn scene(&self) -> Option<Scene> {
         let has_errors = self.diagnostics().iter().any(Diagnostic::is_error);
         let parts = (!has_errors).then(|| self.model.parts.clone());
         parts.and_then(Parts::into_scene)
     }
 
-    /// The comments.
+    /// Returns the spans of the comments.
     pub fn comments(&self) -> &[Span] {
         &self.model.parsed.comments
     }
 
-    /// The items of the tree.
+    /// Returns the items of the tree.
     pub(super) fn items(&self) -> &[Item<'s>] {
         &self.model.parsed.tree.items
     }
 
-    /// The blocks of the tree.
+    /// Returns the blocks of the tree.
     pub(super) fn blocks(&self) -> impl Iterator<Item = &Block<'s>> {
         self.items().iter().filter_map(|item| match item {
             Item::Block(block) => Some(block),
@@ -93,15 +94,15 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// The word, number or sign that a place touches: of two that meet there a word before a sign,
-    /// and the one behind it before the one that ends there.
-    pub(super) fn token_at(&self, at: usize) -> Option<Token> {
+    /// Returns the word, number or sign that a place touches. If two meet there, a word is
+    /// preferred to a sign, and the one behind the place to the one before it.
+    pub(super) fn token_at(&self, at: usize) -> Option<RoleToken> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);
         let touching = touching.take_while(|token| token.span.start <= at);
-        let touching: Vec<Token> = touching.copied().collect();
+        let touching: Vec<RoleToken> = touching.copied().collect();
         let behind = touching.iter().rev();
-        let is_sign = |token: &&Token| !self.starts_with_letter(token.span);
+        let is_sign = |token: &&RoleToken| !self.starts_with_letter(token.span);
         let word = behind.clone().find(|token| !is_sign(token));
         word.or_else(|| behind.clone().next()).copied()
     }
@@ -111,19 +112,19 @@ impl<'s> Analysis<'s> {
         text.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '#' | '.'))
     }
 
-    /// What stands at a place of the tree.
+    /// Returns the nodes of the tree at a place.
     pub(super) fn path(&self, at: usize) -> Path<'_, 's> {
         Path::new(self.items(), at)
     }
 
-    /// The block around a place that has an index of this name, and the index.
+    /// Returns the block around a place and its index of a name, if it has one.
     pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
         let block = self.path(at).block?;
         let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
         Some((block, indices.find(|index| index.name.text == name)?))
     }
 
-    /// The objects that a block of the scene stands for.
+    /// Returns the objects of a block.
     pub(super) fn objects_of(&self, block: &Block<'_>) -> &[Object] {
         let objects = &self.model.parts.objects;
         let first = objects.partition_point(|it| it.span.start < block.span.start);
@@ -132,20 +133,20 @@ impl<'s> Analysis<'s> {
         objects.get(..count).unwrap_or_default()
     }
 
-    /// What a value of a definition or a field is.
+    /// Returns the value of a definition or a field.
     pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
         let takes = path.row().and_then(|row| row.field(path.field?.name.text));
         self.model.value(value, takes.map(|field| field.takes))
     }
 
-    /// The line of a span, counted from 1.
+    /// Returns the line of a span, counted from 1.
     pub(super) fn line(&self, span: Span) -> usize {
         self.source().line(span.start)
     }
 }
 
 impl<'a, 's> Path<'a, 's> {
-    /// What stands at a place of a tree.
+    /// Returns the nodes of a tree at a place.
     pub fn new(items: &'a [Item<'s>], at: usize) -> Self {
         let mut path = Self::default();
         let first = items.partition_point(|item| item.span().end < at);
@@ -153,25 +154,25 @@ impl<'a, 's> Path<'a, 's> {
             let span = item.span();
             if span.start <= at {
                 path = item_at(item, at);
-                // Where two items meet, the one behind the place counts.
+                // If two items meet, the one behind the place counts.
                 if at < span.end {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // Definitions within a block come before it.
+                // Definitions written within a block are before it in the list of items.
                 break;
             }
         }
         path
     }
 
-    /// The row of the block's kind.
-    pub fn row(&self) -> Option<&'static schema::Block> {
+    /// Returns the row of the block's kind.
+    pub fn row(&self) -> Option<&'static schema::BlockRow> {
         schema::block(self.block?.kind?.text)
     }
 
-    /// The row of the field.
-    pub fn field_row(&self) -> Option<&'static schema::Field> {
+    /// Returns the row of the field.
+    pub fn field_row(&self) -> Option<&'static schema::FieldRow> {
         self.row()?.field(self.field?.name.text)
     }
 }
@@ -202,13 +203,13 @@ fn item_at<'a, 's>(item: &'a Item<'s>, at: usize) -> Path<'a, 's> {
     }
 }
 
-/// A value and those parts of it that hold a place, from the whole to the smallest one.
+/// Returns a value and its parts around a place, from the whole to the smallest one.
 fn values_at<'a, 's>(value: &'a tree::Value<'s>, at: usize) -> Vec<&'a tree::Value<'s>> {
     let mut values = Vec::new();
     let mut next = Some(value);
     while let Some(value) = next.filter(|value| holds(value, at)) {
         values.push(value);
-        // Where two parts meet, the one behind the place counts.
+        // If two parts meet, the one behind the place counts.
         next = value.parts().into_iter().rev().find(|part| holds(part, at));
     }
     values

@@ -1,8 +1,8 @@
-//! The colours that stand in a text, and how another one is written in their place.
+//! The colours in a text, and the spellings of another colour in their place.
 //!
-//! A colour is written back as what was there: a name as a name if the new colour has one, a code
-//! as a code, `rgb(…)` as numbers. A call that is more than three numbers is left alone: another
-//! colour would take the expressions and the comments in it away.
+//! A colour keeps its spelling: a name stays a name if the new colour has one, a code stays a code,
+//! and `rgb(…)` stays a call. A call with expressions or comments is no swatch, because another
+//! colour would remove them.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -16,13 +16,13 @@ use crate::{
 /// A colour in the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swatch {
-    /// Its name, its code, or the call of `rgb`.
+    /// The span of its name, its code, or the call of `rgb`.
     pub span: Span,
     /// The colour.
     pub color: Color,
 }
 
-/// Every colour that is written out in the text, in order.
+/// Returns the colours that are written out in the text, in order.
 pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
     let mut swatches = Vec::new();
     for definition in analysis.model.definitions() {
@@ -33,7 +33,7 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
         for field in &block.fields {
             let known = row.and_then(|row| row.field(field.name.text));
             if known.is_some_and(|known| known.takes == Type::Method) {
-                // The words of methods are none, whatever they are called.
+                // The word of a method is no colour, even if a colour has the same name.
                 continue;
             }
             collect(analysis, &field.value, &mut swatches);
@@ -62,7 +62,7 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
     }
 }
 
-/// Whether a call is made of numbers alone, without comments.
+/// Whether the arguments of a call are numbers, without comments.
 fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     let is_number = |kind: &ValueKind<'_>| matches!(kind, ValueKind::Number(_));
     let are_numbers = call
@@ -75,8 +75,8 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// How a colour could be written in the place of another, the spelling of that first; nothing in
-/// the place of a call that is no swatch.
+/// Returns the spellings of a colour in the place of another one, the spelling of the old one
+/// first. Returns none in the place of a call that is no swatch.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {
@@ -102,7 +102,8 @@ pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<S
     presentations
 }
 
-/// The name of a colour, if it has one; of several the first in the alphabet, and American `gray`.
+/// Returns the name of a colour, if it has one; if it has several, the first in the alphabet, which
+/// is American `gray`.
 fn name(color: Color) -> Option<&'static str> {
     let bytes = color.to_bytes();
     let is_it = |name: &&str| css::color(name).is_some_and(|named| named.to_bytes() == bytes);

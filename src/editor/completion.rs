@@ -1,6 +1,6 @@
-//! What could be typed at a place.
+//! Completions at a place of the text.
 //!
-//! A field or a block comes with a value that it can have, to type over.
+//! A field or a block comes with example values, which the author types over.
 
 use super::{
     analysis::Analysis,
@@ -10,30 +10,30 @@ use super::{
 use crate::{
     color::Color,
     scene::{describe, example_beside},
-    schema::{self, Field, Function, Kind, Preset, Type, Value, css},
+    schema::{self, BlockKind, FieldRow, Function, Preset, Type, Value, css},
     source::Span,
 };
 
-/// Something that could be typed.
+/// A completion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Completion {
-    /// What it is called; what is typed is compared with it.
+    /// The label, with which the typed word is compared.
     pub label: String,
-    /// What sort of thing it is.
+    /// The kind.
     pub kind: CompletionKind,
-    /// A few words about it: its type, its value.
+    /// A few words about it, such as its type or its value.
     pub detail: String,
-    /// What it is, in Markdown.
+    /// A description in Markdown.
     pub help: String,
-    /// What is put in.
-    pub insert: Vec<Piece>,
-    /// What that takes the place of.
+    /// The inserted text.
+    pub insert: Vec<SnippetPart>,
+    /// The span that the text replaces.
     pub replaces: Span,
-    /// What fits better has a smaller number.
+    /// The rank; completions that fit better have smaller numbers.
     pub rank: u8,
 }
 
-/// The sorts of what could be typed.
+/// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CompletionKind {
     /// `let`
@@ -42,7 +42,7 @@ pub enum CompletionKind {
     Block,
     /// A field.
     Field,
-    /// A `let`'s name.
+    /// The name of a `let` or an index.
     Definition,
     /// A function.
     Function,
@@ -56,16 +56,16 @@ pub enum CompletionKind {
     Value,
 }
 
-/// A piece of what is put in.
+/// A part of the inserted text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Piece {
-    /// As it is.
+pub enum SnippetPart {
+    /// Text that is inserted as it is.
     Text(String),
-    /// A value to type over.
-    Hole(String),
+    /// An example value to type over.
+    Placeholder(String),
 }
 
-/// Everything that could be typed at a place, what fits best first.
+/// Returns the completions at a place, the best first.
 pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     let at = analysis.source().floor_char_boundary(at);
     let Some(situation) = situation(analysis, at) else {
@@ -80,7 +80,7 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     completions
 }
 
-/// A word of the language, or a name, that is put in as it is.
+/// Returns the completion of a word or a name that is inserted as it is.
 fn word(
     situation: &Situation,
     word: &str,
@@ -99,18 +99,18 @@ fn word(
     }
 }
 
-fn text(text: impl Into<String>) -> Piece {
-    Piece::Text(text.into())
+fn text(text: impl Into<String>) -> SnippetPart {
+    SnippetPart::Text(text.into())
 }
 
-fn hole(value: impl Into<String>) -> Piece {
-    Piece::Hole(value.into())
+fn placeholder(value: impl Into<String>) -> SnippetPart {
+    SnippetPart::Placeholder(value.into())
 }
 
-/// `let`, and the blocks that there may still be.
+/// Returns `let`, and the blocks that the scene may still be given.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
-    let is_there = |row: &schema::Block| {
-        // Of a block behind a word that is being typed, the kind is read as its name.
+    let is_there = |row: &schema::BlockRow| {
+        // The keyword of a block behind the word that is being typed is parsed as its name.
         let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
         let mut words = words.flatten();
         words.any(|word| word.span != situation.word && word.text == row.name)
@@ -123,14 +123,15 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
             kind: CompletionKind::Block,
             detail: row.help.to_owned(),
             help: describe::about_block(row),
-            // Where the rest is there already, the word is all that is wanted.
-            insert: match situation.goes_on {
-                true => vec![text(row.name)],
-                false => block_with_fields(row),
+            // If the rest of the block is there already, only the keyword is inserted.
+            insert: if situation.goes_on {
+                vec![text(row.name)]
+            } else {
+                block_with_fields(row)
             },
             replaces: situation.word,
-            // A scene without a camera is none.
-            rank: u8::from(row.kind != Kind::Camera),
+            // A scene needs a camera.
+            rank: u8::from(row.kind != BlockKind::Camera),
         })
         .collect();
     completions.push(Completion {
@@ -138,22 +139,27 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         kind: CompletionKind::Keyword,
         detail: "gives a value a name".to_owned(),
         help: describe::ABOUT_LET.to_owned(),
-        insert: vec![text("let "), hole("name"), text(" = "), hole("1")],
+        insert: vec![
+            text("let "),
+            placeholder("name"),
+            text(" = "),
+            placeholder("1"),
+        ],
         replaces: situation.word,
         rank: 2,
     });
     completions
 }
 
-/// A block with the fields that it needs: in one line if that is one.
-fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
+/// Returns a block with the fields that it needs, in one line if there is at most one.
+fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     let least = row.least_fields();
     let (open, between, close) = match least.len() {
         0 | 1 => (" { ", "  ", " }"),
         _ => (" {\n  ", "\n  ", "\n}"),
     };
     let mut pieces = vec![text(format!("{}{open}", row.name))];
-    // Values stand in a column, as the formatter has them.
+    // Values are in a column, as the formatter writes them.
     let widest = least.iter().map(|field| field.name.len()).max();
     let width = widest.unwrap_or(0);
     for (index, field) in least.iter().enumerate() {
@@ -164,58 +170,57 @@ fn block_with_fields(row: &schema::Block) -> Vec<Piece> {
         pieces.extend(value_to_type_over(field.example));
     }
     if least.is_empty() {
-        pieces.push(hole(""));
+        pieces.push(placeholder(""));
     }
     pieces.push(text(close));
     pieces
 }
 
-/// The parts of a vector are typed over one by one.
-fn value_to_type_over(example: &str) -> Vec<Piece> {
+/// Returns an example value to type over; the parts of a list are typed over one by one.
+fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     match inner {
         Some(inner) => list_to_type_over("(", inner.split(", ")),
-        None => vec![hole(example)],
+        None => vec![placeholder(example)],
     }
 }
 
-fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<Piece> {
+/// Returns the parts of a list, each to type over.
+fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<SnippetPart> {
     let mut pieces = vec![text(open)];
     for part in parts {
         if pieces.len() > 1 {
             pieces.push(text(", "));
         }
-        pieces.push(hole(part));
+        pieces.push(placeholder(part));
     }
     pieces.push(text(")"));
     pieces
 }
 
-/// A value that the field can have beside what the block around the place is given.
-fn example(analysis: &Analysis<'_>, situation: &Situation, field: &Field) -> String {
+/// Returns an example for a field that fits the other fields of the block around the place.
+fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> String {
     let at = situation.word.start;
-    // The last one that begins before the place: it may not be closed yet.
+    // The last block that begins before the place; it may not be closed yet.
     let blocks = analysis.blocks();
     let block = blocks.take_while(|block| block.span.start <= at).last();
     example_beside(field, &|name| {
         let row = situation.block?.field(name)?;
-        let mut fields = block?.fields.iter();
-        let given = fields.find(|given| given.name.text == name)?;
+        let given = block?.fields.iter().find(|given| given.name.text == name)?;
         analysis.model.value(&given.value, Some(row.takes))
     })
 }
 
-/// The fields that the block may still be given.
+/// Returns the fields that the block may still be given.
 fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let Some(row) = situation.block else {
         return Vec::new();
     };
-    let is_open = |field: &&Field| {
+    let is_open = |field: &&FieldRow| {
         let given = &situation.given;
         !given.contains(&field.name) && !row.excludes(field.name).any(|name| given.contains(&name))
     };
-    let fields = row.fields.iter().filter(is_open);
-    let fields = fields.map(|field| {
+    let fields = row.fields.iter().filter(is_open).map(|field| {
         let mut insert = vec![text(field.name)];
         if !situation.goes_on {
             insert = vec![text(format!("{} ", field.name))];
@@ -238,7 +243,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     fields.collect()
 }
 
-/// Values and parts of values.
+/// Returns completions for values and parts of values.
 fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     if situation.wanted == Some(Type::Method) {
         return methods(situation);
@@ -250,7 +255,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // Two of them, or three: one colour would not do.
+        // A single colour does not fit.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -264,15 +269,14 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
 }
 
 fn methods(situation: &Situation) -> Vec<Completion> {
-    let methods = schema::METHODS.iter();
-    let methods = methods.map(|(method, help)| {
+    let methods = schema::METHODS.iter().map(|(method, help)| {
         let about = [*help; 2].map(str::to_owned);
         word(situation, method.name(), CompletionKind::Method, about, 0)
     });
     methods.collect()
 }
 
-/// A value such as the field can have, to type over; only where the whole value is still to come.
+/// Returns the field's example to type over, if no part of the value is typed yet.
 fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
     let field = situation.field.filter(|_| situation.is_whole_value)?;
     let example = example(analysis, situation, field);
@@ -290,7 +294,7 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     })
 }
 
-/// The indices of the block, and the `let`s that are defined before the place.
+/// Returns the indices of the block, and the `let`s before the place.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,
@@ -345,8 +349,7 @@ fn definitions(
 
 fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
     let gives_color = |function: &&Function| function.gives == Type::Color;
-    let functions = schema::FUNCTIONS.iter();
-    let functions = functions.filter(|function| match is_color {
+    let functions = schema::FUNCTIONS.iter().filter(|function| match is_color {
         Some(is_color) => gives_color(function) == is_color,
         None => true,
     });
@@ -368,8 +371,7 @@ fn functions(situation: &Situation, is_color: Option<bool>) -> Vec<Completion> {
 }
 
 fn constants(situation: &Situation) -> Vec<Completion> {
-    let constants = schema::CONSTANTS.iter();
-    let constants = constants.map(|(name, _, help)| {
+    let constants = schema::CONSTANTS.iter().map(|(name, _, help)| {
         let about = [*help; 2].map(str::to_owned);
         word(situation, name, CompletionKind::Constant, about, 5)
     });
@@ -386,7 +388,7 @@ fn colors(situation: &Situation) -> Vec<Completion> {
     colors.collect()
 }
 
-/// What is of the type that would fit comes first.
+/// Returns the rank of a value: 1 if it has the wanted type or none is wanted, otherwise 2.
 fn rank(situation: &Situation, kind: Option<Type>) -> u8 {
     u8::from(situation.wanted.is_some() && kind != situation.wanted) + 1
 }

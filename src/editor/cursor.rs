@@ -1,11 +1,11 @@
-//! What could stand at a place of a text in which somebody types.
+//! What can be typed at a place of the text.
 //!
-//! A made-up name takes the place of the word there, and the text is parsed as any other: where
-//! that name is in the tree tells what could stand there.
+//! A made-up name replaces the word at the place, and the text is parsed as usual. The position of
+//! that name in the tree tells what can be typed.
 
 use super::{
     analysis::{Analysis, Path},
-    tokens::{Role, Token, file},
+    tokens::{Role, RoleToken, file},
 };
 use crate::{
     schema::{self, Type},
@@ -16,55 +16,55 @@ use crate::{
     },
 };
 
-/// A name that nobody gives to anything.
+/// The made-up name, which no scene uses.
 const CURSOR: &str = "__cursor__";
 
-/// A place in a text, with what stands around it.
+/// A place of the text with its surroundings.
 #[derive(Clone, Debug)]
 pub struct Situation {
-    /// What could stand here.
+    /// The kind of text that can be typed here.
     pub expected: Expected,
-    /// The block around it, if its kind is known.
-    pub block: Option<&'static schema::Block>,
-    /// The fields that are given in that block, the word at the place excepted.
+    /// The row of the block around the place, if its kind is known.
+    pub block: Option<&'static schema::BlockRow>,
+    /// The fields that the block is given, except the word at the place.
     pub given: Vec<&'static str>,
-    /// The field whose value it is.
-    pub field: Option<&'static schema::Field>,
-    /// The type that would fit, if it is known.
+    /// The field whose value is typed.
+    pub field: Option<&'static schema::FieldRow>,
+    /// The wanted type, if it is known.
     pub wanted: Option<Type>,
-    /// The name that is being defined: it cannot use itself.
+    /// The name whose definition is typed; it cannot use itself.
     pub defining: Option<Span>,
-    /// Whether it is a whole value, nothing of which stands here yet.
+    /// Whether a whole value is typed, and no part of it is here yet.
     pub is_whole_value: bool,
-    /// Whether what belongs to the word follows it: the braces of a block, the value of a field,
+    /// Whether the rest follows the word already: the braces of a block, the value of a field, or
     /// the arguments of a function.
     pub goes_on: bool,
-    /// The word that is being typed, or nothing.
+    /// The word that is being typed; empty if there is none.
     pub word: Span,
 }
 
-/// What could stand at a place.
+/// The kind of text that can be typed at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// `let`, or a block.
     Item,
     /// A field of the block.
     Field,
-    /// A value, or a part of one.
+    /// A value, or a part of a value.
     Value,
 }
 
-/// What could stand at a place; none within comments, numbers and new names.
+/// Returns what can be typed at a place; `None` within comments, numbers and new names.
 pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
-    let ends = |token: &Token| token.span.end == at && !is_part(analysis, token);
+    let ends = |token: &RoleToken| token.span.end == at && !is_part(analysis, token);
     let word = touched(analysis, at, |token| token.span.start < at && !ends(token))?;
     let is_word = word.range().is_empty() || analysis.slice(word).starts_with(is_letter);
     let ask = |path: Path<'_, '_>| of_path(path, word);
     is_word.then(|| with_cursor(analysis, word, ask)).flatten()
 }
 
-/// The innermost call around a place, by the place of the function's name, and which of its
-/// arguments is written there.
+/// Returns the span of the function's name of the innermost call around a place, and the index of
+/// the argument at the place.
 pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     let word = touched(analysis, at, |token| is_part(analysis, token))?;
     with_cursor(analysis, word, |path| {
@@ -81,8 +81,8 @@ pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     })
 }
 
-/// Whether a token is a part of a value by itself: a word, a number or the code of a colour.
-fn is_part(analysis: &Analysis<'_>, token: &Token) -> bool {
+/// Whether a token is a word, a number or the code of a colour.
+fn is_part(analysis: &Analysis<'_>, token: &RoleToken) -> bool {
     matches!(token.role, Role::Number | Role::ColorCode)
         || analysis.slice(token.span).starts_with(is_letter)
 }
@@ -91,13 +91,18 @@ fn is_letter(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// The token that a place touches, of those that are meant, or the place itself; none within
-/// comments.
-fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool) -> Option<Span> {
+/// Returns the span of a token of certain kinds that a place touches, or else the place itself;
+/// `None` within comments.
+fn touched(
+    analysis: &Analysis<'_>,
+    at: usize,
+    is_meant: impl Fn(&RoleToken) -> bool,
+) -> Option<Span> {
     let comments = analysis.comments();
     let next = comments.partition_point(|comment| comment.end < at);
     let is_in_comment = comments.get(next).is_some_and(|comment| {
-        // Behind `*/` the comment is over; a comment to the end of the line is not over before it.
+        // A place behind `*/` is outside of the comment, but a place at the end of a line comment
+        // is inside.
         let is_closed = comment.end == at && analysis.slice(*comment).ends_with("*/");
         comment.start < at && !is_closed
     });
@@ -111,7 +116,8 @@ fn touched(analysis: &Analysis<'_>, at: usize, is_meant: impl Fn(&Token) -> bool
     (!is_in_comment).then(|| token.map_or(file(at, at), |token| token.span))
 }
 
-/// What is said of the made-up name in the place of a word, by what stands around it in the tree.
+/// Puts the made-up name in the place of a word, and returns the answer of a function to its path
+/// in the tree.
 fn with_cursor<T>(
     analysis: &Analysis<'_>,
     word: Span,
@@ -122,7 +128,7 @@ fn with_cursor<T>(
         analysis.text().get(word.end..)?,
     );
     let apart = if word.range().is_empty() { " " } else { "" };
-    // Of a list that is not closed behind the place the tree keeps nothing.
+    // The tree keeps nothing of a list that is not closed, so it is closed behind the place.
     let mut closing = String::new();
     loop {
         let text = format!("{before}{CURSOR}{closing}{apart}{after}");
@@ -140,7 +146,7 @@ fn with_cursor<T>(
     }
 }
 
-/// How many lists are open at a place.
+/// Returns the number of lists that are open at a place.
 fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     let before = analysis.tokens().iter();
     let before = before.take_while(|token| token.span.end <= at);
@@ -152,6 +158,7 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     })
 }
 
+/// Returns the situation at a path of the tree.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block
@@ -178,7 +185,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = matches!(last.kind, ValueKind::Call(_));
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
-        // The next field would be read as its value.
+        // The next field is parsed as the value of this one.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),
@@ -190,7 +197,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // A block that stands behind the place would be read as its name.
+        // A block behind the place is parsed as the name of this one.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);
@@ -201,7 +208,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     Some(situation)
 }
 
-/// Whether a place lies in a value of the tree, and not in the name of the field or the definition.
+/// Whether a place is in a value, and not in the name of a field or definition.
 fn holds_value(path: &Path<'_, '_>) -> bool {
     path.field.is_none_or(|field| field.name.text != CURSOR)
         && path
@@ -214,7 +221,7 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Name(CURSOR))
 }
 
-/// What could stand in a block where none of its fields is; none in its head.
+/// Returns what can be typed in a block outside of its fields; `None` in its head.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);
@@ -223,7 +230,7 @@ fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     is_inside.then_some(Expected::Field)
 }
 
-/// The type that would fit in the innermost list.
+/// Returns the wanted type in the innermost list or call.
 fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
     let mut wanted = takes;
     for (outer, inner) in path.values.iter().zip(path.values.iter().skip(1)) {
@@ -235,8 +242,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
-                // Parentheses around a part of an expression, or those of a vector: both hold
-                // numbers most of the time.
+                // These are parentheses around a part of an expression, or those of a vector. Both
+                // mostly contain numbers.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

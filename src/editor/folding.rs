@@ -1,27 +1,27 @@
-//! What can be folded away: blocks, and runs of comments.
+//! Finds the lines that can be folded: blocks, and runs of comments.
 
 use super::analysis::Analysis;
 use crate::source::{Span, sort_by_span};
 
-/// Lines that can be folded to the first of them.
+/// Lines that can be folded to the first one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fold {
-    /// From the first line's text to the last one's end.
+    /// The span from the text of the first line to the end of the last one.
     pub span: Span,
-    /// What they are.
+    /// The kind of the lines.
     pub kind: FoldKind,
 }
 
-/// What is folded.
+/// A kind of lines that can be folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldKind {
     /// A block.
     Block,
-    /// A comment, or several without anything between.
+    /// A comment, or several without other text between them.
     Comment,
 }
 
-/// Everything that can be folded: what takes more than one line.
+/// Returns all blocks and comments of more than one line.
 pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     let takes_lines = |span: &Span| span.end > span.start && analysis.slice(*span).contains('\n');
     let blocks = analysis.blocks().map(|block| block.span);
@@ -39,8 +39,8 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     folds
 }
 
-/// Comments that stand in lines of their own, one line after the other; and those behind code, each
-/// by itself.
+/// Returns runs of comments on consecutive lines of their own, and each comment behind code by
+/// itself.
 fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
     let mut behind_code = Vec::new();
@@ -50,7 +50,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
         let before = source.slice(start..comment.start);
         let is_alone = before.trim_start_matches('\u{feff}').trim().is_empty();
         if !is_alone {
-            // A comment behind code is about that line; of several lines it folds by itself.
+            // A comment behind code is about that line, so it belongs to no run.
             behind_code.push(*comment);
             continue;
         }
@@ -65,7 +65,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     runs
 }
 
-/// Whether nothing but the end of one line stands between two comments.
+/// Whether there is only one line end between two comments.
 fn is_next_line(between: &str) -> bool {
     between.trim().is_empty() && between.matches('\n').count() == 1
 }

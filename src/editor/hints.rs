@@ -1,4 +1,4 @@
-//! What a text does not say but could: shown in grey at the ends of its lines.
+//! Remarks on values, which editors show in grey at the ends of lines.
 
 use std::ops::Range;
 
@@ -8,38 +8,37 @@ use crate::{
     math::Angle,
     numbers::{grouped, short},
     scene::Count,
-    schema::{self, Method, Type, Value, css},
+    schema::{self, BlockKind, CAMERA, Method, SAMPLER, Type, Value, css},
     source::{SourceId, Span, sort_by_span},
     syntax::tree::{self, Block, Field, ValueKind},
 };
 
-/// A remark behind a place.
+/// A remark at the end of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hint {
-    /// The place.
+    /// The byte offset of the line's end.
     pub at: usize,
     /// The remark.
     pub text: String,
 }
 
-/// What there is to say of a value.
+/// The remarks on a value.
 struct Remark<'s> {
-    /// Where the value ends.
+    /// The end of the value.
     end: usize,
     /// The name of the field or definition that has the value.
     name: &'s str,
-    /// What an expression comes to.
-    comes_to: Option<Value>,
-    /// What follows from it together with others.
+    /// The result of an expression.
+    result: Option<Value>,
+    /// A fact that follows from the value together with others.
     beside: Option<String>,
 }
 
-/// Returns the remarks on values that end within a range of bytes, in order: what an expression
-/// comes to, the field of view that belongs to a distance, how many samples there are in all.
+/// Returns the remarks on values that end within a range of bytes, in order: the result of an
+/// expression, the field of view that belongs to a distance, the total number of samples.
 ///
-/// All of them stand at the ends of lines: within a line, they would push apart what the formatter
-/// puts under one another. A value that does not stand right behind its expression has the name of
-/// its field.
+/// They are at the ends of lines, because within a line they would push the formatter's columns
+/// apart. A result that is not directly behind its expression has the name of its field.
 pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
@@ -49,7 +48,7 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
             remarks.push(Remark {
                 end: definition.value.span.end,
                 name: definition.name.map_or("", |name| name.text),
-                comes_to: analysis.model.defined(definition),
+                result: analysis.model.defined(definition),
                 beside: None,
             });
         }
@@ -59,7 +58,7 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
             remarks.push(Remark {
                 end: field.value.span.end,
                 name: field.name.text,
-                comes_to: computed(analysis, block, field),
+                result: computed(analysis, block, field),
                 beside: beside(analysis, block, field),
             });
         }
@@ -76,7 +75,7 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
             "" => format!("= {value}"),
             _ => format!("{} = {value}", remark.name),
         };
-        let texts = [remark.comes_to.map(shown), remark.beside];
+        let texts = [remark.result.map(shown), remark.beside];
         for text in texts.into_iter().flatten() {
             match hints.last_mut().filter(|last| last.at == at) {
                 Some(last) => last.text += &format!(", {text}"),
@@ -87,17 +86,17 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     hints
 }
 
-/// What a field's expression comes to.
+/// Returns the result of a field's expression.
 fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<Value> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
-    // The words of methods are none of the text's names, whatever these are called.
+    // The word of a method is no name, even if a `let` has the same name.
     if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }
     analysis.model.value(&field.value, Some(row.takes))
 }
 
-/// Whether a value is more than a literal.
+/// Whether a value is no literal.
 fn is_computed(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Name(name) => css::color(name).is_none(),
@@ -109,39 +108,40 @@ fn is_computed(value: &tree::Value<'_>) -> bool {
     }
 }
 
-/// What follows from a field together with others.
+/// Returns what follows from a field of the camera or the sampler together with others.
 fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let image = parts.image?;
-    match (block.kind?.text, field.name.text) {
-        ("camera" | "sampler", _) if is_disputed(analysis, block, field) => None,
-        ("camera", "d") => {
+    let (kind, name) = (schema::block(block.kind?.text)?.kind, field.name.text);
+    match kind {
+        BlockKind::Camera | BlockKind::Sampler if is_disputed(analysis, block, field) => None,
+        BlockKind::Camera if name == CAMERA.d.name => {
             let (camera, _) = inspect::inspect_camera(&parts.camera?, &image);
-            Some(format!(
-                "fov {}",
-                Value::Angle(Angle::from_degrees(camera.fov_deg))
-            ))
+            let fov = Value::Angle(Angle::from_degrees(camera.fov_deg));
+            Some(format!("fov {fov}"))
         }
-        ("camera", "fov" | "hfov") => {
+        BlockKind::Camera if [CAMERA.fov.name, CAMERA.hfov.name].contains(&name) => {
             let (camera, _) = inspect::inspect_camera(&parts.camera?, &image);
             Some(format!("d {}", short(camera.d)))
         }
-        ("sampler", "per_pixel" | "total") => match parts.sampler?.count {
-            _ if parts.sampler?.method == Method::Exact => None,
-            count @ Count::PerPixel(_) => {
-                let total = inspect::total_samples(count, &image);
-                Some(format!("{} in all", grouped(total)))
+        BlockKind::Sampler if [SAMPLER.per_pixel.name, SAMPLER.total.name].contains(&name) => {
+            match parts.sampler?.count {
+                _ if parts.sampler?.method == Method::Exact => None,
+                count @ Count::PerPixel(_) => {
+                    let total = inspect::total_samples(count, &image);
+                    Some(format!("{} in all", grouped(total)))
+                }
+                Count::Total(total) => {
+                    let pixels = f64::from(image.width) * f64::from(image.height);
+                    Some(format!("{} per pixel", short(total as f64 / pixels)))
+                }
             }
-            Count::Total(total) => {
-                let pixels = f64::from(image.width) * f64::from(image.height);
-                Some(format!("{} per pixel", short(total as f64 / pixels)))
-            }
-        },
+        }
         _ => None,
     }
 }
 
-/// Whether the field or its block stands against another one, which is reported.
+/// Whether a field or its block conflicts with another one, which is reported.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

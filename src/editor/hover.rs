@@ -1,8 +1,8 @@
-//! What the word at a place means.
+//! The meaning of the word at a place.
 
 use super::{
     analysis::{Analysis, Path},
-    tokens::{Role, Token},
+    tokens::{Role, RoleToken},
 };
 use crate::{
     color::Color,
@@ -11,25 +11,26 @@ use crate::{
     math::Angle,
     numbers::{grouped, short},
     scene::describe::{ABOUT_FOR, ABOUT_LET, about_block, about_field, about_function},
-    schema::{self, Block, Kind, Value, css},
+    schema::{self, BlockKind, BlockRow, Value, css},
     source::Span,
     syntax::{
         shorten,
         tree::{self, Definition, Index, ValueKind},
     },
+    tracer::vertices,
 };
 
-/// What a place means.
+/// The meaning of a word or a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hover {
-    /// The text that it is about.
+    /// The span of the word or value.
     pub span: Span,
-    /// What there is to say, in Markdown.
+    /// The description in Markdown.
     pub markdown: String,
 }
 
-/// Returns what the word at a place means. Where something is wrong with it, the problem comes
-/// first, as a report has it, and the page that explains it last.
+/// Returns the meaning of the word at a place. If there is a problem, its message comes first, and
+/// the page that explains it last.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, problem)) = mistake(analysis, at) else {
@@ -52,7 +53,7 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     Some(Hover { span, markdown })
 }
 
-/// The first problem whose place to jump to holds a place.
+/// Returns the first problem whose first label contains a place.
 fn mistake<'a>(analysis: &'a Analysis<'_>, at: usize) -> Option<(Span, &'a Diagnostic)> {
     analysis.diagnostics().iter().find_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
@@ -91,14 +92,14 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     }
 }
 
-/// A colour in all its spellings.
+/// Describes a colour in all its spellings.
 pub(super) fn about_color(color: Color) -> String {
     let [r, g, b] = color.srgb.map(short);
     let [red, green, blue] = color.to_linear().map(short);
     format!("`{color}`, `rgb({r}, {g}, {b})`; in linear light ({red}, {green}, {blue})")
 }
 
-/// A `let`: where it is defined, and its value.
+/// Describes a `let`: its line and its value.
 pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definition<'s>) -> String {
     let name = definition.name.map_or("", |name| name.text);
     let written = shorten(analysis.slice(definition.value.span));
@@ -110,7 +111,7 @@ pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definit
     format!("`let {name} = {written}` (line {line})\n\n{value}")
 }
 
-/// A value with its type.
+/// Describes a value with its type.
 fn described(value: Value) -> String {
     let noun = value.kind().noun();
     match value {
@@ -131,11 +132,11 @@ fn described(value: Value) -> String {
     }
 }
 
-/// A kind of block; of the camera also what it comes to.
-fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
+/// Describes a kind of block; for the camera also its axes and its field of view.
+fn kind(analysis: &Analysis<'_>, row: &BlockRow) -> String {
     let about = about_block(row);
     let facts = match row.kind {
-        Kind::Camera => camera(analysis),
+        BlockKind::Camera => camera(analysis),
         _ => None,
     };
     match facts {
@@ -144,7 +145,7 @@ fn kind(analysis: &Analysis<'_>, row: &Block) -> String {
     }
 }
 
-/// The camera's axes, its field of view and its vanishing points, as `inspect` shows them.
+/// Describes the camera's axes, field of view and vanishing points, as `inspect` does.
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
@@ -152,7 +153,7 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
     Some(format!("```text\n{summary}```"))
 }
 
-/// An object, as `inspect` shows it.
+/// Describes an object, as `inspect` does.
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
@@ -164,17 +165,17 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
             if let [first, .., last] = objects {
                 for object in [first, last] {
                     let name = object.name.as_deref().unwrap_or_default();
-                    found += &format!("\n\n`{name}`: {}", inspect::summary(&object.shape));
+                    found += &format!("\n\n`{name}`: {}", object.shape.summary(vertices));
                 }
             }
             found
         }
-        [object] => format!("{kind} `{name}`: {}", inspect::summary(&object.shape)),
+        [object] => format!("{kind} `{name}`: {}", object.shape.summary(vertices)),
         _ => format!("{kind} `{name}`"),
     })
 }
 
-/// An index of the block's head.
+/// Describes an index of a repeated block.
 pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String {
     let (name, count) = (index.name.text, shorten(analysis.slice(index.count.span)));
     format!(
@@ -182,8 +183,8 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Which of the values around a place there is something to say of: the smallest one; or what a
-/// number, a list or a sign is an operand or an argument of.
+/// Returns the depth of the value around a place that is described: the smallest one, or for a
+/// number, a list or a sign the operation or call that it belongs to.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
@@ -196,8 +197,8 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
-/// What a value comes to.
-fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Option<Hover> {
+/// Describes the result of a value.
+fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> Option<Hover> {
     let depth = depth_of_meaning(path)?;
     let value = *path.values.get(depth)?;
     let found = match depth {
@@ -228,9 +229,11 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // What a number is follows from its field; of a part of a vector nothing is to be said.
+            // A number is described by its field; a coordinate of a vector has no description.
             let (row, field) = (path.row()?, path.field_row()?);
-            (depth == 0).then_some(())?;
+            if depth > 0 {
+                return None;
+            }
             about(value.span, about_field(row, field))
         }
         _ => {
@@ -239,16 +242,17 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: Token) -> Opti
             let found = described(found?);
             about(
                 value.span,
-                match is_literal {
-                    true => found,
-                    false => format!("`{written}` is {found}"),
+                if is_literal {
+                    found
+                } else {
+                    format!("`{written}` is {found}")
                 },
             )
         }
     }
 }
 
-/// Whether a value says itself what it is.
+/// Whether a value is a literal or a list of literals.
 fn is_literal(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => true,

@@ -1,9 +1,10 @@
-//! The language's answers to one who is writing a scene.
+//! Answers for editors while somebody writes a scene.
 //!
-//! In: a text, and a place in it. Out: what could stand there, what a word means, where a name is
-//! used, and so on, as plain data with byte spans. A file per answer. They know no editor and no
-//! protocol: the language server converts them, and a page in a browser could as well. Everything
-//! reads the one table of facts and the one lowering, which fill in what they can of a broken text.
+//! In: a text, and a place in it. Out: completions, the meaning of a word, the uses of a name, and
+//! so on, as plain data with byte spans; a file for each answer. They know no editor and no
+//! protocol: the language server converts them, and so could a page in a browser. All of them use
+//! the language's table and the tree and the scene of `analysis`, which are as complete as the
+//! errors of the text allow.
 
 mod actions;
 mod analysis;
@@ -24,7 +25,7 @@ pub mod viewport;
 pub use actions::{fix_all, fixes, formatting, made_up_values};
 pub use analysis::Analysis;
 pub use colors::{Swatch, presentations, swatches};
-pub use completion::{Completion, CompletionKind, Piece, completions};
+pub use completion::{Completion, CompletionKind, SnippetPart, completions};
 pub use folding::{Fold, FoldKind, folds};
 pub use hints::{Hint, hints};
 pub use hover::{Hover, hover};
@@ -33,4 +34,4 @@ pub use names::{Occurrence, definition, occurrences, renamable, rename};
 pub use semantic::{SemanticKind, SemanticToken, semantic_tokens};
 pub use signature::{Signature, signature};
 pub use symbols::{Symbol, SymbolKind, symbols};
-pub use tokens::{Role, Token};
+pub use tokens::{Role, RoleToken};

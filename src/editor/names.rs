@@ -1,43 +1,42 @@
-//! The names that a text defines: where each is defined, where it is used, and what it could be
-//! called instead.
+//! Definitions, uses and renaming of the names that a text defines.
 //!
-//! A `let` and an object may have the same name, and have nothing to do with each other then. An
-//! index is known in its block alone.
+//! `let`s and objects have separate namespaces, so that one of each may have the same name. An
+//! index is known only in its block.
 
 use super::{
     analysis::Analysis,
-    tokens::{Role, Token},
+    tokens::{Role, RoleToken},
 };
 use crate::{
     schema::{self, predefined},
     source::Span,
 };
 
-/// A place where a name stands.
+/// A definition or a use of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occurrence {
-    /// The name.
+    /// The span of the name.
     pub span: Span,
-    /// Whether it is defined here.
+    /// Whether it is the definition.
     pub is_definition: bool,
 }
 
-/// What a name is the name of.
+/// The namespace of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Space {
+enum Namespace {
     Lets,
     Objects,
 }
 
-/// Where the name at a place is defined.
+/// Returns the definition of the name at a place.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);
     first.map(|occurrence| occurrence.span)
 }
 
-/// Every place where the name at a place stands, in order; nothing where there is no name of the
-/// scene's own.
+/// Returns the definition and all uses of the name at a place, in order; none if the text does not
+/// define the name.
 pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     let Some((name, space)) = name_at(analysis, at) else {
         return Vec::new();
@@ -47,7 +46,8 @@ pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     let scope = |at| analysis.index_at(word, at).map(|(block, _)| block.span);
     let own_scope = scope(at);
     let same = tokens.filter(|token| analysis.slice(token.span) == word);
-    let same = same.filter(|token| space == Space::Objects || scope(token.span.start) == own_scope);
+    let same =
+        same.filter(|token| space == Namespace::Objects || scope(token.span.start) == own_scope);
     let occurrences: Vec<Occurrence> = same
         .filter(|token| space_of(token.role) == Some(space))
         .map(|token| Occurrence {
@@ -56,13 +56,14 @@ pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
         })
         .collect();
     let is_defined = occurrences.iter().any(|found| found.is_definition);
-    match is_defined {
-        true => occurrences,
-        false => Vec::new(),
-    }
+    if is_defined { occurrences } else { Vec::new() }
 }
 
-/// The name at a place, if it can be changed; otherwise why not.
+/// Returns the span of the name at a place, if it can be renamed.
+///
+/// # Errors
+///
+/// Why it cannot be renamed, in a sentence.
 pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
     let Some(token) = analysis.token_at(at) else {
         return Err("no name stands here".to_owned());
@@ -83,7 +84,11 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
     })
 }
 
-/// The places that take a new name instead of the one at a place; or why it will not do.
+/// Returns the spans to replace by a new name for the name at a place.
+///
+/// # Errors
+///
+/// Why the name cannot be given, in a sentence.
 pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>, String> {
     renamable(analysis, at)?;
     let occurrences = occurrences(analysis, at);
@@ -102,27 +107,27 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
     }
     let is_reserved = |name: &str| schema::block(name).is_some_and(|row| !row.is_object);
     match (space, predefined(new)) {
-        (Space::Lets, Some(what)) => {
+        (Namespace::Lets, Some(what)) => {
             return Err(format!("`{new}` is {} of the language", what.noun()));
         }
-        (Space::Objects, _) if is_reserved(new) => {
+        (Namespace::Objects, _) if is_reserved(new) => {
             return Err(format!("`{new}` is the name of the {new} block"));
         }
         _ => {}
     }
-    // An index of another block is known there alone, and no index of this one.
+    // Indices of different blocks may have the same name.
     let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
     let own = block(analysis.slice(name.span), name.span.start);
-    let is_elsewhere = |token: &Token| {
+    let is_elsewhere = |token: &RoleToken| {
         let other = block(new, token.span.start);
         own.is_some() && other.is_some() && own != other
     };
-    let is_taken = |token: &&Token| {
+    let is_taken = |token: &&RoleToken| {
         space_of(token.role) == Some(space)
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // One that nothing defines would be this one from then on.
+    // A use of the new name without a definition would mean the renamed one, so it counts as taken.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(
@@ -133,15 +138,15 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
     }
 }
 
-fn name_at(analysis: &Analysis<'_>, at: usize) -> Option<(Token, Space)> {
+fn name_at(analysis: &Analysis<'_>, at: usize) -> Option<(RoleToken, Namespace)> {
     let token = analysis.token_at(at)?;
     Some((token, space_of(token.role)?))
 }
 
-fn space_of(role: Role) -> Option<Space> {
+fn space_of(role: Role) -> Option<Namespace> {
     match role {
-        Role::Defined | Role::Name => Some(Space::Lets),
-        Role::ObjectName => Some(Space::Objects),
+        Role::Defined | Role::Name => Some(Namespace::Lets),
+        Role::ObjectName => Some(Namespace::Objects),
         _ => None,
     }
 }

@@ -1,37 +1,37 @@
-//! What each word is, for colouring.
+//! Classifies words for colouring.
 
 use super::{
     analysis::Analysis,
-    tokens::{Role, Token},
+    tokens::{Role, RoleToken},
 };
 use crate::{
     schema::{self, css},
     source::{Span, sort_by_span},
 };
 
-/// A word, number, sign or comment, and what it is.
+/// A word, number, sign or comment with its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SemanticToken {
-    /// Its place; a comment may take several lines.
+    /// The span; a comment may have several lines.
     pub span: Span,
-    /// What it is.
+    /// The kind.
     pub kind: SemanticKind,
-    /// Whether a `let` defines the name here.
+    /// Whether the token is a name in its definition.
     pub is_declaration: bool,
 }
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SemanticKind {
-    /// `let`, and the kinds of blocks.
+    /// `let`, `for`, or the keyword of a block.
     Keyword,
     /// The name of a field.
     Property,
-    /// A `let`'s name.
+    /// The name of a `let` or an index.
     Variable,
-    /// An object's name.
+    /// The name of an object.
     Class,
-    /// A function.
+    /// The name of a function.
     Function,
     /// A word of the language that is a value: a method, a named colour, a constant.
     EnumMember,
@@ -44,7 +44,7 @@ pub enum SemanticKind {
 }
 
 impl SemanticKind {
-    /// All of them; the place of each is its number in a legend.
+    /// All kinds; the index of each is its number in a legend.
     pub const ALL: [Self; 9] = [
         Self::Keyword,
         Self::Property,
@@ -58,7 +58,7 @@ impl SemanticKind {
     ];
 }
 
-/// The tokens of the text in order.
+/// Returns the tokens of the text in order.
 pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
     let words = analysis.tokens().iter();
     let words = words.filter_map(|token| classified(analysis, token));
@@ -72,7 +72,7 @@ pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
     tokens
 }
 
-fn classified(analysis: &Analysis<'_>, token: &Token) -> Option<SemanticToken> {
+fn classified(analysis: &Analysis<'_>, token: &RoleToken) -> Option<SemanticToken> {
     let word = analysis.slice(token.span);
     let kind = match token.role {
         Role::Let | Role::Repeat | Role::Kind => SemanticKind::Keyword,

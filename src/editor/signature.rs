@@ -1,25 +1,25 @@
-//! The function that is being called, and which of its arguments is being written.
+//! The signature of the function whose arguments are being written.
 
 use super::{analysis::Analysis, cursor};
 use crate::{scene::describe, schema, source::Span};
 use std::ops::Range;
 
-/// A function as it is called.
+/// The signature of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// `atan2(y, x) → angle`
+    /// The signature, such as `atan2(y, x) → angle`.
     pub label: String,
-    /// What it is, in a line.
+    /// One line of help.
     pub help: &'static str,
-    /// Where each parameter stands in the label, in bytes.
+    /// The byte ranges of the parameters in the label.
     pub parameters: Vec<Range<usize>>,
-    /// Which one is being written.
+    /// The index of the parameter that is being written.
     pub active: usize,
-    /// The function's name in the text.
+    /// The span of the function's name in the text.
     pub span: Span,
 }
 
-/// The innermost call around a place.
+/// Returns the signature of the innermost call around a place.
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
     let at = analysis.source().floor_char_boundary(at);
     let (span, index) = cursor::call(analysis, at)?;
@@ -29,9 +29,10 @@ pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
     Some(Signature {
         label,
         help: function.help,
-        active: match function.more {
-            true => index.min(last),
-            false => index,
+        active: if function.more {
+            index.min(last)
+        } else {
+            index
         },
         parameters,
         span,

@@ -13,26 +13,26 @@ use crate::{
 /// An entry of the outline.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// What it is, or what its value is.
+    /// The kind of block, or the text of the value.
     pub detail: String,
-    /// What sort of thing it is.
+    /// The kind.
     pub kind: SymbolKind,
-    /// All of it.
+    /// The whole span.
     pub span: Span,
-    /// The word that stands for it, within that.
+    /// The span of its name or keyword, within the whole span.
     pub selection: Span,
-    /// What it holds.
+    /// The fields of a block.
     pub children: Vec<Symbol>,
 }
 
-/// The sorts of entries.
+/// The kind of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SymbolKind {
     /// A `let`.
     Definition,
-    /// The image, the camera, the sampler.
+    /// The image, the camera or the sampler.
     Setting,
     /// An object.
     Object,
@@ -40,7 +40,7 @@ pub enum SymbolKind {
     Field,
 }
 
-/// The outline, in the order of the text.
+/// Returns the outline in the order of the text.
 pub fn symbols(analysis: &Analysis<'_>) -> Vec<Symbol> {
     let items = analysis.items().iter();
     let mut symbols: Vec<Symbol> = items
@@ -78,7 +78,7 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         selection: field.name.span,
         children: Vec::new(),
     });
-    // A name that stands before its kind (`let Ball = sphere {`) lies outside of the block.
+    // A name before its keyword, as in `let Ball = sphere {`, is outside of the block.
     let name = block
         .name
         .filter(|name| name.span.start >= block.span.start);
@@ -94,9 +94,10 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
             }
             None => name.map_or("", |_| kind.text).to_owned(),
         },
-        kind: match row.is_some_and(|row| row.is_object) {
-            true => SymbolKind::Object,
-            false => SymbolKind::Setting,
+        kind: if row.is_some_and(|row| row.is_object) {
+            SymbolKind::Object
+        } else {
+            SymbolKind::Setting
         },
         span: block.span.to(kind.span),
         selection: name.map_or(kind.span, |name| name.span),

@@ -1,7 +1,7 @@
-//! The words and signs of a text, each with what it is.
+//! The words and signs of a text with their roles.
 //!
-//! In: a text and its tree. Out: the lexer's tokens in order. What a word is, the tree says; one
-//! that the tree does not hold is nothing of the language.
+//! In: a text and its tree. Out: the lexer's tokens in order. The tree determines the role of a
+//! word; a word that is not in the tree has none.
 
 use crate::{
     scene::SemanticModel,
@@ -13,33 +13,33 @@ use crate::{
     },
 };
 
-/// A word or sign.
+/// A word or sign with its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Token {
-    /// Its place.
+pub struct RoleToken {
+    /// The span.
     pub span: Span,
-    /// What it is.
+    /// The role.
     pub role: Role,
 }
 
-/// What a word or sign is by its place.
+/// The role of a word or sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// `let`
     Let,
     /// `for`
     Repeat,
-    /// The name that a `let` defines, or a head's index.
+    /// The name of a `let` or an index, in its definition.
     Defined,
-    /// The word that a block starts with.
+    /// The keyword of a block.
     Kind,
     /// The name of an object.
     ObjectName,
     /// The name of a field.
     Field,
-    /// A name that is a value: of a `let`, a colour, a constant.
+    /// A name that is used as a value: of a `let`, an index, a colour, or a constant.
     Name,
-    /// The name of a function, with its `(` after it.
+    /// The name of a function before its `(`.
     Function,
     /// The word of a sampling method.
     Method,
@@ -49,25 +49,25 @@ pub enum Role {
     ColorCode,
     /// `+ - * / = <`
     Operator,
-    /// Anything else: a brace, a comma, or nothing of the language.
+    /// Any other: a brace, a comma, or a word that is not in the tree.
     Other,
 }
 
-/// A place in the file.
+/// Returns a span of the file.
 pub fn file(start: usize, end: usize) -> Span {
     Span::new(SourceId::File, start, end)
 }
 
-/// The tokens of a text. None reaches into a comment.
-pub fn tokens(model: &SemanticModel<'_>) -> Vec<Token> {
+/// Returns the tokens of a text. None of them reaches into a comment.
+pub fn tokens(model: &SemanticModel<'_>) -> Vec<RoleToken> {
     let text = model.sources().file.text();
     let mut roles = Roles(scanned(text, &model.parsed.comments));
     for item in &model.parsed.tree.items {
         match item {
             Item::Definition(definition) => {
-                roles.is(definition.keyword, Role::Let);
+                roles.set(definition.keyword, Role::Let);
                 if let Some(name) = definition.name {
-                    roles.is(name.span, Role::Defined);
+                    roles.set(name.span, Role::Defined);
                 }
                 roles.value(&definition.value, None);
             }
@@ -78,14 +78,14 @@ pub fn tokens(model: &SemanticModel<'_>) -> Vec<Token> {
     roles.0
 }
 
-/// The tokens with the roles that they have wherever they stand.
-fn scanned(text: &str, comments: &[Span]) -> Vec<Token> {
+/// Returns the tokens with the roles that do not depend on the tree.
+fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut comments = comments.iter().peekable();
     let mut lexer = Lexer::new(text, 0);
     loop {
         let token = lexer.token();
-        // What recovery took for a comment need not begin as one.
+        // Text that error recovery took for a comment need not begin as one.
         if let Some(comment) = comments.next_if(|comment| comment.start <= token.start)
             && comment.end > token.start
         {
@@ -104,15 +104,16 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<Token> {
             TokenKind::End => return tokens,
         };
         let span = file(token.start, token.end);
-        tokens.push(Token { span, role });
+        tokens.push(RoleToken { span, role });
     }
 }
 
-/// Tokens that the tree gives their roles.
-struct Roles(Vec<Token>);
+/// Tokens whose roles are set by the tree.
+struct Roles(Vec<RoleToken>);
 
 impl Roles {
-    fn is(&mut self, span: Span, role: Role) {
+    /// Sets the role of a token.
+    fn set(&mut self, span: Span, role: Role) {
         let index = self.0.partition_point(|it| it.span.start < span.start);
         let token = self.0.get_mut(index);
         if let Some(token) = token.filter(|token| token.span == span) {
@@ -122,21 +123,21 @@ impl Roles {
 
     fn block(&mut self, block: &Block<'_>) {
         if let Some(kind) = block.kind {
-            self.is(kind.span, Role::Kind);
+            self.set(kind.span, Role::Kind);
         }
         if let Some(name) = block.name {
-            self.is(name.span, Role::ObjectName);
+            self.set(name.span, Role::ObjectName);
         }
         if let Some(repetition) = &block.repetition {
-            self.is(repetition.keyword, Role::Repeat);
+            self.set(repetition.keyword, Role::Repeat);
             for index in &repetition.indices {
-                self.is(index.name.span, Role::Defined);
+                self.set(index.name.span, Role::Defined);
                 self.value(&index.count, None);
             }
         }
         let row = block.kind.and_then(|kind| schema::block(kind.text));
         for field in &block.fields {
-            self.is(field.name.span, Role::Field);
+            self.set(field.name.span, Role::Field);
             let known = row.and_then(|row| row.field(field.name.text));
             self.value(&field.value, known.map(|known| known.takes));
         }
@@ -144,12 +145,12 @@ impl Roles {
 
     fn value(&mut self, value: &Value<'_>, takes: Option<Type>) {
         match &value.kind {
-            ValueKind::Name(_) if takes == Some(Type::Method) => self.is(value.span, Role::Method),
-            ValueKind::Name(_) => self.is(value.span, Role::Name),
+            ValueKind::Name(_) if takes == Some(Type::Method) => self.set(value.span, Role::Method),
+            ValueKind::Name(_) => self.set(value.span, Role::Name),
             ValueKind::Call(call) => {
                 let is_known = schema::function(call.function.text).is_some();
                 let role = if is_known { Role::Function } else { Role::Name };
-                self.is(call.function.span, role);
+                self.set(call.function.span, role);
             }
             _ => {}
         }

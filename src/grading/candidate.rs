@@ -9,7 +9,7 @@ use super::{
     light::{Curve, Look},
     parameters::Parameter,
 };
-use crate::scene::{Part, Scene};
+use crate::scene::{FieldOwner as Part, Scene};
 
 /// A mistake of a program.
 #[derive(Clone, Debug)]

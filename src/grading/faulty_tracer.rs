@@ -456,15 +456,7 @@ fn on_plane([a, b, c]: &[DVec3; 3], hit: Hit, eye: DVec3, ray: DVec3) -> Option<
 /// The rectangle of the picture that a shape lies in, if all of it lies before the eye, or behind
 /// it.
 pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
-    let (min, max) = match shape {
-        Shape::Sphere(sphere) => (sphere.center - sphere.radius, sphere.center + sphere.radius),
-        Shape::Box(cuboid) => (cuboid.min, cuboid.max),
-        Shape::Triangle(triangle) => {
-            let [a, b, c] = vertices(&triangle.outline);
-            (a.min(b).min(c), a.max(b).max(c))
-        }
-        Shape::Checkerboard(_) => return None,
-    };
+    let [min, max] = shape.bounding_box(|triangle| vertices(&triangle.outline))?;
     let corners = corners(min, max);
     let depths = corners.map(|corner| projection.depth(corner));
     let is_on_one_side = |depth: &f64| *depth != 0.0 && (depths[0] > 0.0) == (*depth > 0.0);

@@ -12,8 +12,8 @@ use crate::{
     color::Color,
     math::Angle,
     projection::Projection,
-    scene::{Camera, Object, Part, Scene, Shape, View},
-    schema::{self, Field, Value},
+    scene::{Camera, FieldOwner as Part, Object, Scene, Shape, View},
+    schema::{self, FieldRow as Field, Value},
 };
 
 /// Whose field it is.
@@ -364,10 +364,5 @@ fn inward(channel: f64) -> f64 {
 
 /// The middle of a shape that has one.
 fn middle(shape: &Shape) -> Option<DVec3> {
-    match shape {
-        Shape::Sphere(sphere) => Some(sphere.center),
-        Shape::Triangle(triangle) => Some(triangle.outline.centroid()),
-        Shape::Box(cuboid) => Some(cuboid.min.midpoint(cuboid.max)),
-        Shape::Checkerboard(_) => None,
-    }
+    shape.center()
 }

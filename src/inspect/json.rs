@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use super::{AXES, Inspection, ObjectFacts};
 use crate::{
     numbers,
-    scene::{Checkerboard, Cuboid, Shape, Sphere, Triangle},
     seen::{LISTED, MIN_AREA, Visibility},
     tracer::vertices,
 };
@@ -87,7 +86,7 @@ impl Inspection {
         if !object.indices.is_empty() {
             facts["indices"] = json!(object.indices);
         }
-        for (key, value) in shape_facts(&object.shape) {
+        for (key, value) in object.shape.facts(vertices) {
             facts[key] = value;
         }
         if index < LISTED {
@@ -111,42 +110,5 @@ impl Inspection {
             }
             Visibility::Nothing => json!({ "box": null, "pixels": 0.0 }),
         }
-    }
-}
-
-/// Returns the members that depend on the kind of object.
-fn shape_facts(shape: &Shape) -> Vec<(&'static str, Value)> {
-    match shape {
-        Shape::Sphere(Sphere {
-            center,
-            radius,
-            color,
-        }) => vec![
-            ("center", json!(center.to_array())),
-            ("radius", json!(radius)),
-            ("color", json!(color.to_string())),
-        ],
-        Shape::Triangle(triangle @ Triangle { outline: _, color }) => vec![
-            ("vertices", json!(vertices(triangle).map(|v| v.to_array()))),
-            ("color", json!(color.to_string())),
-        ],
-        Shape::Box(Cuboid {
-            min,
-            max,
-            color,
-            faces,
-        }) => vec![
-            ("min", json!(min.to_array())),
-            ("max", json!(max.to_array())),
-            match faces {
-                None => ("color", json!(color.to_string())),
-                Some(colors) => ("colors", json!(colors.map(|color| color.to_string()))),
-            },
-        ],
-        Shape::Checkerboard(Checkerboard { y, square, colors }) => vec![
-            ("y", json!(y)),
-            ("square", json!(square)),
-            ("colors", json!(colors.map(|color| color.to_string()))),
-        ],
     }
 }

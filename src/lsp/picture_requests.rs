@@ -13,10 +13,10 @@ use super::{
 use crate::{
     editor::{
         self, Analysis,
-        viewport::{self, Along, Drag, Outline, Shown, Vanishing},
+        viewport::{self, Along, Drag, ObjectOverlay, ShownObjects, Vanishing},
     },
     numbers::{short, short_vector, significant},
-    scene::{Object, Shape},
+    scene::Object,
 };
 
 /// Prefix of the names of Pinhole's own requests.
@@ -165,8 +165,8 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let objects = &version.scene.objects;
     // The first board is listed in any case, as objects stand on it, wherever it is in the text.
     let floor = match shown {
-        Shown::First(_) => objects.iter().position(is_board),
-        Shown::Only(_) => None,
+        ShownObjects::First(_) => objects.iter().position(is_board),
+        ShownObjects::Only(_) => None,
     };
     let listed = (0..objects.len()).filter(|index| shown.has(*index) || Some(*index) == floor);
     let overlays = viewport::overlays(&version.scene, &shown);
@@ -182,13 +182,13 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
 }
 
 fn is_board(object: &Object) -> bool {
-    matches!(object.shape, Shape::Checkerboard(_))
+    object.shape.checkerboard().is_some()
 }
 
-fn shown(params: &Value) -> Result<Shown, Refusal> {
+fn shown(params: &Value) -> Result<ShownObjects, Refusal> {
     let further: Option<usize> = optional(params, "object")?;
     let only: Option<Vec<usize>> = optional(params, "only")?;
-    Ok(only.map_or(Shown::First(further), Shown::Only))
+    Ok(only.map_or(ShownObjects::First(further), ShownObjects::Only))
 }
 
 fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) -> Answer {
@@ -228,7 +228,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
 }
 
 /// Returns, in words, the part of the picture in which an object's first handle is seen.
-fn place(outline: &Outline, size: [u32; 2]) -> String {
+fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));
     let part = at.map(|at| (3.0 * at / size).floor());

@@ -11,7 +11,8 @@ use glam::{BVec3, DVec2, DVec3};
 use crate::{
     math::Angle,
     scene::{
-        Camera, CenteredTriangle, Cuboid, Outline, Shape, Sphere, Triangle, View, level_direction,
+        Camera, CenteredTriangle, Cuboid, Shape, Sphere, Triangle, TriangleOutline, View,
+        level_direction,
     },
 };
 
@@ -40,10 +41,10 @@ pub fn radians(angle: Angle) -> f64 {
 }
 
 /// Returns the vertices of a triangle: as written, or left base end, right base end, apex.
-pub fn vertices(outline: &Outline) -> [DVec3; 3] {
+pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
     match outline {
-        Outline::Vertices(vertices) => *vertices,
-        Outline::Centered(triangle) => centered(triangle),
+        TriangleOutline::Vertices(vertices) => *vertices,
+        TriangleOutline::Centered(triangle) => centered(triangle),
     }
 }
 
@@ -83,7 +84,7 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
-            outline: Outline::Vertices(vertices(&outline)),
+            outline: TriangleOutline::Vertices(vertices(&outline)),
             color,
         }),
         other => other,

@@ -9,8 +9,9 @@ use crate::{
     math::Angle,
     scene::{
         Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Image, Lens, Method, Object,
-        Outline, Sampler, Scene, Shape, Sphere, Triangle, View,
+        Sampler, Scene, Shape, Sphere, Triangle, TriangleOutline, View,
     },
+    schema::Value,
     source::{SourceId, Span},
 };
 
@@ -66,7 +67,7 @@ pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
 /// Returns a triangle with a spin in degrees.
 pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     Shape::Triangle(Triangle {
-        outline: Outline::Centered(CenteredTriangle {
+        outline: TriangleOutline::Centered(CenteredTriangle {
             centroid,
             normal,
             sides,
@@ -94,14 +95,10 @@ pub fn color(object: usize, is_odd: bool) -> Color {
 /// Returns a scene whose colours identify its objects.
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
-        let mut shape = *shape;
         let own = [false, true].map(|is_odd| color(object, is_odd));
-        match &mut shape {
-            Shape::Sphere(sphere) => sphere.color = own[0],
-            Shape::Triangle(triangle) => triangle.color = own[0],
-            Shape::Box(cuboid) => cuboid.color = own[0],
-            Shape::Checkerboard(board) => board.colors = own,
-        }
+        let of_one_color = shape.with_field("color", Value::Color(own[0]));
+        let colored = of_one_color.or_else(|| shape.with_field("colors", Value::Colors(own)));
+        let shape = colored.unwrap_or(*shape);
         Object {
             name: None,
             indices: Box::default(),

@@ -1,22 +1,22 @@
-//! The language's words in Markdown, as its own table has them: for hovers, completion and
-//! `explain`.
+//! Descriptions of the language's words in Markdown, made from its table: for hovers, completion
+//! and `explain`.
 
 use std::{fmt::Write, ops::Range};
 
 use crate::{
-    schema::{self, Block, Field, Function, Preset, Type, css},
+    schema::{self, BlockRow, FieldRow, Function, Preset, Type, css},
     suggest,
 };
 
-/// What `let` does.
+/// Description of `let`.
 pub const ABOUT_LET: &str =
     "`let NAME = VALUE` gives a value a name, for what stands further down.";
 
-/// What `for` does.
+/// Description of `for`.
 pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
 
-/// A word of the language, with all that it means and an example of each: a kind of block, a field,
-/// a method, a function, a constant, a colour.
+/// Describes a word of the language in all its meanings, each with an example: as a kind of block,
+/// a field, a method, a function, a constant, a colour. Returns `None` if it has no meaning.
 pub fn word(word: &str) -> Option<String> {
     let mut parts = Vec::new();
     let example = |text: &str| format!("\n\n```scn\n{text}\n```");
@@ -60,7 +60,7 @@ pub fn word(word: &str) -> Option<String> {
     (!parts.is_empty()).then_some(text)
 }
 
-/// A field of one kind of block, written `BLOCK.FIELD`, with an example.
+/// Describes a field of one kind of block, written `BLOCK.FIELD`, with an example.
 pub fn field_of(path: &str) -> Option<String> {
     let (block, name) = path.split_once('.')?;
     let row = schema::block(block)?;
@@ -70,9 +70,9 @@ pub fn field_of(path: &str) -> Option<String> {
     Some(format!("# {path}\n\n{about}\n\n```scn\n{example}\n```\n"))
 }
 
-/// Every word that [`word`] knows, but for the colours.
+/// Returns every word that [`word`] describes, except colours.
 pub fn words() -> impl Iterator<Item = &'static str> {
-    let fields = schema::BLOCKS.iter().flat_map(Block::field_names);
+    let fields = schema::BLOCKS.iter().flat_map(BlockRow::field_names);
     let functions = schema::FUNCTIONS.iter().map(|function| function.name);
     let constants = schema::CONSTANTS.iter().map(|(name, ..)| *name);
     let blocks = ["let", "for"].into_iter().chain(schema::block_names());
@@ -83,7 +83,8 @@ pub fn words() -> impl Iterator<Item = &'static str> {
         .chain(constants)
 }
 
-fn block_page(row: &Block) -> String {
+/// Describes a kind of block, its fields and its choices.
+fn block_page(row: &BlockRow) -> String {
     let mut text = about_block(row);
     for choice in row.choices {
         let _ = write!(
@@ -95,8 +96,8 @@ fn block_page(row: &Block) -> String {
     text
 }
 
-/// A kind of block, and its fields.
-pub fn about_block(row: &Block) -> String {
+/// Describes a kind of block and its fields.
+pub fn about_block(row: &BlockRow) -> String {
     let mut text = format!("`{}`: {}\n", row.name, row.help);
     for field in row.fields {
         let _ = write!(
@@ -110,8 +111,8 @@ pub fn about_block(row: &Block) -> String {
     text
 }
 
-/// A field: what it is, what it takes, what it is if not given, and what it must be.
-pub fn about_field(row: &Block, field: &Field) -> String {
+/// Describes a field: its meaning, type, default and conditions.
+pub fn about_field(row: &BlockRow, field: &FieldRow) -> String {
     let mut text = format!(
         "`{}` of {}: {}\n\n({})",
         field.name,
@@ -144,8 +145,8 @@ pub fn about_field(row: &Block, field: &Field) -> String {
     text
 }
 
-/// What a field takes, and what it is if not given.
-pub fn kind_and_preset(field: &Field) -> String {
+/// Describes the type of a field and its default.
+pub fn kind_and_preset(field: &FieldRow) -> String {
     let kind = field.takes.word();
     match field.preset {
         Preset::Value(literal) => format!("{kind}, `{literal}` by default"),
@@ -154,12 +155,12 @@ pub fn kind_and_preset(field: &Field) -> String {
     }
 }
 
-/// A function: how it is called, and what it is.
+/// Describes a function: its signature and its meaning.
 pub fn about_function(function: &Function) -> String {
     format!("`{}`: {}", signature(function).0, function.help)
 }
 
-/// How a function is called, and where in that its parameters stand, in bytes.
+/// Returns the signature of a function, and the byte ranges of its parameters.
 pub fn signature(function: &Function) -> (String, Vec<Range<usize>>) {
     let mut label = format!("{}(", function.name);
     let mut parameters = Vec::new();
@@ -168,7 +169,7 @@ pub fn signature(function: &Function) -> (String, Vec<Range<usize>>) {
             label.push_str(", ");
         }
         let start = label.len();
-        // The name of an argument stands for it, or its type.
+        // A parameter is shown by its name, or else by its type.
         let name = function.parameters.get(index);
         label.push_str(name.copied().unwrap_or_else(|| takes.word()));
         parameters.push(start..label.len());

@@ -1,11 +1,11 @@
-//! How problems of meaning are written where they arise.
+//! Builds diagnostics where problems of meaning arise.
 
 use crate::{
     diagnostic::{Applicability, Diagnostic, Fix, Label, Severity},
     source::Span,
 };
 
-/// An error by its code, which stands behind `pinhole::`.
+/// Returns an error with a code, which is written behind `pinhole::`.
 pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Error,
@@ -19,7 +19,7 @@ pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// The same of a warning.
+/// Returns a warning with a code, which is written behind `pinhole::`.
 pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Warning,
@@ -27,7 +27,7 @@ pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// An error of a thing that is there twice.
+/// Returns the error of a thing that is given twice.
 pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnostic {
     error(code, message)
         .at(second, "and again here")
@@ -35,26 +35,26 @@ pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnos
 }
 
 impl Diagnostic {
-    /// Adds a label. The first one is the place to jump to.
+    /// Adds a label. Editors jump to the first one.
     pub(super) fn at(mut self, span: Span, label: impl Into<String>) -> Self {
         let message = label.into();
         self.labels.push(Label { span, message });
         self
     }
 
-    /// Says what to do.
+    /// Sets the help, which says what to do.
     pub(super) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds ways out that are edits, the likeliest first. None of them needs another one.
+    /// Adds fixes, the likeliest first. Each can be applied alone.
     pub(super) fn fixes(mut self, fixes: impl IntoIterator<Item = Fix>) -> Self {
         self.fixes.extend(fixes);
         self
     }
 
-    /// Offers to write one of some texts in a place.
+    /// Adds fixes, each of which writes one of several texts in a place.
     pub(super) fn writing<S: Into<String>>(
         self,
         span: Span,
@@ -65,17 +65,17 @@ impl Diagnostic {
         self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
     }
 
-    /// Whether it has this code.
+    /// Whether the diagnostic has a code.
     pub(super) fn is(&self, code: &str) -> bool {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
-    /// Whether it suggests a name, or a call, in place of one that stands for nothing.
+    /// Whether the diagnostic suggests a name or a call instead of an undefined name.
     pub(super) fn is_of_suggestion(&self) -> bool {
         self.is_of_name() || self.is("function_without_arguments")
     }
 
-    /// Whether it is about a name that stands for nothing.
+    /// Whether the diagnostic is about an undefined name.
     pub(super) fn is_of_name(&self) -> bool {
         const CODES: [&str; 4] = [
             "unknown_name",

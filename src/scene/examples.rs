@@ -1,8 +1,8 @@
-//! Values that a field can have beside what else its block is given.
+//! Examples for a field that fit the other fields of its block.
 //!
-//! A field's own example can be an error there: a corner of a box on the wrong side of the other
-//! one, a camera that looks at its own eye. In: the field, and the values of the others. Out: a
-//! value that fits them, as it is written.
+//! The field's own example may contradict them: a corner of a box on the wrong side of the other
+//! one, or a camera that looks at its own eye. In: the field, and the values of the others. Out: a
+//! value in the language's notation that fits them.
 
 use glam::DVec3;
 
@@ -10,13 +10,22 @@ use super::eval::literal;
 use crate::{
     math::predicates,
     numbers,
-    schema::{Field, Value},
+    schema::{BOX, CAMERA, FieldRow, TRIANGLE, Value},
 };
 
-/// A value that a field can have, given the values of the others in its block. Where none that is
-/// tried fits, it is the field's own example.
-pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> String {
-    const POINTS: [&str; 7] = ["max", "min", "lookat", "eye", "v0", "v1", "v2"];
+/// Returns an example for a field that fits the values of the other fields, or the field's own
+/// example if none of the values that are tried fits.
+pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
+    const POINTS: [&str; 7] = [
+        BOX.max.name,
+        BOX.min.name,
+        CAMERA.lookat.name,
+        CAMERA.eye.name,
+        TRIANGLE.v0.name,
+        TRIANGLE.v1.name,
+        TRIANGLE.v2.name,
+    ];
+    const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,
@@ -26,13 +35,17 @@ pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> S
         DVec3::ONE,
     ];
     let others = POINTS.iter().filter_map(|name| match given(name)? {
-        // A direction is none from a point.
-        _ if matches!(field.name, "direction" | "up") || *name == field.name => None,
+        // Directions do not start from a point.
+        _ if DIRECTIONS.contains(&field.name) || *name == field.name => None,
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // An eye looks along −z, and stands before what it looks at.
-    let sign = if field.name == "eye" { -1.0 } else { 1.0 };
+    // An eye is on the other side of the point that it looks at along −z.
+    let sign = if field.name == CAMERA.eye.name {
+        -1.0
+    } else {
+        1.0
+    };
     let beside = others.chain([DVec3::ZERO]);
     let beside = beside.flat_map(|point| STEPS.map(|step| point + step * sign));
     let mut all =
@@ -41,31 +54,39 @@ pub fn example_beside(field: &Field, given: &dyn Fn(&str) -> Option<Value>) -> S
         let new = literal(text, field.takes);
         new.is_some() && fits(&|name| if name == field.name { new } else { given(name) })
     };
-    match (field.name, given("near")) {
-        ("far", Some(Value::Number(near))) if near >= 100.0 => numbers::short(near * 2.0),
+    match given(CAMERA.near.name) {
+        Some(Value::Number(near)) if field.name == CAMERA.far.name && near >= 100.0 => {
+            numbers::short(near * 2.0)
+        }
         _ => all.find(fits).unwrap_or_else(|| field.example.to_owned()),
     }
 }
 
-/// Whether vectors of a block do not contradict each other, as far as they are known.
+/// Whether the known vectors of a block do not contradict each other.
 fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),
         _ => None,
     };
-    if let (Some(min), Some(max)) = (vector("min"), vector("max")) {
+    if let (Some(min), Some(max)) = (vector(BOX.min.name), vector(BOX.max.name)) {
         return min.cmplt(max).all();
     }
-    let view = match (vector("direction"), vector("eye"), vector("lookat")) {
+    let direction = vector(CAMERA.direction.name);
+    let view = match (
+        direction,
+        vector(CAMERA.eye.name),
+        vector(CAMERA.lookat.name),
+    ) {
         (Some(direction), _, _) => Some((DVec3::ZERO, direction)),
         (None, Some(eye), Some(lookat)) => Some((eye, lookat)),
         _ => None,
     };
     if let Some((from, to)) = view {
-        let up = vector("up").unwrap_or(DVec3::Y);
+        let up = vector(CAMERA.up.name).unwrap_or(DVec3::Y);
         return !predicates::cross_is_zero(up, from, to);
     }
-    let vertices = ["v0", "v1", "v2"].into_iter().filter_map(vector);
+    let vertices = [TRIANGLE.v0, TRIANGLE.v1, TRIANGLE.v2].into_iter();
+    let vertices = vertices.filter_map(|vertex| vector(vertex.name));
     match vertices.collect::<Vec<DVec3>>()[..] {
         [a, b] => a != b,
         [a, b, c] => !predicates::are_on_one_line([a, b, c]),

@@ -1,5 +1,4 @@
-//! All that can be put right at once: the first fix of each error that may be applied, again until
-//! nothing changes.
+//! Applies the first applicable fix of each error, again and again until the text stays the same.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -14,45 +13,48 @@ use crate::{
 pub struct Fixed {
     /// The text.
     pub text: String,
-    /// What was done, in order.
+    /// The fixes that were applied, in order.
     pub done: Vec<Done>,
-    /// Number of errors left whose fixes choose among meanings, or remove or change something.
+    /// Number of remaining errors with fixes that are unsafe: they choose among meanings, or
+    /// remove or change something.
     pub held_back: usize,
-    /// Number of errors left whose fixes only make up a value.
+    /// Number of remaining errors whose fixes only make up a value.
     pub placeholders: usize,
-    /// Number of errors left whose fixes another call would apply: the text has too many of them
-    /// for one call, or bytes that are not UTF-8, which a fixed text would not keep.
+    /// Number of remaining errors whose fixes another call would apply: the text has too many of
+    /// them for one call, or bytes that are not UTF-8, which a fixed text would lose.
     pub waiting: usize,
 }
 
 /// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
-    /// Where the problem was, in the text as it was then.
+    /// The place of the problem in the text at that time.
     pub place: LineColumn,
-    /// What the fix does.
+    /// The title of the fix.
     pub title: String,
 }
 
-/// Fixes the errors of a file by safe fixes, or by unsafe ones, too; values are never made up.
-/// Errors in arguments stay, and warnings are not touched: what they tell of may be meant.
+/// Fixes the errors of a file by safe fixes, or also by unsafe ones; values are never made up.
+/// Errors in arguments stay, and so do warnings, because a warning may be intended.
 pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
-    /// A fix can show what another mistake hid; so many in a row are more than any text has.
+    /// Maximum number of rounds. A fix may reveal a hidden mistake, but no text has so many of them
+    /// behind each other.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that are read for it: of long texts with more mistakes than a
-    /// reading tells, some are left.
+    /// Maximum number of bytes that are read in all rounds. In a long text with more mistakes than
+    /// one reading reports, some remain.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
-    // Problems of this text that stay though their fixes are typed in.
+    // Problems that remain although their fixes were applied.
     let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
-    // Bytes that are no text would be lost.
-    let rounds = match sources.file.invalid_utf8().is_empty() {
-        true => ROUNDS.min(READ / sources.file.text().len().max(1)).max(1),
-        false => 0,
+    // Bytes that are not UTF-8 would be lost.
+    let rounds = if sources.file.invalid_utf8().is_empty() {
+        ROUNDS.min(READ / sources.file.text().len().max(1)).max(1)
+    } else {
+        0
     };
     let mut is_finished = false;
     for _ in 0..rounds {
@@ -71,7 +73,7 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // The same once more, without them.
+            // The round is repeated without these.
             staying.extend(idle);
             continue;
         }
@@ -92,14 +94,15 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
             _ => 0,
         },
         placeholders: count(Applicability::Placeholder),
-        waiting: match is_finished {
-            true => 0,
-            false => left.iter().filter(|&&other| other <= most).count(),
+        waiting: if is_finished {
+            0
+        } else {
+            left.iter().filter(|&&other| other <= most).count()
         },
     }
 }
 
-/// A problem of a text, to be known again in a changed one.
+/// A problem of a text, by which it is recognised in a changed text.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Problem {
     code: String,
@@ -117,15 +120,15 @@ impl Problem {
     }
 }
 
-/// The first fixes of all errors as one, but for those that would change what another one changes:
-/// they wait for the next round.
+/// The first fixes of all errors, joined into one. A fix that would change the same place as
+/// another one waits for the next round.
 struct Round {
     fix: Fix,
-    /// The edits that make the text longer, and the problems that offer them: where all of these
-    /// stay, they would do so without end.
+    /// The edits that make the text longer, each with the problems that offer it. If all of these
+    /// problems remain, applying the edits would never end.
     lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
-    /// How much longer the text becomes at each place where it is changed.
+    /// The number of bytes by which the text grows at each place that changes.
     growth: BTreeMap<usize, isize>,
 }
 
@@ -138,7 +141,7 @@ impl Round {
     ) -> Self {
         let may_apply = |fix: &&Fix| fix.applicability <= most;
         let mut edits: Vec<Edit> = Vec::new();
-        // The ends of the places that are changed, by their starts. No two of them touch.
+        // The ends of the changed places by their starts. No two of them touch.
         let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
         let (mut lengthened, mut done) = (HashMap::<_, Vec<_>>::new(), Vec::new());
         for diagnostic in problems.iter().filter(|problem| problem.is_error()) {
@@ -184,7 +187,7 @@ impl Round {
         }
     }
 
-    /// A problem as it is in the changed text, if it is still there.
+    /// Returns a problem at its place in the changed text.
     fn moved(&self, problem: &Problem) -> Problem {
         let grown: isize = self
             .growth
@@ -198,7 +201,7 @@ impl Round {
     }
 }
 
-/// How much longer the text becomes by an edit.
+/// Returns the number of bytes by which an edit lengthens the text.
 fn growth(edit: &Edit) -> isize {
     edit.text.len() as isize - (edit.span.end - edit.span.start) as isize
 }

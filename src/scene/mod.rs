@@ -1,8 +1,8 @@
-//! What a scene file means: plain data with everything resolved.
+//! The meaning of a scene file: plain data with everything resolved.
 //!
 //! In: the texts of a file and of its overrides, which are parsed here. Out: a [`Scene`], or
-//! problems. Defaults are filled in, alternatives decided and expressions evaluated; every
-//! condition of the language's table holds. What the tracer makes of it is not known here.
+//! problems. Defaults are filled in, alternatives decided and expressions evaluated, and every
+//! condition of the language's table holds. Nothing here knows the tracer.
 
 #![cfg_attr(
     not(test),
@@ -19,23 +19,27 @@ pub mod describe;
 mod error;
 mod eval;
 mod examples;
+mod field_ref;
 mod fields;
 mod fix_all;
 mod lower;
+mod lowered_block;
 mod model;
 mod overrides;
 mod pixel_size;
 mod semantic_model;
+mod shape;
 mod unseen;
 mod value;
 
 pub use crate::schema::Method;
 pub use examples::example_beside;
-pub use fields::Part;
+pub use fields::FieldOwner;
 pub use fix_all::{Done, Fixed, fix_all};
 pub use lower::{analyze, read, read_in_parts, read_unless};
 pub use model::*;
 pub use pixel_size::pixel_size;
 pub use semantic_model::{Parts, SemanticModel};
-pub use unseen::{Place, Sight, sphere_around};
+pub use shape::*;
+pub use unseen::{Outside, Sight};
 pub use value::operate;

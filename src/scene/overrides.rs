@@ -1,7 +1,7 @@
-//! `--set TARGET=VALUE`.
+//! Arguments `--set TARGET=VALUE`.
 //!
 //! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the
-//! items with their values in them. What a value is in its place is for lowering to find out.
+//! items with the values of the arguments in them. Lowering evaluates these values.
 
 use super::{
     error::error,
@@ -18,14 +18,14 @@ use crate::{
     },
 };
 
-/// One argument.
+/// An argument.
 #[derive(Clone, Debug)]
 pub struct Override<'s> {
-    /// The block, of `BLOCK.FIELD`.
+    /// The block of `BLOCK.FIELD`.
     pub block: Option<Name<'s>>,
-    /// The field, or the name of a `let`.
+    /// The field of `BLOCK.FIELD`, or the name of a `let`.
     pub name: Name<'s>,
-    /// What it is to be.
+    /// The new value.
     pub value: Value<'s>,
 }
 
@@ -48,7 +48,7 @@ pub fn read<'s>(
     overrides
 }
 
-/// The block, the field or `let`, and where the value starts.
+/// Parses an argument into the block, the field or `let`, and the start of the value.
 fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), Box<Diagnostic>> {
     let Some((target, value)) = text.split_once('=') else {
         let help = "write TARGET=VALUE, such as `--set camera.roll=30deg` or `--set h=1.5`";
@@ -103,6 +103,7 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
     Ok((block, name, target.len() + 1))
 }
 
+/// Returns a name with its span; `None` if the text is no name.
 fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     let trimmed = text.trim();
     let start = start + text.len() - text.trim_start().len();
@@ -115,14 +116,15 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     })
 }
 
-/// Puts the values of the arguments into items of a file, in the place of what stands there. Those
-/// whose targets are not among them are left. Of several things of one name the first is meant.
+/// Puts the values of the arguments into items of a file, in the place of the old values. Arguments
+/// whose targets are not among the items remain. If several things have one name, the first is
+/// meant.
 pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
     overrides.retain(|it| !it.put_into(items));
 }
 
-/// Adds the blocks that a file leaves out to its end, for the arguments whose targets are not in
-/// it. Reports the other ones.
+/// Adds blocks behind the items of a file for arguments whose blocks the file leaves out, and
+/// reports the other arguments.
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
@@ -132,7 +134,7 @@ pub fn add<'s>(
     let mut problems = Problems::default();
     for it in overrides {
         match it.block {
-            // Its block was added just now.
+            // An argument before this one may have added the block.
             _ if it.put_into(items) => {}
             None => problems.push(no_such_let(&it, items, sources, budget)),
             Some(target) if setting(target.text).is_some() => {
@@ -150,7 +152,7 @@ pub fn add<'s>(
     problems
 }
 
-/// Whether it is a block with a field that an argument sets.
+/// Whether an item is a block with a field that an argument sets.
 pub fn is_set(item: &Item<'_>) -> bool {
     let Item::Block(block) = item else {
         return false;
@@ -160,7 +162,7 @@ pub fn is_set(item: &Item<'_>) -> bool {
 }
 
 impl<'s> Override<'s> {
-    /// Gives its target the value, if it is among the items.
+    /// Gives the target the value. Returns whether the target is among the items.
     fn put_into(&self, items: &mut [Item<'s>]) -> bool {
         let setting = self.block.and_then(|block| setting(block.text));
         for item in items {
@@ -181,11 +183,11 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Whether the value means something where it would stand: in a field, or in the definition of
-    /// a name, which sees those before it.
+    /// Whether the value is valid in a field, or in the definition of a name, which may use the
+    /// names before it.
     fn suits(
         &self,
-        place: Result<&schema::Field, &str>,
+        place: Result<&schema::FieldRow, &str>,
         items: &[Item<'s>],
         sources: &'s Sources,
         budget: &ComparisonBudget,
@@ -210,7 +212,7 @@ impl<'s> Override<'s> {
     }
 }
 
-/// What a value is, without a report.
+/// Evaluates a value without reports.
 fn value_of<'s>(
     value: &Value<'s>,
     sources: &'s Sources,
@@ -224,8 +226,8 @@ fn value_of<'s>(
     evaluator.value(value, None)
 }
 
-/// The field of a block, by both names.
-fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::Field> {
+/// Returns a field by the names of block and field.
+fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::FieldRow> {
     let object = || {
         items.iter().find_map(|item| match item {
             Item::Block(it) if it.name?.text == block => row(it),
@@ -235,17 +237,18 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
     setting(block).or_else(object)?.field(name)
 }
 
-/// The row of a block of which a scene has one.
-fn setting(name: &str) -> Option<&'static schema::Block> {
+/// Returns the row of a kind of block that a scene has at most once.
+fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }
 
-/// The row of a block; for a mistyped kind that of the nearest one.
-fn row(block: &Block<'_>) -> Option<&'static schema::Block> {
+/// Returns the row of a block; for a mistyped keyword that of the nearest kind.
+fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::Block>) -> bool {
+/// Whether a block is the one that an argument names.
+fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
         (Some(row), None) => row.is_object && block.name.is_some_and(|name| name.text == target),
@@ -253,7 +256,7 @@ fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::Block>) -
     }
 }
 
-/// Gives a block a field, in the place of the same one and of those that it excludes.
+/// Gives a block a field instead of the same field and of those that it excludes.
 fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
     let excluded = row(block)
         .into_iter()
@@ -266,7 +269,7 @@ fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
     block.fields.push(Field { name, value, span });
 }
 
-/// The names of the objects, in order.
+/// Returns the names of the objects, in order.
 fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     let names = items.iter().filter_map(|item| match item {
         Item::Block(block) if row(block)?.is_object => Some(block.name?.text),
@@ -275,13 +278,13 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
-/// What can be named instead.
+/// Help that says what a target can be.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
-/// So many names are listed where none of them was meant.
+/// Maximum number of names that a help lists.
 const FEW: usize = 8;
 
-/// What is wrong with a target whose block is neither in the file nor one that can be added.
+/// Describes a target whose block is neither in the file nor one that can be added.
 fn no_such_block<'s>(
     it: &Override<'s>,
     block: &Name<'s>,
@@ -320,7 +323,7 @@ fn no_such_block<'s>(
         )
 }
 
-/// What is wrong with a target that is no `let` of the file, but may be a block.
+/// Describes a target that is no `let` of the file, but may be a block.
 fn no_such_let<'s>(
     it: &Override<'s>,
     items: &[Item<'s>],

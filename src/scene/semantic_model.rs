@@ -1,7 +1,7 @@
-//! A scene as far as it can be told: for editors, which show what is there while the rest is being
-//! typed.
+//! What is known of a scene that may have errors: for editors, which show its parts while the rest
+//! is being typed.
 //!
-//! In: what lowering read. Out: the tree beside what it means, and the value of any part of it.
+//! In: the results of lowering. Out: the tree with its meaning, and the value of any part of it.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// The parts of a scene; those that failed are missing.
+/// The parts of a scene; a part with errors is missing.
 #[derive(Clone, Debug)]
 pub struct Parts {
     /// The picture.
@@ -28,12 +28,12 @@ pub struct Parts {
     pub camera: Option<Camera>,
     /// The samples.
     pub sampler: Option<Sampler>,
-    /// The objects, those that did not fail, in the order of the file.
+    /// The objects without errors, in the order of the file.
     pub objects: Vec<Object>,
 }
 
 impl Parts {
-    /// The scene, if no part is missing.
+    /// Returns the scene, if no part is missing.
     pub fn into_scene(self) -> Option<Scene> {
         Some(Scene {
             image: self.image?,
@@ -44,26 +44,26 @@ impl Parts {
     }
 }
 
-/// A text with everything that is known of it.
+/// A text with its tree, its problems and its meaning.
 #[derive(Debug)]
 pub struct SemanticModel<'s> {
     pub(super) sources: &'s Sources,
     /// The tree and the comments.
     pub parsed: Parsed<'s>,
-    /// Errors and warnings, the same as [`super::read`] gives.
+    /// The errors and warnings that [`super::read`] returns.
     pub diagnostics: Vec<Diagnostic>,
-    /// What it means.
+    /// The parts of the scene.
     pub parts: Parts,
     pub(super) names: Names<'s>,
 }
 
 impl<'s> SemanticModel<'s> {
-    /// The texts.
+    /// Returns the texts.
     pub fn sources(&self) -> &'s Sources {
         self.sources
     }
 
-    /// The definitions of the file, in order.
+    /// Returns the definitions of the file, in order.
     pub fn definitions(&self) -> impl Iterator<Item = &Definition<'s>> {
         self.parsed.tree.items.iter().filter_map(|item| match item {
             Item::Definition(definition) => Some(definition),
@@ -71,8 +71,8 @@ impl<'s> SemanticModel<'s> {
         })
     }
 
-    /// The definition that a name means at a place: one that stands before it, and is the first of
-    /// its name.
+    /// Returns the definition of a name that is used at a place: the first one of that name, if it
+    /// is before the place.
     pub fn definition_at(&self, name: &str, at: usize) -> Option<&Definition<'s>> {
         let place = self.names.place(name)?;
         let items = &self.parsed.tree.items;
@@ -84,7 +84,7 @@ impl<'s> SemanticModel<'s> {
         found.filter(|definition| definition.span.end <= at)
     }
 
-    /// The value that a definition gives its name; none if it failed, or is not the first of its
+    /// Returns the value of a definition; `None` if it has errors, or is not the first one of its
     /// name.
     pub fn defined(&self, definition: &Definition<'s>) -> Option<Value> {
         let name = definition.name?;
@@ -92,8 +92,8 @@ impl<'s> SemanticModel<'s> {
         is_first.then(|| self.names.value(name.text)).flatten()
     }
 
-    /// What a value of the tree is; `wanted` is the type that would fit, if one is known. None if
-    /// it failed, or means nothing by itself, such as the word of a method.
+    /// Evaluates a value of the tree; `wanted` is the type that would fit, if it is known. Returns
+    /// `None` if the value has errors, or means nothing by itself, such as the word of a method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         let mut problems = Problems::default();
         let mut evaluator = Evaluator {

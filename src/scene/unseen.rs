@@ -1,41 +1,45 @@
-//! Whether the camera sees anything at all, and can tell the squares of a board apart.
+//! Whether the camera sees any object, and whether samples tell the squares of a board apart.
 //!
-//! In: a camera and the objects. Out: why all of them are out of its sight, if a sphere around each
-//! shows that they are; and whether a board's squares are too small for the numbers that samples
-//! are computed with. What is in doubt counts as seen, and so does what another object hides: a
-//! warning is never false. Errors: numbers here are rounded `f64`s, and each comparison leaves
-//! [`MARGIN`] of the sizes in it.
+//! In: a camera and the objects. Out: why none of them is in the picture, if a sphere around each
+//! shows that; and whether a board's squares are too small for the numbers that samples are
+//! computed with. A case of doubt counts as seen, and so does an object behind another one: a
+//! warning is never false. Numbers here are rounded `f64`s; each comparison leaves a margin of
+//! [`MARGIN`] times the lengths in it.
 
 use glam::DVec3;
 
 use super::{
-    model::{Camera, Checkerboard, Image, Object, Outline, Shape, View},
+    model::{Camera, Image, Object},
     pixel_size::pixel_size,
+    shape::{Checkerboard, Shape},
 };
-use crate::math::{Angle, Big, trig};
+use crate::{
+    math::{Angle, Big, trig},
+    schema::CAMERA,
+};
 
-/// By so much of the lengths that are compared a comparison has to be clear. With up and the view
-/// direction at [`LEAST_SINE`] or more the axes are good to 2^−52/10^−6, about 2·10⁻¹⁰, and all
-/// else is better.
+/// Margin of a comparison, relative to the lengths that are compared. If the sine between up and
+/// the view direction is at least [`LEAST_SINE`], the axes have a relative error of 2^−52/10^−6,
+/// about 2·10⁻¹⁰, and all other errors are less.
 const MARGIN: f64 = 1e-8;
 
-/// Below this sine of the angle between them, up and the view direction do not tell the axes well
-/// enough.
+/// Least sine of the angle between up and the view direction for which the camera's axes are known
+/// well enough.
 pub const LEAST_SINE: f64 = 1e-6;
 
-/// Why nothing is seen.
+/// Why no object is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unseen {
-    /// All of it is behind the camera.
+pub enum WhyUnseen {
+    /// All objects are behind the camera.
     Behind,
-    /// All of it is beside the window, or behind.
+    /// All objects are beside the window, or behind the camera.
     Outside,
-    /// Without this field, `near` or `far`, something would be seen.
+    /// Without this field, `near` or `far`, an object would be seen.
     Clipped(&'static str),
 }
 
-/// Why the camera sees none of the objects; none if it may see one.
-pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<Unseen> {
+/// Returns why the camera sees none of the objects; `None` if it may see one.
+pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<WhyUnseen> {
     let frustum = Frustum::new(camera, image)?;
     let sees = |near: f64, far: f64| {
         let mut shapes = objects.iter().map(|object| &object.shape);
@@ -45,38 +49,39 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     if sees(camera.near, far) {
         return None;
     }
-    // Where something is seen without one of the two planes, that one is to blame.
+    // If an object is seen without one of the two planes, that plane is the reason.
     if sees(0.0, far) {
-        return Some(Unseen::Clipped("near"));
+        return Some(WhyUnseen::Clipped(CAMERA.near.name));
     }
     if sees(camera.near, f64::INFINITY) {
-        return Some(Unseen::Clipped("far"));
+        return Some(WhyUnseen::Clipped(CAMERA.far.name));
     }
     let is_behind = |object: &Object| {
-        let around = sphere_around(&object.shape);
+        let around = object.shape.bounding_sphere();
         around.is_some_and(|sphere| frustum.is_beyond(sphere, frustum.forward, 0.0))
     };
-    Some(match objects.iter().all(is_behind) {
-        true => Unseen::Behind,
-        false => Unseen::Outside,
+    Some(if objects.iter().all(is_behind) {
+        WhyUnseen::Behind
+    } else {
+        WhyUnseen::Outside
     })
 }
 
-/// Where an object is that the camera cannot see.
+/// The side of the visible space on which an object lies that is wholly outside of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Outside {
     /// Behind the camera.
     Behind,
     /// Nearer than the near plane.
     BeforeNear,
     /// Farther than the far plane.
     BeyondFar,
-    /// Beside the window: left, right, above or below.
+    /// Beside the window: left, right, above or below, in words.
     Beside(&'static str),
 }
 
-impl Place {
-    /// The place in words.
+impl Outside {
+    /// Returns the side in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Behind => "behind the camera",
@@ -87,7 +92,7 @@ impl Place {
     }
 }
 
-/// The space that a camera sees, to ask where objects are that lie wholly outside of it.
+/// The space that a camera sees, between its near and its far plane.
 pub struct Sight {
     frustum: Frustum,
     near: f64,
@@ -104,48 +109,45 @@ impl Sight {
         })
     }
 
-    /// Says where an object is if a sphere around it shows that no part of it is in the picture.
-    pub fn outside(&self, shape: &Shape) -> Option<Place> {
+    /// Returns where an object is if a sphere around it shows that no part of it is in the picture.
+    pub fn outside(&self, shape: &Shape) -> Option<Outside> {
         let frustum = &self.frustum;
-        let Some(sphere) = sphere_around(shape) else {
+        let Some(sphere) = shape.bounding_sphere() else {
             let sees = frustum.may_see(shape, self.near, self.far);
-            return (!sees).then_some(Place::Beside("outside of the window"));
+            return (!sees).then_some(Outside::Beside("outside of the window"));
         };
         let forward = frustum.forward;
         if frustum.is_beyond(sphere, forward, 0.0) {
-            return Some(Place::Behind);
+            return Some(Outside::Behind);
         }
         let mut sides = frustum.sides().into_iter();
         if let Some((name, _)) = sides.find(|(_, side)| frustum.is_beyond(sphere, *side, 0.0)) {
-            return Some(Place::Beside(name));
+            return Some(Outside::Beside(name));
         }
         if frustum.is_beyond(sphere, forward, self.near) {
-            return Some(Place::BeforeNear);
+            return Some(Outside::BeforeNear);
         }
         let is_far = frustum.is_beyond(sphere, -forward, -self.far);
-        is_far.then_some(Place::BeyondFar)
+        is_far.then_some(Outside::BeyondFar)
     }
 }
 
-/// Whether samples show squares of a board that they cannot tell apart, so that all have one
+/// Whether samples see squares of a board that they cannot tell apart, so that all of them get one
 /// colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // Straight down, however the window is turned, it reaches along x and z at least as far as its
-    // shorter side, as it does along one of them here.
+    // A camera that looks straight down may have any axes. However its window is turned, it reaches
+    // along x and z at least as far as its shorter side, which it does along one of them with these
+    // axes.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
         let (up, roll) = (DVec3::Z, Angle::from_degrees(0.0));
-        along_y.then(|| {
-            Frustum::new(
-                &Camera {
-                    up,
-                    roll,
-                    ..*camera
-                },
-                image,
-            )
-        })?
+        let level = Camera {
+            up,
+            roll,
+            ..*camera
+        };
+        along_y.then(|| Frustum::new(&level, image))?
     };
     let Some(frustum) = Frustum::new(camera, image).or_else(straight) else {
         return false;
@@ -154,31 +156,7 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
     frustum.may_see_plane(board.y, camera.near, far) && frustum.are_lost(board)
 }
 
-/// Centre and radius of a sphere that holds an object; none of a checkerboard.
-pub fn sphere_around(shape: &Shape) -> Option<(DVec3, f64)> {
-    Some(match shape {
-        Shape::Sphere(sphere) => (sphere.center, sphere.radius),
-        Shape::Triangle(triangle) => {
-            let centroid = triangle.outline.centroid();
-            let radius = match triangle.outline {
-                Outline::Vertices(vertices) => {
-                    let distances = vertices.map(|vertex| vertex.distance(centroid));
-                    distances.into_iter().fold(0.0, f64::max)
-                }
-                // A vertex is no farther from the centroid than the longest side is long.
-                Outline::Centered(triangle) => triangle.sides.max_element(),
-            };
-            (centroid, radius)
-        }
-        Shape::Box(cuboid) => {
-            let center = cuboid.min.midpoint(cuboid.max);
-            (center, center.distance(cuboid.max))
-        }
-        Shape::Checkerboard(_) => return None,
-    })
-}
-
-/// What the camera sees: the pyramid of its window.
+/// The pyramid of the window that a camera sees through.
 struct Frustum {
     eye: DVec3,
     /// The view direction, of length 1.
@@ -188,14 +166,15 @@ struct Frustum {
 }
 
 impl Frustum {
-    /// None where the axes are not known well enough.
+    /// Returns `None` if the axes are not known well enough.
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
         let right = forward.cross(camera.up.normalize());
-        // Of points far from the origin, and near to each other, little is left of the difference.
+        // The difference of two points that are near to each other and far from the origin has few
+        // correct digits.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
-        // What is not a number is not more.
+        // A comparison with NaN is false.
         if !(is_precise && right.length() > LEAST_SINE) {
             return None;
         }
@@ -218,21 +197,18 @@ impl Frustum {
 
     /// Whether a shape may be seen between two depths.
     fn may_see(&self, shape: &Shape, near: f64, far: f64) -> bool {
-        let sphere = match (shape, sphere_around(shape)) {
-            (_, Some(sphere)) => sphere,
-            (Shape::Checkerboard(board), _) => return self.may_see_plane(board.y, near, far),
-            _ => return true,
+        let Some(sphere) = shape.bounding_sphere() else {
+            let board = shape.checkerboard();
+            return board.is_none_or(|board| self.may_see_plane(board.y, near, far));
         };
+        let mut sides = self.sides().into_iter();
         !self.is_beyond(sphere, self.forward, near)
             && !self.is_beyond(sphere, -self.forward, -far)
-            && !self
-                .sides()
-                .into_iter()
-                .any(|(_, side)| self.is_beyond(sphere, side, 0.0))
+            && !sides.any(|(_, side)| self.is_beyond(sphere, side, 0.0))
     }
 
-    /// The normals of the window's four sides, which point inwards, and what is beyond each. A side
-    /// goes through the eye and along one of the axes.
+    /// Returns the normals of the window's four sides, which point inwards, each with a word for
+    /// what is beyond it. A side contains the eye and is parallel to one of the axes.
     fn sides(&self) -> [(&'static str, DVec3); 4] {
         let [right, top] = self.window;
         let side = |axis: DVec3, sign: f64| {
@@ -247,16 +223,18 @@ impl Frustum {
         ]
     }
 
-    /// Whether all of a sphere lies clearly on the outer side of a plane: at n·(p − e) < bound, n
-    /// of length 1.
+    /// Whether a whole sphere lies clearly on the outer side of a plane, that is at n·(p − e) <
+    /// bound, n being of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
-        // What is not a number is not less.
+        // A comparison with NaN is false.
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
-    /// The same of the plane of a checkerboard. A ray that goes by y along for each metre of depth
-    /// meets it at the depth (h − e_y)/y.
+    /// Whether the plane of a checkerboard at height h may be seen between two depths.
+    ///
+    /// A ray that changes its y by d for each metre of depth meets the plane at the depth
+    /// (h − e_y)/d.
     fn may_see_plane(&self, height: f64, near: f64, far: f64) -> bool {
         let above = height - self.eye.y;
         let middle = self.forward.y * above.signum();
@@ -264,35 +242,26 @@ impl Frustum {
         let spread = across.y.abs() + up.y.abs() + MARGIN * (1.0 + across.length() + up.length());
         let (least, most) = (middle - spread, middle + spread);
         let nearest = above.abs() / most;
-        let farthest = match least > 0.0 {
-            true => above.abs() / least,
-            false => f64::INFINITY,
+        let farthest = if least > 0.0 {
+            above.abs() / least
+        } else {
+            f64::INFINITY
         };
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Whether nearly all rays meet a board so many squares from the eye that the number is even
-    /// whatever it is.
+    /// Whether nearly all rays meet a board so many squares away from the eye that this number, as
+    /// an `f64`, is always even.
     ///
-    /// The ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x,
-    /// and as much along z. In the window |r_x| goes up to its extent, and is below 2^−10 of that
-    /// in less than a hundredth of the picture. Where the numbers here overflow or vanish, it is
-    /// not so.
+    /// A ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x, and
+    /// likewise along z. In the window |r_x| is at most its extent, and less than 2^−10 of that in
+    /// less than a hundredth of the picture. If the numbers here overflow or vanish, the comparison
+    /// is false.
     fn are_lost(&self, board: &Checkerboard) -> bool {
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();
         let height = (board.y - self.eye.y).abs();
         let most = libm::ldexp(1.0, Big::BITS + 11);
         board.square * most * extent.y < height * extent.x.min(extent.z)
-    }
-}
-
-impl View {
-    /// Two points, from one of which to the other the camera looks.
-    pub fn ends(&self, eye: DVec3) -> (DVec3, DVec3) {
-        match *self {
-            Self::Lookat(point) => (eye, point),
-            Self::Direction(direction) => (DVec3::ZERO, direction),
-        }
     }
 }

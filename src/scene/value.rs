@@ -1,8 +1,8 @@
-//! What can be done with values.
+//! Operators and functions on values.
 //!
-//! Operators and functions know no places in a text: they say what comes out, or that the types do
-//! not go together, and the caller adds the place. What is not finite comes out as it is; the
-//! caller reports it.
+//! They know no places in a text: they return a result, or that the types do not go together, and
+//! the caller adds the place. Infinite and NaN results are returned as they are; the caller reports
+//! them.
 
 use glam::DVec3;
 
@@ -13,7 +13,7 @@ use crate::{
     syntax::tree::Operator,
 };
 
-/// `left OPERATOR right`, if the types go together.
+/// Returns `left OPERATOR right`, or `None` if the types do not go together.
 pub fn operate(operator: Operator, left: Value, right: Value) -> Option<Value> {
     use Value::{Angle, Number, Vector};
     Some(match (operator, left, right) {
@@ -31,13 +31,13 @@ pub fn operate(operator: Operator, left: Value, right: Value) -> Option<Value> {
         (Operator::Divide, Number(a), Number(b)) => Number(a / b),
         (Operator::Divide, Angle(a), Number(b)) => Angle(a / b),
         (Operator::Divide, Angle(a), Angle(b)) => Number(ratio(a, b)),
-        // Part by part: a factor 1/b would be rounded once more.
+        // Each coordinate is divided: a factor 1/b would be rounded once more.
         (Operator::Divide, Vector(a), Number(b)) => Vector(DVec3::new(a.x / b, a.y / b, a.z / b)),
         _ => return None,
     })
 }
 
-/// `-value`, if it has a negative.
+/// Returns `-value`, or `None` if the type has no negatives.
 pub fn negate(value: Value) -> Option<Value> {
     match value {
         Value::Number(number) => Some(Value::Number(-number)),
@@ -47,7 +47,8 @@ pub fn negate(value: Value) -> Option<Value> {
     }
 }
 
-/// How many times one angle the other is; of two angles in one unit the quotient of their numbers.
+/// Returns the quotient of two angles. If both are in one unit, it is the quotient of their
+/// numbers.
 fn ratio(a: Angle, b: Angle) -> f64 {
     if a.radians == 0.0 && b.radians == 0.0 {
         return a.degrees / b.degrees;
@@ -58,7 +59,8 @@ fn ratio(a: Angle, b: Angle) -> f64 {
     a.in_radians() / b.in_radians()
 }
 
-/// What a function gives, if the arguments have its types. The parts of `rgb` may be out of range.
+/// Returns the result of a function, or `None` if an argument is of another type. The channels of
+/// `rgb` may be out of range.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
     Some(match (function, arguments) {
@@ -82,6 +84,7 @@ pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     })
 }
 
+/// Reduces numbers to one of them.
 fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     let mut chosen = None;
     for number in numbers {
@@ -93,21 +96,21 @@ fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     chosen
 }
 
-/// The length of a vector, without a square that is too large or too small.
+/// Returns the length of a vector. No square overflows or vanishes.
 fn length(v: DVec3) -> f64 {
     let (scaled, scale) = to_unit_scale(v);
     scaled.dot(scaled).sqrt() * scale
 }
 
-/// The vector of length 1 in the same direction; nothing finite for zero.
+/// Returns the vector of length 1 in the same direction; NaN for the zero vector.
 fn normalize(v: DVec3) -> DVec3 {
     let (scaled, _) = to_unit_scale(v);
     let length = scaled.dot(scaled).sqrt();
     DVec3::new(scaled.x / length, scaled.y / length, scaled.z / length)
 }
 
-/// The vector with its greatest part between 1 and 2, and the power of two that was taken out.
-/// Nothing is rounded but parts too small to show beside the greatest.
+/// Scales a vector by a power of two, so that its greatest coordinate is between 1 and 2. Returns
+/// the inverse power of two as well. Only coordinates that vanish beside the greatest are rounded.
 fn to_unit_scale(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     if greatest == 0.0 || !greatest.is_finite() {

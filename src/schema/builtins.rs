@@ -1,15 +1,15 @@
-//! The tables of predefined words: functions and constants.
+//! The tables of predefined functions and constants.
 
 use super::types::{Type, Value};
 use crate::math::Angle;
 
-/// A function's row, found by its name.
+/// Returns a function by its name.
 pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// A row for each function: its name, what it takes and gives, and what it is; then what else there
-/// is to say of it.
+/// Makes the rows of functions: name, types of the arguments and the result, and help; then any
+/// other fields of [`Function`].
 macro_rules! functions {
     ($($name:ident($($takes:ident)*) $gives:ident $help:literal $($more:ident($value:expr))*;)*) => {
         &[$(Function {
@@ -19,7 +19,7 @@ macro_rules! functions {
     };
 }
 
-/// Every function, with what it takes and gives.
+/// Every function of the language.
 pub const FUNCTIONS: &[Function] = functions! {
     sin(Angle) Number "the sine of an angle";
     cos(Angle) Number "the cosine of an angle";
@@ -39,20 +39,20 @@ pub const FUNCTIONS: &[Function] = functions! {
     rgb(Number Number Number) Color "a colour of red, green and blue, 0 to 255 each" parameters(&["red", "green", "blue"]);
 };
 
-/// What there is to know about a function.
+/// A function of the language.
 #[derive(Clone, Copy, Debug)]
 pub struct Function {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// The types of its arguments.
+    /// The types of the arguments.
     pub takes: &'static [Type],
-    /// What its arguments are called; nothing where their types say it all.
+    /// The names of the arguments; empty if their types say enough.
     pub parameters: &'static [&'static str],
-    /// Whether it takes more of the last type.
+    /// Whether further arguments of the last type may follow.
     pub more: bool,
-    /// The type of its result.
+    /// The type of the result.
     pub gives: Type,
-    /// What it is, in a line.
+    /// One line of help.
     pub help: &'static str,
 }
 
@@ -73,17 +73,18 @@ impl Function {
         }
     }
 
-    /// The type of an argument, by how many stand before it.
+    /// Returns the type of an argument by its index.
     pub fn parameter(&self, index: usize) -> Option<Type> {
         let last = self.takes.last().filter(|_| self.more);
         self.takes.get(index).or(last).copied()
     }
 
-    /// Arguments that it can have, as they are written.
+    /// Returns possible arguments in the language's notation.
     pub fn example(&self) -> &'static [&'static str] {
         use Type::{Angle, Number, Vector};
         match self.takes {
-            // Of those of the cross product it is 0, which few fields take.
+            // With the arguments of the next arm, the dot product would be 0, which few fields
+            // take.
             [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
             [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
             [Vector] => &["(1, 2, 3)"],
@@ -94,19 +95,18 @@ impl Function {
         }
     }
 
-    /// How it is called.
+    /// Writes a call with the example arguments.
     pub fn call(&self) -> String {
         format!("{}({})", self.name, self.example().join(", "))
     }
 
-    /// Whether it takes so many arguments.
+    /// Whether a number of arguments is allowed.
     pub fn accepts(&self, count: usize) -> bool {
         count == self.takes.len() || (self.more && count > self.takes.len())
     }
 }
 
-/// The predefined names that are neither colours nor functions, each with its value and a line of
-/// help.
+/// The predefined names other than colours and functions, each with its value and a line of help.
 pub const CONSTANTS: &[(&str, Value, &str)] = &[
     (
         "pi",

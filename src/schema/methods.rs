@@ -2,8 +2,8 @@
 
 use crate::suggest::{self, is_among};
 
-/// A row for each technique: what it is in the program, its word, what it is, and other words that
-/// people try for it.
+/// Makes the rows of techniques: the variant, the word in the language, a line of help, and other
+/// words that people try.
 macro_rules! methods {
     ($($method:ident $name:literal $help:literal $tried:literal)*) => {
         /// A sampling technique.
@@ -13,7 +13,7 @@ macro_rules! methods {
         }
 
         impl Method {
-            /// Its word in the language.
+            /// Returns the technique's word in the language.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$method => $name,)*
@@ -43,7 +43,7 @@ methods! {
 }
 
 impl Method {
-    /// All that take samples, in the order of the language's table.
+    /// The techniques that take samples, in the order of the language's table.
     pub const SAMPLED: [Self; 9] = [
         Self::Regular,
         Self::Random,
@@ -57,13 +57,13 @@ impl Method {
     ];
 }
 
-/// A method, found by its name.
+/// Returns a method by its name.
 pub fn method(name: &str) -> Option<Method> {
     let mut methods = METHODS.iter().map(|&(method, _)| method);
     methods.find(|method| method.name() == name)
 }
 
-/// The method that was probably meant, if any is near.
+/// Returns the method that was probably meant by a word, if one is near.
 pub fn nearest_method(written: &str) -> Option<&'static str> {
     let mut tried = ALSO_TRIED.iter();
     let tried = tried.find(|(_, words)| is_among(written, words));
@@ -71,14 +71,14 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Whether a method is the only one that is near to a word.
+/// Whether a method is the only one that a word can mean.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))
         || suggest::is_only_near(written, near, method_names())
 }
 
-/// The names of the methods.
+/// Returns the names of the methods.
 pub fn method_names() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(method, _)| method.name())
 }

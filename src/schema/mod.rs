@@ -1,11 +1,11 @@
-//! The facts of the language: its blocks and their fields, types, defaults and conditions, with a
-//! line of help each.
+//! The facts of the language: its blocks and their fields, types, defaults and conditions, each
+//! with a line of help.
 //!
-//! Each fact stands here once. Lowering fills the scene from these rows, nearest names are sought
+//! Each fact stands here once. Lowering fills the scene from these rows, suggestions are chosen
 //! among them, and the language's reference is tested against them.
 //!
-//! `types` has what a value can be, `row_types` what a row says; the rows stand in `blocks`,
-//! `methods` and `builtins`, the colours' names in `css`, and here they are looked up.
+//! `types` defines the language's types and `row_types` the columns of the table. The rows are in
+//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. Lookups are in this file.
 
 mod blocks;
 mod builtins;
@@ -14,60 +14,51 @@ mod methods;
 mod row_types;
 mod types;
 
-pub use blocks::BLOCKS;
+pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
-pub use row_types::{Block, Choice, Condition, Field, Kind, Preset, Several};
-
-pub use types::{Type, Value};
+pub use row_types::{
+    BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several,
+};
+pub use types::{FieldValue, Type, Value};
 
 use crate::suggest::{self, is_among};
 
-/// A block's row, found by its word.
-pub fn block(name: &str) -> Option<&'static Block> {
+/// Returns the row of a kind of block by its keyword.
+pub fn block(name: &str) -> Option<&'static BlockRow> {
     BLOCKS.iter().find(|block| block.name == name)
 }
 
-/// Whether a word is that of a block or of a field.
+/// Whether a word is the keyword of a block or the name of a field.
 pub fn is_word(word: &str) -> bool {
     let mut blocks = BLOCKS.iter();
     blocks.any(|block| block.name == word || block.field(word).is_some())
 }
 
-/// The row of a kind of block.
-pub fn of_kind(kind: Kind) -> &'static Block {
-    const {
-        let mut at = 0;
-        while at < BLOCKS.len() {
-            assert!(
-                BLOCKS[at].kind as usize == at,
-                "rows stand in the order of their kinds"
-            );
-            at += 1;
-        }
-    }
+/// Returns the row of a kind of block.
+pub fn of_kind(kind: BlockKind) -> &'static BlockRow {
     &BLOCKS[kind as usize]
 }
 
-/// The words that blocks start with.
+/// Returns the keywords of all blocks.
 pub fn block_names() -> impl Iterator<Item = &'static str> {
     BLOCKS.iter().map(|block| block.name)
 }
 
-/// The block that was probably meant, if any is near.
-pub fn nearest_block(written: &str) -> Option<&'static Block> {
+/// Returns the block that was probably meant by a word, if one is near.
+pub fn nearest_block(written: &str) -> Option<&'static BlockRow> {
     let tried = BLOCKS
         .iter()
         .find(|block| is_among(written, block.also_tried));
     tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
-/// The row of a block; for a mistyped word that of the nearest one.
-pub fn block_or_nearest(written: &str) -> Option<&'static Block> {
+/// Returns the row of a block by its keyword, or by a word that is near to one.
+pub fn block_or_nearest(written: &str) -> Option<&'static BlockRow> {
     block(written).or_else(|| nearest_block(written))
 }
 
-/// What a predefined name stands for.
+/// The meaning of a predefined name.
 #[derive(Clone, Copy, Debug)]
 pub enum Predefined {
     /// A colour or a constant.
@@ -77,7 +68,7 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    /// What it is, for messages.
+    /// Returns what the name stands for, in words for messages.
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Function(_) => "a function",
@@ -87,7 +78,7 @@ impl Predefined {
     }
 }
 
-/// What a predefined name stands for, if it is one.
+/// Returns the meaning of a name, if it is predefined.
 pub fn predefined(name: &str) -> Option<Predefined> {
     let color = css::color(name).map(Value::Color);
     let constant = || CONSTANTS.iter().find(|(constant, ..)| *constant == name);

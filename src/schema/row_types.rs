@@ -1,6 +1,6 @@
-//! What a row of the language's table says: of a kind of block, and of a field.
+//! The rows of the language's table: what is known of a kind of block, and of a field.
 
-use std::fmt;
+use std::{fmt, marker::PhantomData};
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use crate::{
 
 /// A kind of block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum BlockKind {
     /// The picture.
     Image,
     /// The camera.
@@ -29,48 +29,49 @@ pub enum Kind {
     Checkerboard,
 }
 
-/// What there is to know about a kind of block.
+/// The table's row for a kind of block.
 #[derive(Debug)]
-pub struct Block {
-    /// Its kind.
-    pub kind: Kind,
-    /// The word that it starts with.
+pub struct BlockRow {
+    /// The kind.
+    pub kind: BlockKind,
+    /// The keyword that the block starts with.
     pub name: &'static str,
-    /// The word with its article, for messages.
+    /// The keyword with its article, for messages.
     pub noun: &'static str,
-    /// Whether it is an object: it may have a name, and there may be many.
+    /// Whether the block describes an object: a scene may have many, and each may have a name.
     pub is_object: bool,
-    /// What it is, in a line.
+    /// One line of help.
     pub help: &'static str,
-    /// Its fields.
-    pub fields: &'static [Field],
-    /// What it says in one of several ways.
+    /// The fields.
+    pub fields: &'static [FieldRow],
+    /// Groups of fields that say the same in several ways.
     pub choices: &'static [Choice],
-    /// Conditions between fields, each by its name.
+    /// Conditions between fields, written with the fields' names.
     pub together: &'static [&'static str],
-    /// Other words that people try for several of its fields.
+    /// Words that people try for several of the fields at once.
     pub several: &'static [Several],
-    /// Words that people try together, several rows of them with `|` between, with the field that
-    /// is made of such parts, or the field for each.
+    /// Sets of words that people try together for the parts of one field, or for one field each.
+    ///
+    /// The words of a set are separated by blanks, and sets by `|`. The second part names the one
+    /// field whose parts the words stand for, or as many fields as there are words.
     pub parted: &'static [(&'static str, &'static [&'static str])],
-    /// Other words that people try for it.
+    /// Other words that people try for the keyword.
     pub also_tried: &'static str,
-    /// Words of other languages for what is said elsewhere or otherwise here, with what to write
-    /// instead.
+    /// Words of other programs that no field stands for, each with what to write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
 }
 
-/// Ways to say the same thing, of which a block takes one.
+/// Several ways to say the same, of which a block takes one.
 #[derive(Debug)]
 pub struct Choice {
-    /// Each way, with the fields that belong to it. A way that is taken needs those of them that
-    /// are [alternatives](Preset::Alternative).
+    /// The fields of each way. A block that takes a way needs those of its fields that are
+    /// [alternatives](Preset::Alternative).
     pub ways: &'static [&'static [&'static str]],
-    /// Why it is one of them.
+    /// Why only one of them can be given.
     pub why: &'static str,
 }
 
-/// A word that people try for several fields at once, with a list of their values.
+/// Words that people try for several fields at once, with a list of the fields' values.
 #[derive(Debug)]
 pub struct Several {
     /// The words.
@@ -79,31 +80,31 @@ pub struct Several {
     pub fields: &'static [&'static str],
 }
 
-/// What there is to know about a field.
+/// The table's row for a field.
 #[derive(Debug)]
-pub struct Field {
-    /// Its name.
+pub struct FieldRow {
+    /// The field's name.
     pub name: &'static str,
-    /// What it takes.
+    /// The type of its values.
     pub takes: Type,
-    /// What it is when it is not given.
+    /// The value of a field that is not given.
     pub preset: Preset,
-    /// What its value must be.
+    /// Conditions that every value must meet.
     pub must: &'static [Condition],
-    /// What it is, in a line.
+    /// One line of help.
     pub help: &'static str,
-    /// Other words that people try for it.
+    /// Other words that people try for the field.
     pub also_tried: &'static str,
-    /// Words that people try for it and for something else, so that a program cannot choose.
+    /// Words that people try for this field and for others, so that a program cannot choose.
     pub perhaps: &'static str,
-    /// Words that people try for twice its value.
+    /// Words that people try for twice the field's value.
     pub doubled: &'static str,
-    /// A value that it can have, as it is written: for messages, and to type over.
+    /// A possible value in the language's notation: for messages, and for editors to insert.
     pub example: &'static str,
 }
 
-impl Field {
-    /// A field for which any value of its type will do. Its example is its default.
+impl FieldRow {
+    /// Returns the row of a field without conditions or other words. The example is the default.
     pub(super) const fn new(
         name: &'static str,
         takes: Type,
@@ -126,48 +127,73 @@ impl Field {
         }
     }
 
-    /// Whether a value keeps its conditions; one of another type has no say in it.
+    /// Whether a value meets the field's conditions. Conditions on other types hold.
     pub fn allows(&self, value: Value) -> bool {
         self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
-/// What a field is when it is not given.
+/// A field of one kind of block whose values are of the Rust type `T`.
+///
+/// Code names a field by such a constant, so that a misspelt name does not compile.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldHandle<T> {
+    /// The field's name.
+    pub name: &'static str,
+    /// The kind of block that has the field.
+    pub kind: BlockKind,
+    /// The index of the field's row among those of its block.
+    pub index: usize,
+    values: PhantomData<T>,
+}
+
+impl<T> FieldHandle<T> {
+    pub(super) const fn new(name: &'static str, kind: BlockKind, index: usize) -> Self {
+        Self {
+            name,
+            kind,
+            index,
+            values: PhantomData,
+        }
+    }
+}
+
+/// The value of a field that is not given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
-    /// It must be given.
+    /// None: the field must be given.
     Required,
-    /// It must be given where its way of a [`Choice`] is taken.
+    /// None: the field must be given if its way of a [`Choice`] is taken.
     Alternative,
-    /// Nothing.
+    /// None: the field may be left out.
     Nothing,
-    /// This, as it is written.
+    /// A default, in the language's notation.
     Value(&'static str),
 }
 
-/// What a field's value must be, beyond its type.
+/// A condition on a field's value, beyond its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// A number without a fraction.
     Whole,
-    /// A number above this one.
+    /// A number greater than this one.
     MoreThan(f64),
-    /// A number not below this one.
+    /// A number not less than this one.
     AtLeast(f64),
-    /// A number not above 2 to this power.
+    /// A number not greater than 2 to this power.
     AtMostTwoTo(u32),
-    /// A number below 2 to this power.
+    /// A number less than 2 to this power.
     LessThanTwoTo(u32),
     /// An angle between 0 and 180 degrees, both excluded.
     LessThanHalfTurn,
     /// A vector other than zero.
     NotZero,
-    /// A vector whose three parts are above 0.
+    /// A vector whose three coordinates are greater than 0.
     EachMoreThanZero,
 }
 
 impl Condition {
-    /// Whether a value keeps it; one of another type has no say in it.
+    /// Whether a value meets the condition. Conditions on other types hold.
     pub fn holds(&self, value: Value) -> bool {
         let two_to = |power: u32| (1_u64 << power) as f64;
         match (*self, value) {
@@ -186,7 +212,7 @@ impl Condition {
     }
 }
 
-/// What the value must be, in words.
+/// The condition in words, after "must be".
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -202,56 +228,55 @@ impl fmt::Display for Condition {
     }
 }
 
-impl Block {
-    /// A field's row, found by its name.
-    pub fn field(&self, name: &str) -> Option<&'static Field> {
+impl BlockRow {
+    /// Returns the row of a field by its name.
+    pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// The fields that a word may stand for, among other things.
-    pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static Field> {
+    /// Returns the fields that a word may stand for, if it may stand for several.
+    pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// What to write instead of a word of other languages that no field stands for.
+    /// Returns what to write instead of a word of other programs that no field stands for.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));
         row.map(|&(_, instead)| instead)
     }
 
-    /// The names of its fields.
+    /// Returns the names of the fields.
     pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
         self.fields.iter().map(|field| field.name)
     }
 
-    /// The choice that a field is one of the ways of.
+    /// Returns the choice that a field is a part of.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)
     }
 
-    /// The fields that a field excludes: those of the other ways to say the same.
+    /// Returns the fields that a field excludes: those of the other ways of its choice.
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
         let others = ways.filter(move |way| !way.contains(&field));
         others.flat_map(|way| way.iter().copied())
     }
 
-    /// The conditions that hold between a field and others, or something else: those that name it.
+    /// Returns the conditions between fields that mention a field.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
-        let rules = self.together.iter().copied();
-        rules.filter(move |rule| {
+        self.together.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
             words.any(|word| word == field)
         })
     }
 
-    /// The fields without which there is no such block: those that have no default, and of
-    /// alternatives the first.
-    pub fn least_fields(&self) -> Vec<&'static Field> {
-        let is_needed = |field: &&Field| match field.preset {
+    /// Returns the fields that a block needs: the required ones, and those of the first way of each
+    /// choice that have no default.
+    pub fn least_fields(&self) -> Vec<&'static FieldRow> {
+        let is_needed = |field: &&FieldRow| match field.preset {
             Preset::Required => true,
             Preset::Alternative => self
                 .choice(field.name)
@@ -262,32 +287,33 @@ impl Block {
         self.fields.iter().filter(is_needed).collect()
     }
 
-    /// A block with the fields that it needs, as it is written.
+    /// Writes a block with the fields that it needs.
     pub fn example(&self) -> String {
         let fields = self.least_fields().into_iter();
         let fields = fields.map(|field| format!("{} {}", field.name, field.example));
         let fields: Vec<String> = fields.collect();
-        match fields.is_empty() {
-            true => format!("{} {{}}", self.name),
-            false => format!("{} {{ {} }}", self.name, fields.join("  ")),
+        if fields.is_empty() {
+            format!("{} {{}}", self.name)
+        } else {
+            format!("{} {{ {} }}", self.name, fields.join("  "))
         }
     }
 
-    /// The field that is written like this but for capitals and `_`, or that people try this word
-    /// for.
-    pub fn field_tried(&self, written: &str) -> Option<&'static Field> {
-        let find = |words: fn(&Field) -> &'static str| {
+    /// Returns the field whose name is a word, apart from capitals and `_`; or else the field that
+    /// people try the word for.
+    pub fn field_tried(&self, written: &str) -> Option<&'static FieldRow> {
+        let find = |words: fn(&FieldRow) -> &'static str| {
             let mut fields = self.fields.iter();
             fields.find(|field| is_among(written, words(field)))
         };
         find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
-    /// The field that was probably meant, if any is near: by its letters, or by a word within what
-    /// was written, as in `near_clip` and `eyepoint`.
-    pub fn nearest_field(&self, written: &str) -> Option<&'static Field> {
+    /// Returns the field that was probably meant, if its name is near to what is written or to a
+    /// word within it, as in `near_clip` and `eyepoint`.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
         let words = suggest::words(written);
-        let starts = |field: &&Field| field.name.len() > 2 && written.starts_with(field.name);
+        let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);
         suggest::nearest(written, self.field_names())
             .and_then(|name| self.field(name))
             .or_else(|| {

@@ -1,4 +1,4 @@
-//! What a value can be: the language's types and their values.
+//! The language's types, and values of them.
 
 use std::fmt;
 
@@ -7,27 +7,27 @@ use glam::DVec3;
 use super::methods::Method;
 use crate::{color::Color, math::Angle, numbers};
 
-/// What a value can be.
+/// A type of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Type {
     /// A number.
     Number,
     /// A number with a unit.
     Angle,
-    /// Three numbers.
+    /// A list of three numbers.
     Vector,
     /// An sRGB colour.
     Color,
-    /// Two colours.
+    /// A pair of colours.
     Colors,
-    /// Three colours: of the faces of a box across x, y and z.
+    /// A list of three colours: those of the faces of a box across x, y and z.
     FaceColors,
     /// The name of a sampling technique.
     Method,
 }
 
 impl Type {
-    /// The type with its article.
+    /// Returns the type with its article, such as `a number`.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Number => "a number",
@@ -40,13 +40,13 @@ impl Type {
         }
     }
 
-    /// The type without an article.
+    /// Returns the type without an article, such as `number`.
     pub fn word(self) -> &'static str {
         let noun = self.noun();
         noun.split_once(' ').map_or(noun, |(_, word)| word)
     }
 
-    /// Several of the type.
+    /// Returns the plural of the type, such as `numbers`.
     pub fn plural(self) -> String {
         match self {
             Self::Colors => "pairs of colours".to_owned(),
@@ -55,7 +55,7 @@ impl Type {
         }
     }
 
-    /// What to write for a value of the type, for a help.
+    /// Returns the help that says what to write for a value of the type.
     pub fn such_as(self) -> &'static str {
         match self {
             Self::Number => "write a number, such as `2`",
@@ -68,8 +68,8 @@ impl Type {
         }
     }
 
-    /// What a value is a list of, and of how many: a vector of three numbers, a pair of two
-    /// colours.
+    /// Returns the type and the number of a list's elements: of a vector three numbers, of a pair
+    /// two colours. Returns `None` for a type that is no list.
     pub fn parts(self) -> Option<(Self, usize)> {
         match self {
             Self::Vector => Some((Self::Number, 3)),
@@ -100,7 +100,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What it is.
+    /// Returns the value's type.
     pub fn kind(&self) -> Type {
         match self {
             Self::Number(_) => Type::Number,
@@ -113,7 +113,7 @@ impl Value {
         }
     }
 
-    /// Whether no part of it is infinite or not a number.
+    /// Whether no number in the value is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Number(number) => number.is_finite(),
@@ -124,7 +124,7 @@ impl Value {
     }
 }
 
-/// As people read it, in the language's notation: six digits of each number.
+/// The value in the language's notation, with six digits of each number, for people to read.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -141,4 +141,40 @@ impl fmt::Display for Value {
             Self::Method(method) => f.write_str(method.name()),
         }
     }
+}
+
+/// A Rust type that holds the values of one of the language's types.
+pub trait FieldValue: Copy {
+    /// Returns the contents of a value; `None` if the value is of another type.
+    fn from_value(value: Value) -> Option<Self>;
+}
+
+/// Names the Rust type of each of the language's types, and unpacks values to it.
+macro_rules! contents {
+    ($($variant:ident $contents:ty;)*) => {
+        /// For each of the language's types the Rust type of its values.
+        pub(super) mod contents {
+            $(pub type $variant = $contents;)*
+        }
+
+        $(#[allow(unused_qualifications, reason = "the paths must be right in `contents`, too")]
+        impl FieldValue for $contents {
+            fn from_value(value: Value) -> Option<Self> {
+                match value {
+                    Value::$variant(contents) => Some(contents),
+                    _ => None,
+                }
+            }
+        })*
+    };
+}
+
+contents! {
+    Number f64;
+    Angle crate::math::Angle;
+    Vector glam::DVec3;
+    Color crate::color::Color;
+    Colors [crate::color::Color; 2];
+    FaceColors [crate::color::Color; 3];
+    Method crate::schema::Method;
 }

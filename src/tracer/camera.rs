@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use crate::{
     area::Area,
     math::{Ball, Ball3, Big, Dyadic, Dyadic3, Radius, Real, UP},
-    scene::{self, CenteredTriangle, Image, Lens, Outline, Scene, Shape, View, pixel_size},
+    scene::{self, Image, Lens, Scene, View, pixel_size},
 };
 
 /// The camera's axes and scale, computed exactly from the scene's numbers and rounded only at the
@@ -268,18 +268,8 @@ const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 /// Returns the power of two that brings the greatest length of a scene into [`LENGTHS`]; 0 if it
 /// lies there already.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
-    let far = |point: DVec3| (point - scene.camera.eye).abs().max_element();
-    let farthest = scene.objects.iter().map(|object| match object.shape {
-        Shape::Sphere(scene::Sphere { center, radius, .. }) => far(center).max(radius),
-        Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
-            Outline::Vertices(vertices) => vertices.map(far).into_iter().fold(0.0, f64::max),
-            Outline::Centered(CenteredTriangle {
-                centroid, sides, ..
-            }) => far(centroid).max(sides.max_element()),
-        },
-        Shape::Box(scene::Cuboid { min, max, .. }) => far(min).max(far(max)),
-        Shape::Checkerboard(scene::Checkerboard { y, .. }) => (y - scene.camera.eye.y).abs(),
-    });
+    let shapes = scene.objects.iter().map(|object| &object.shape);
+    let farthest = shapes.map(|shape| shape.greatest_length(scene.camera.eye));
     match Radius::exponent(farthest.fold(0.0, f64::max)) {
         exponent if LENGTHS.contains(&exponent) => 0,
         exponent if exponent > 0 => LENGTHS.end() - exponent,

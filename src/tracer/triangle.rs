@@ -14,7 +14,7 @@ use super::{
 };
 use crate::{
     math::{Ball, Ball3, Big, Dyadic, Dyadic3, Radius, Real, cross, sin_cos},
-    scene::{self, CenteredTriangle, Outline},
+    scene::{self, CenteredTriangle, TriangleOutline},
 };
 
 /// Prepares a triangle, and returns it with its corners in the camera's axes. Returns `None` if its
@@ -24,8 +24,8 @@ pub fn prepare<T: Real>(
     shape: &scene::Triangle,
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     match &shape.outline {
-        Outline::Vertices(vertices) => by_vertices(camera, vertices),
-        Outline::Centered(triangle) => by_centroid(camera, triangle),
+        TriangleOutline::Vertices(vertices) => by_vertices(camera, vertices),
+        TriangleOutline::Centered(triangle) => by_centroid(camera, triangle),
     }
 }
 
@@ -111,8 +111,8 @@ fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
 /// written, or left base end, right base end, apex.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
-        Outline::Vertices(vertices) => return *vertices,
-        Outline::Centered(triangle) => triangle,
+        TriangleOutline::Vertices(vertices) => return *vertices,
+        TriangleOutline::Centered(triangle) => triangle,
     };
     let centroid = shape.centroid.to_array().map(Ball::<Big>::exact);
     offsets::<Big>(shape)

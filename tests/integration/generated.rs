@@ -2,7 +2,10 @@
 
 use std::iter;
 
-use pinhole::scene::{self, Scene};
+use pinhole::{
+    scene::{self, Scene},
+    schema::BLOCKS,
+};
 
 use crate::{random::Random, scenes::sources};
 
@@ -150,5 +153,17 @@ impl Generator {
             }
         };
         format!("{shape} color {color} }}\n")
+    }
+}
+
+#[test]
+fn every_kind_of_object_is_generated() {
+    let scenes = generated(Numbers::Wild(0), [8, 8], 1).take(64);
+    let objects: Vec<_> = scenes
+        .flat_map(|(_, scene)| scene.objects.to_vec())
+        .collect();
+    for row in BLOCKS.iter().filter(|row| row.is_object) {
+        let is_of_kind = |object: &scene::Object| object.shape.kind() == row.name;
+        assert!(objects.iter().any(is_of_kind), "{}", row.name);
     }
 }

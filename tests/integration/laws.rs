@@ -8,7 +8,10 @@ use std::{collections::HashSet, sync::Arc};
 use glam::{DVec2, DVec3, Vec3Swizzles, dvec3};
 use pinhole::{
     math::Angle,
-    scene::{CenteredTriangle, Checkerboard, Count, Method, Outline, Scene, Shape, Triangle, View},
+    scene::{
+        CenteredTriangle, Checkerboard, Count, Method, Scene, Shape, Triangle, TriangleOutline,
+        View,
+    },
 };
 
 use crate::{
@@ -61,7 +64,7 @@ fn board(shape: &mut Shape) -> Option<&mut Checkerboard> {
 fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
     match shape {
         Shape::Triangle(Triangle {
-            outline: Outline::Centered(triangle),
+            outline: TriangleOutline::Centered(triangle),
             ..
         }) => Some(triangle),
         _ => None,
@@ -91,12 +94,12 @@ fn mapped(
                 sphere.radius *= scale;
             }
             Shape::Triangle(triangle) => match &mut triangle.outline {
-                Outline::Centered(triangle) => {
+                TriangleOutline::Centered(triangle) => {
                     triangle.centroid = place(triangle.centroid);
                     triangle.normal = direction(triangle.normal);
                     triangle.sides *= scale;
                 }
-                Outline::Vertices(vertices) => *vertices = vertices.map(&place),
+                TriangleOutline::Vertices(vertices) => *vertices = vertices.map(&place),
             },
             Shape::Box(cuboid) => {
                 let (a, b) = (place(cuboid.min), place(cuboid.max));

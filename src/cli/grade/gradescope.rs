@@ -76,7 +76,7 @@ fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
 /// Returns the criteria of the tests and their names.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
-    let is_board = |shape: &Shape| matches!(shape, Shape::Checkerboard(_));
+    let is_board = |shape: &Shape| shape.checkerboard().is_some();
     let own = objects.filter(|(_, object)| !is_board(&object.shape));
     let own = own.map(|(index, object)| {
         let kind = object.shape.kind();

@@ -1,31 +1,31 @@
-//! A number of the text that can be turned: where its digits stand, and what they say.
+//! Number literals that a slider can change.
 
 use crate::{
     source::{Source, Span},
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Least exponent of a step, so that it is never 0.
-const FINEST: i32 = -300;
+/// Least exponent of a step, so that a step is never 0.
+const LEAST_EXPONENT: i32 = -300;
 
-/// Number of significant digits of a number that is turned, at most.
+/// Maximum number of significant digits of a changed number.
 const DIGITS: i32 = 15;
 
-/// A number literal with the sign that belongs to it.
+/// A number literal with the sign directly before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Literal {
-    /// Where its sign and its digits stand, without a unit.
+    /// The span of sign and digits, without a unit.
     pub span: Span,
-    /// Its value in its own unit.
+    /// The value in its own unit.
     pub value: f64,
-    /// The exponent of its last digit: −2 of `1.25`, 0 of `12`.
+    /// The exponent of the last digit: −2 of `1.25`, 0 of `12`.
     pub last_digit: i32,
-    /// The unit that it is written in.
+    /// The unit, if it has one.
     pub unit: Option<Unit>,
 }
 
 impl Literal {
-    /// The literal that a value is by itself, perhaps in parentheses.
+    /// Returns the literal that a value consists of, apart from parentheses.
     pub fn of(value: &Value<'_>) -> Option<Self> {
         let (written, unit) = match &value.kind {
             ValueKind::Number(written) => (written, None),
@@ -37,7 +37,8 @@ impl Literal {
         let digits = written.replace('_', "");
         let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((&digits, "0"));
         let decimals = mantissa.split_once('.').map_or(0, |(_, it)| it.len());
-        let exponent: i32 = exponent.parse().unwrap_or(FINEST).clamp(FINEST, -FINEST);
+        let exponent = exponent.parse().unwrap_or(LEAST_EXPONENT);
+        let exponent = exponent.clamp(LEAST_EXPONENT, -LEAST_EXPONENT);
         let Span { source, start, .. } = value.span;
         Some(Self {
             span: Span::new(source, start, start + written.len()),
@@ -47,7 +48,7 @@ impl Literal {
         })
     }
 
-    /// The same behind a sign; `None` unless it stands directly before the digits.
+    /// Returns the literal with a sign; `None` unless the sign is directly before the digits.
     fn negative(self, sign: Span) -> Option<Self> {
         (sign.end == self.span.start && self.value.is_sign_positive()).then_some(Self {
             span: sign.to(self.span),
@@ -56,13 +57,13 @@ impl Literal {
         })
     }
 
-    /// Whether it may be a count.
+    /// Whether the literal is written as a whole number.
     pub fn is_whole(&self) -> bool {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// The step by which it is turned: a hundredth to a tenth of the number, but no less than a
-    /// hundredth, so that a way to zero ends; and no coarser than how it is written.
+    /// Returns the step of the literal's slider: a hundredth to a tenth of the number, but at least
+    /// a hundredth, so that zero can be reached; and no coarser than the number is written.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,
@@ -77,7 +78,7 @@ impl Literal {
         })
     }
 
-    /// The text with another number in the place of this one.
+    /// Returns the text with another number in place of the literal.
     pub fn replaced(&self, source: &Source, value: f64) -> String {
         let text = source.text();
         let Span { start, end, .. } = self.span;
@@ -86,32 +87,34 @@ impl Literal {
 }
 
 fn power_of_ten(exponent: i32) -> f64 {
-    let written = format!("1e{}", exponent.clamp(FINEST, -FINEST));
+    let written = format!("1e{}", exponent.clamp(LEAST_EXPONENT, -LEAST_EXPONENT));
     written.parse().unwrap_or(1.0)
 }
 
-/// Number of digits after the point of a number as it is written, at most a hundred.
+/// Returns the number of decimals that a number is written with, at most a hundred.
 pub fn decimals(x: f64) -> usize {
     let written = x.to_string();
-    written
-        .split_once('.')
-        .map_or(0, |(_, it)| it.len().min(100))
+    let decimals = written.split_once('.').map_or(0, |(_, it)| it.len());
+    decimals.min(100)
 }
 
-/// The greatest range within a range whose ends have no more decimals than a step.
+/// Returns the greatest range within a range whose ends have no more decimals than a step.
 pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     let decimals_of_step = decimals(step);
     let scale = power_of_ten(decimals_of_step as i32);
-    let rounded = |x: f64, round: fn(f64) -> f64| match decimals(x) > decimals_of_step {
-        true => round(x * scale) / scale,
-        false => x,
+    let rounded = |x: f64, round: fn(f64) -> f64| {
+        if decimals(x) > decimals_of_step {
+            round(x * scale) / scale
+        } else {
+            x
+        }
     };
     [rounded(least, f64::ceil), rounded(most, f64::floor)]
 }
 
-/// A number with as many decimals as a step has.
+/// Rounds a number to as many decimals as a step has.
 pub fn rounded(x: f64, step: f64) -> f64 {
     let decimals = decimals(step);
-    // Without −0.
+    // The sum makes 0 of −0.
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }

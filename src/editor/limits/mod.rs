@@ -1,41 +1,43 @@
-//! Between which numbers a number of the text may be, for a slider.
+//! The limits of a number in the text, for a slider.
+//!
+//! A range in a comment behind a definition comes first; otherwise a slider reaches some steps to
+//! both sides, as far as the conditions of fields allow, and as far as the text has no more errors
+//! with the new number, which is tried.
 
-mod bounds;
 mod comment;
 mod literal;
 mod trials;
 
 use self::{
-    bounds::{Bounds, unit},
-    comment::{Range, parse, range_behind},
+    comment::{CommentRange, parse, range_behind},
     literal::{Literal, decimals, inward, rounded},
     trials::Trials,
 };
 use super::Analysis;
 use crate::{
-    schema,
+    schema::{self, Condition, FieldRow},
     source::Span,
-    syntax::tree::{Definition, Value, ValueKind},
+    syntax::tree::{Definition, Unit, Value, ValueKind},
 };
 
-/// Number of steps from a number to each end of its slider, at least.
+/// Minimum number of steps from a number to each end of its slider.
 const STEPS: f64 = 50.0;
 
-/// The same of a count, whose steps are large.
-const COUNTS: f64 = 10.0;
+/// Minimum number of steps from a count to each end of its slider. Steps of a count are large.
+const STEPS_OF_COUNT: f64 = 10.0;
 
-/// How a number is turned. All is in its own unit.
+/// The limits of a number, in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The least number that is right, where there is one.
+    /// The least valid number, if it is known.
     pub least: Option<f64>,
-    /// The greatest number that is right, where there is one.
+    /// The greatest valid number, if it is known.
     pub most: Option<f64>,
     /// The step.
     pub step: f64,
-    /// Number of decimals that it is written with.
+    /// The number of decimals that the number is written with.
     pub decimals: usize,
-    /// The ends of a slider about it.
+    /// The ends of the slider.
     pub ends: [f64; 2],
 }
 
@@ -44,43 +46,33 @@ pub struct Limits {
 pub struct Slider<'a> {
     /// The definition's name.
     pub name: &'a str,
-    /// Where the number stands, without a unit, or else the value.
+    /// The span of the number without a unit, or else of the value.
     pub span: Span,
-    /// Between which numbers it may be; `None` if it is no number.
+    /// The limits; `None` if the value is no number.
     pub limits: Option<Limits>,
-    /// Why the comment behind it gives no range, or another one, where it looks as if it should.
+    /// Why the comment behind the definition gives no range, or another one than it seems to.
     pub note: Option<String>,
 }
 
-/// Returns how the number at a place is turned; `None` if there is none.
+/// Returns the limits of the number at a place; `None` if there is no number.
 pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     let path = analysis.path(at);
-    let mut values = path.values.iter().rev();
-    let number = Literal::of(values.next()?)?;
-    // With its sign, if it has one.
-    let literal = values
-        .next()
-        .and_then(|it| Literal::of(it))
-        .unwrap_or(number);
+    // The number, or the negation around it.
+    let values = path.values.iter().rev().take(2);
+    let literal = values.map_while(|it| Literal::of(it)).last()?;
     let mut trials = Trials::new(analysis);
-    let own = path
-        .definition
-        .filter(|it| Literal::of(&it.value).is_some());
-    if let Some(definition) = own {
+    let is_literal = |it: &&Definition<'_>| Literal::of(&it.value).is_some();
+    if let Some(definition) = path.definition.filter(is_literal) {
         return slider(analysis, definition, &mut trials)?.limits;
     }
-    let by_field = || {
-        Some(Bounds::of_field(
-            path.field_row()?,
-            unit(path.values.first()?)?,
-        ))
-    };
-    Some(about(&literal, by_field().unwrap_or_default(), &mut trials))
+    let unit = path.values.first().and_then(|it| unit(it));
+    let bounds = path.field_row().zip(unit);
+    let bounds = bounds.map(|(field, unit)| Bounds::of_field(field, unit));
+    Some(tried(&literal, bounds.unwrap_or(UNBOUNDED), &mut trials))
 }
 
-/// The numbers and angles that definitions are, with their bounds: those of the line comment behind
-/// one, or else those of the fields that it stands in, as far as the text has no more errors with
-/// it. What is no number is there if a comment gives it a range.
+/// Returns the sliders of all definitions that are numbers or angles, and a note for any other
+/// value with a range in a comment.
 pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<Slider<'a>> {
     let mut trials = Trials::new(analysis);
     let definitions = analysis.model.definitions();
@@ -106,11 +98,11 @@ fn slider<'a>(
             note: Some(note),
         });
     };
-    let bounds = by_fields(analysis, name, literal);
+    let bounds = Bounds::of_name(analysis, name, literal.unit);
     let (limits, note) = match range.map(|range| parse(range, literal.unit)) {
         Some(Ok(range)) => within(range, &literal, bounds, trials),
-        Some(Err(note)) => (about(&literal, bounds, trials), Some(note)),
-        None => (about(&literal, bounds, trials), None),
+        Some(Err(note)) => (tried(&literal, bounds, trials), Some(note)),
+        None => (tried(&literal, bounds, trials), None),
     };
     Some(Slider {
         name,
@@ -120,22 +112,10 @@ fn slider<'a>(
     })
 }
 
-/// The bounds by all fields that are a name alone.
-fn by_fields(analysis: &Analysis<'_>, name: &str, literal: Literal) -> Bounds {
-    let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(it) if it == name);
-    let fields = analysis.blocks().flat_map(|block| {
-        let row = block.kind.and_then(|kind| schema::block(kind.text));
-        let fields = block.fields.iter().filter(move |it| is_name(&it.value));
-        fields.filter_map(move |field| row?.field(field.name.text))
-    });
-    let bounds = fields.map(|field| Bounds::of_field(field, literal.unit));
-    bounds.fold(Bounds::default(), Bounds::and)
-}
-
-/// The limits of a number that has a range of its own. A number that is whole stays so, and then a
-/// note says why its step is another.
+/// Returns the limits of a number with a range in a comment. A count stays whole; a note says so if
+/// that changes the range.
 fn within(
-    range: Range,
+    range: CommentRange,
     literal: &Literal,
     bounds: Bounds,
     trials: &mut Trials<'_, '_>,
@@ -148,60 +128,139 @@ fn within(
         note = is_other.then(|| "the number is a count, so that its range is whole".to_owned());
         (step, ends) = (step.round().max(1.0), whole);
     }
-    let [least, most] = ends.map(Some);
-    (written(literal, [least, most], step, ends), note)
+    (Limits::new(literal, ends.map(Some), step, ends), note)
 }
 
-/// The limits of a number whose slider reaches as far as the number itself, and some steps, to both
-/// sides. An end is drawn in to where the text has no more errors than now.
-fn about(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
+/// Returns the limits of a number without a range. The slider reaches as far as the number itself,
+/// and at least some steps, to both sides. An end with which the text has more errors than now is
+/// moved towards the number.
+fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
-        // A formula may be right again below zero, as that of a square is.
-        let least = (literal.value >= 0.0).then_some(0.0);
-        (bounds.is_whole, bounds.least) = (true, bounds.least.or(least));
+        bounds.is_whole = true;
+        // Below zero a formula may be valid again, as that of a square is.
+        if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
+            bounds.least = 0.0;
+        }
     }
-    let (step, steps) = match bounds.is_whole {
-        true => (1.0, COUNTS),
-        false => (literal.step(), STEPS),
+    let (step, steps) = if bounds.is_whole {
+        (1.0, STEPS_OF_COUNT)
+    } else {
+        (literal.step(), STEPS)
     };
-    let [least, most] = bounds.by_steps(step);
-    let all = [
-        least.unwrap_or(f64::NEG_INFINITY),
-        most.unwrap_or(f64::INFINITY),
-    ];
-    let [low, high] = inward(all, step);
-    let bounded = |x: f64| x.max(low).min(high);
+    let margin = if bounds.is_open { step } else { 0.0 };
+    let [least, most] = inward([bounds.least + margin, bounds.most - margin], step);
+    let bounded = |x: f64| x.max(least).min(most);
     let middle = bounded(literal.value);
-    let span = middle.abs().max(steps * step);
-    let ends = [middle - span, middle + span].map(|end| bounded(rounded(end, step)));
-    let drawn = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    let (ends, [is_low, is_high]) = match drawn {
-        // A number that nothing near is right for is turned as if nothing was known.
-        [None, None] => (ends, [false; 2]),
-        [low, high] => {
-            let drawn = [low, high].map(|it| it.unwrap_or(literal.value));
-            (drawn, [drawn[0] != ends[0], drawn[1] != ends[1]])
+    let reach = middle.abs().max(steps * step);
+    let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
+    let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
+    // If no near number is valid on either side, the ends are not moved.
+    let valid = if valid == [None, None] {
+        ends
+    } else {
+        valid.map(|end| end.unwrap_or(literal.value))
+    };
+    let known = |end: usize, bound: f64| {
+        if valid[end] != ends[end] {
+            Some(valid[end])
+        } else {
+            bound.is_finite().then_some(bound)
         }
     };
-    let bound = |is_drawn, end, known| if is_drawn { Some(end) } else { known };
-    let [least, most] = [least.map(|_| low), most.map(|_| high)];
-    let [least, most] = [bound(is_low, ends[0], least), bound(is_high, ends[1], most)];
-    written(literal, [least, most], step, ends)
+    Limits::new(literal, [known(0, least), known(1, most)], step, valid)
 }
 
-fn written(
-    literal: &Literal,
-    [least, most]: [Option<f64>; 2],
-    step: f64,
-    ends: [f64; 2],
-) -> Limits {
-    let numbers = [literal.value, step, ends[0], ends[1]];
-    Limits {
-        least,
-        most,
-        step,
-        decimals: numbers.map(decimals).into_iter().max().unwrap_or(0),
-        ends,
+impl Limits {
+    fn new(literal: &Literal, [least, most]: [Option<f64>; 2], step: f64, ends: [f64; 2]) -> Self {
+        let numbers = [literal.value, step, ends[0], ends[1]];
+        Self {
+            least,
+            most,
+            step,
+            decimals: numbers.map(decimals).into_iter().max().unwrap_or(0),
+            ends,
+        }
+    }
+}
+
+/// The numbers that the conditions of fields allow, in a number's own unit.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    least: f64,
+    most: f64,
+    /// Whether the bounds themselves are excluded.
+    is_open: bool,
+    /// Whether only whole numbers are allowed.
+    is_whole: bool,
+}
+
+/// The bounds of a number without conditions.
+const UNBOUNDED: Bounds = Bounds {
+    least: f64::NEG_INFINITY,
+    most: f64::INFINITY,
+    is_open: false,
+    is_whole: false,
+};
+
+impl Bounds {
+    /// Returns the bounds by the conditions of a field, for a number in a unit.
+    fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
+        let two_to = |power: u32| (1_u64 << power) as f64;
+        let mut bounds = UNBOUNDED;
+        for condition in field.must {
+            match *condition {
+                Condition::Whole => bounds.is_whole = true,
+                Condition::AtLeast(bound) => bounds.least = bound,
+                Condition::MoreThan(bound) => (bounds.least, bounds.is_open) = (bound, true),
+                Condition::AtMostTwoTo(power) => bounds.most = two_to(power),
+                // Only whole numbers have this condition.
+                Condition::LessThanTwoTo(power) => bounds.most = two_to(power) - 1.0,
+                Condition::EachMoreThanZero => (bounds.least, bounds.is_open) = (0.0, true),
+                Condition::LessThanHalfTurn => {
+                    let is_in_radians = unit == Some(Unit::Radians);
+                    let half = if is_in_radians {
+                        std::f64::consts::PI
+                    } else {
+                        180.0
+                    };
+                    (bounds.least, bounds.most, bounds.is_open) = (0.0, half, true);
+                }
+                Condition::NotZero => {}
+            }
+        }
+        bounds
+    }
+
+    /// Returns the bounds by all fields whose value is a name alone.
+    fn of_name(analysis: &Analysis<'_>, name: &str, unit: Option<Unit>) -> Self {
+        let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(it) if it == name);
+        let fields = analysis.blocks().flat_map(|block| {
+            let row = block.kind.and_then(|kind| schema::block(kind.text));
+            let fields = block.fields.iter().filter(move |it| is_name(&it.value));
+            fields.filter_map(move |field| row?.field(field.name.text))
+        });
+        fields.fold(UNBOUNDED, |bounds, field| {
+            let other = Self::of_field(field, unit);
+            Self {
+                least: bounds.least.max(other.least),
+                most: bounds.most.min(other.most),
+                is_open: bounds.is_open || other.is_open,
+                is_whole: bounds.is_whole || other.is_whole,
+            }
+        })
+    }
+}
+
+/// Returns the unit of the numbers that a field's value is written in, if they have one; `None` if
+/// the value is an expression, whose numbers do not have to meet the field's conditions.
+fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
+    match &value.kind {
+        ValueKind::Number(_) => Some(None),
+        ValueKind::Angle { unit, .. } => Some(Some(*unit)),
+        ValueKind::Tuple(elements) => elements.iter().try_fold(None, |_, it| unit(&it.value)),
+        ValueKind::Negation { operand, .. } => unit(operand),
+        ValueKind::Parentheses(inner) => unit(inner),
+        _ => None,
     }
 }

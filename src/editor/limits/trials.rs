@@ -1,4 +1,4 @@
-//! What a text would be with another number in it: whether that makes an error.
+//! Tries other numbers in the text, to find out whether they make errors.
 
 use super::literal::{Literal, rounded};
 use crate::{
@@ -6,24 +6,24 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Number of bytes of text that are read for one answer at most.
+/// Maximum number of bytes of text that are read for one answer.
 const BYTES: usize = 1 << 16;
 
-/// What an object of a repetition takes to make, in bytes of text that take as long to read.
+/// Cost of building an object, in bytes of text that take as long to read.
 const OBJECT: usize = 12;
 
-/// Texts that differ from one in a number, as many as one answer may read.
+/// Trials of a text with other numbers in it, within the cost of one answer.
 #[derive(Debug)]
 pub struct Trials<'a, 's> {
     analysis: &'a Analysis<'s>,
-    /// How many errors the text itself has.
+    /// The number of errors in the text itself.
     errors: usize,
-    /// How many more bytes may be read.
+    /// The number of bytes that may still be read.
     left: usize,
 }
 
 impl<'a, 's> Trials<'a, 's> {
-    /// Nothing is tried yet.
+    /// Returns the trials of a text.
     pub fn new(analysis: &'a Analysis<'s>) -> Self {
         Self {
             analysis,
@@ -32,8 +32,8 @@ impl<'a, 's> Trials<'a, 's> {
         }
     }
 
-    /// Whether a number in a literal's place makes no error that the text has not already; `None`
-    /// if that takes too long to find out, where it makes so many objects.
+    /// Whether the text has no more errors with a number in a literal's place. Returns `None` if
+    /// the trial would take too long, given the number of objects that it makes.
     fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
         let read = self.analysis.text().len();
         let takes = read.saturating_add(OBJECT.saturating_mul(objects));
@@ -48,25 +48,17 @@ impl<'a, 's> Trials<'a, 's> {
         Some(errors(&tried) <= self.errors)
     }
 
-    /// Number of objects that there are now.
-    fn objects(&self) -> usize {
-        self.analysis.model.parts.objects.len()
-    }
-
-    /// Number of objects that there may be with another number in a count's place: every index of a
-    /// block may count to it.
+    /// Returns the number of objects that the text may have with another number in a count's place:
+    /// every index of a block may count to it.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
-        let repetitions = self
-            .analysis
-            .blocks()
-            .filter_map(|it| it.repetition.as_ref());
+        let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
         let growth = (value.abs() / count.value.abs().max(1.0)).max(1.0);
-        let objects = (0..indices).fold(self.objects().max(1) as f64, |all, _| all * growth);
-        objects as usize
+        let objects = self.analysis.model.parts.objects.len().max(1) as f64;
+        (0..indices).fold(objects, |all, _| all * growth) as usize
     }
 
-    /// Whether a number is a count: a tenth more or less is an error, one more or less is none.
+    /// Whether a number is a count: a tenth more or less is an error, and one more or less is none.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
@@ -78,10 +70,11 @@ impl<'a, 's> Trials<'a, 's> {
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
     }
 
-    /// The last number on the way to an end, by whole steps, that makes no error; the end if it
-    /// makes none itself, or nothing is known of it. `None` if the first step makes one.
+    /// Returns the last number on the way to an end, in whole steps, that makes no error; the end
+    /// if it makes none itself, or cannot be tried. Returns `None` if the first step makes an
+    /// error.
     ///
-    /// Of a way with several errors it is the last number before one of them.
+    /// If the errors have gaps, it is the last number before one of them.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -89,9 +82,10 @@ impl<'a, 's> Trials<'a, 's> {
         step: f64,
         is_count: bool,
     ) -> Option<f64> {
-        let objects = match is_count {
-            true => self.objects_with(literal, end),
-            false => self.objects(),
+        let objects = if is_count {
+            self.objects_with(literal, end)
+        } else {
+            self.analysis.model.parts.objects.len()
         };
         if end == literal.value || self.is_right(literal, end, objects) != Some(false) {
             return Some(end);
@@ -114,6 +108,7 @@ impl<'a, 's> Trials<'a, 's> {
     }
 }
 
+/// Returns the number of errors in a text.
 fn errors(analysis: &Analysis<'_>) -> usize {
     let diagnostics = analysis.diagnostics().iter();
     diagnostics.filter(|it| it.is_error()).count()

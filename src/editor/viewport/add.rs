@@ -1,5 +1,4 @@
-//! A block that is new: one of a kind, in front of the camera, or one that stands there already, a
-//! little aside.
+//! Adds blocks to the text: a new object in front of the camera, or a copy of an object beside it.
 
 use std::{borrow::Cow, sync::Arc};
 
@@ -16,16 +15,17 @@ use crate::{
     editor::Analysis,
     numbers::{rounded, short, short_vector, significant},
     projection::Projection,
-    scene::{Part, Parts, SMALLEST, Scene, Shape},
-    schema::{self, css},
+    scene::{FieldOwner, Parts, SMALLEST, Scene},
+    schema::{self, BlockKind, Preset, Type, css},
     source::{Source, SourceId, Sources, sort_by_span},
     tracer::vertices,
 };
 
-/// Number of rows in which a free place is looked for: a scene of more objects is not made by hand.
+/// Maximum number of rows in which a free place is searched. A scene of more objects is not made by
+/// hand.
 const ROWS: i32 = 100;
 
-/// Colours of new objects, far from each other and from gray and white, which boards have.
+/// Colours of new objects, far from each other and from gray and white, the colours of boards.
 const COLORS: [&str; 10] = [
     "olive",
     "teal",
@@ -39,22 +39,23 @@ const COLORS: [&str; 10] = [
     "sienna",
 ];
 
-/// Distance of two colours, in steps of sRGB's channels, up to which they are taken for each other.
+/// Maximum distance of two colours that are taken for each other, in steps of sRGB's channels.
 const ALIKE: f64 = 48.0;
 
-/// A block that is new.
+/// A new block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Added {
-    /// What writes it.
+    /// The edit that writes the block.
     pub edit: Edit,
-    /// What it is called; a copy of what has no name has none.
+    /// The name; a copy of an object without a name has none.
     pub name: Option<String>,
-    /// Where in the new text it begins, so many characters of UTF-16 from the start.
+    /// The start of the block in the new text, in units of UTF-16.
     pub cursor: usize,
 }
 
-/// A block of a kind at the end of the text, in front of the camera: on a floor, if there is one
-/// below the eye, and beside what is there already. None if that is no kind of an object.
+/// Adds an object of a kind at the end of the text. The object is in front of the camera, beside
+/// the other objects, and on a floor if there is one below the eye. Returns `None` if the kind is
+/// none of an object.
 pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option<Added> {
     let row = schema::block(kind).filter(|row| row.is_object)?;
     let scene = match scene {
@@ -63,26 +64,28 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     };
     let (place, size) = free_place(&scene);
     let from = scene.camera.eye - place;
-    let across = match from.x.abs() > from.z.abs() {
-        true => DVec3::X * from.x.signum(),
-        false => DVec3::Z * from.z.signum(),
+    let across = if from.x.abs() > from.z.abs() {
+        DVec3::X * from.x.signum()
+    } else {
+        DVec3::Z * from.z.signum()
     };
     let (at, across, size) = (short_vector(place), short_vector(across), short(size));
     let twice = short(2.0 * size.parse().unwrap_or(1.0));
-    let fields = match row.name {
-        "sphere" => format!("center {at}  radius {size}"),
-        "triangle" => format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})"),
-        "box" => format!("center {at}  size ({twice}, {twice}, {twice})"),
-        _ => format!("y {}", short(free_height(&scene))),
+    let fields = match row.kind {
+        BlockKind::Sphere => format!("center {at}  radius {size}"),
+        BlockKind::Triangle => {
+            format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})")
+        }
+        BlockKind::Box => format!("center {at}  size ({twice}, {twice}, {twice})"),
+        BlockKind::Checkerboard => format!("y {}", short(free_height(&scene))),
+        BlockKind::Image | BlockKind::Camera | BlockKind::Sampler => return None,
     };
-    // So that it is told from others, and can be given another one by a click.
-    let color = match row.name {
-        "sphere" => Some("olive"),
-        "triangle" => Some("teal"),
-        "box" => Some("orange"),
-        _ => None,
-    };
-    let color = color.map(|own| format!("  color {}", free_color(&scene, own)));
+    // A colour of its own tells the object from others, and can be changed by a click.
+    let color = row.fields.iter().find(|field| field.takes == Type::Color);
+    let color = color.and_then(|field| match field.preset {
+        Preset::Value(own) => Some(format!("  {} {}", field.name, free_color(&scene, own))),
+        Preset::Required | Preset::Alternative | Preset::Nothing => None,
+    });
     let fields = fields + color.as_deref().unwrap_or_default();
     let name = free_name(analysis, kind);
     let text = analysis.text();
@@ -99,8 +102,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     })
 }
 
-/// A kind's own colour, or else the first one of a list that nothing in the scene has; one after
-/// the other where all are there.
+/// Returns a kind's default colour, or else the first of [`COLORS`]; the colour is near to none of
+/// the scene. If all of them are taken, they are used in turn.
 fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     let shapes = scene.objects.iter().flat_map(|it| it.shape.colors());
     let taken: Vec<Color> = shapes.chain([scene.image.background]).collect();
@@ -113,8 +116,8 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// The scene of a text with errors, as far as it can be read: the smallest scene's parts stand in
-/// for those that fail, so that what is added is beside what was added before.
+/// Returns the scene of a text with errors. Parts with errors are replaced by those of the smallest
+/// scene, so that new objects are beside those that were added before.
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -132,8 +135,8 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     })
 }
 
-/// An object's block another time on the next line, a twentieth of the picture to the right where
-/// its numbers are its own.
+/// Copies an object's block to the next line. The copy is a twentieth of the picture to the right,
+/// unless the block shares its numbers with others.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -142,7 +145,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
         let (handle, at) = *handles(&object.shape, &projection, projection.right).first()?;
         let to = projection.point(at?)? + DVec2::new(projection.size.x / 20.0, 0.0);
         let moved = moved(object.shape, handle, to, Some(Along::Floor), &projection).ok()?;
-        let changes = changes(block, Part::Shape(object.shape), moved);
+        let changes = changes(block, FieldOwner::Shape(object.shape), moved);
         let (changes, rounding) = together(&changes, 1);
         edits(analysis, block, &changes, &rounding)
     };
@@ -158,7 +161,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
     let rest = &text[block.span.end..];
     let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest.len()]);
-    // A comment behind the block is one on this block.
+    // A comment behind the block is about this block.
     let behind = rest.lines().next().unwrap_or_default();
     let is_comment = behind.trim_start().starts_with("//");
     let end = block.span.end + if is_comment { behind.len() } else { 0 };
@@ -169,7 +172,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     })
 }
 
-/// The kind with the least number that makes a name which is nowhere in the text.
+/// Returns the kind with the least number that makes a name which is not in the text.
 fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     let capital = kind[..1].to_uppercase() + &kind[1..];
     let names = (1..).map(|number| format!("{capital}{number}"));
@@ -182,60 +185,52 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// The height of a board that is seen from above: the origin's, unless the eye is not above that,
-/// or something reaches below it; and no other board's.
+/// Returns a height for a board that is seen from above: 0, unless the eye is not above it or an
+/// object reaches below it; and not the height of another board.
 fn free_height(scene: &Scene) -> f64 {
-    let below_eye = match scene.camera.eye.y > 0.0 {
-        true => 0.0,
-        false => scene.camera.eye.y.floor() - 1.0,
+    let below_eye = if scene.camera.eye.y > 0.0 {
+        0.0
+    } else {
+        scene.camera.eye.y.floor() - 1.0
     };
-    let bottoms = scene.objects.iter().map(|object| match object.shape {
-        Shape::Sphere(sphere) => sphere.center.y - sphere.radius,
-        Shape::Box(cuboid) => cuboid.min.y,
-        Shape::Triangle(triangle) => {
-            let [y0, y1, y2] = vertices(&triangle).map(|vertex| vertex.y);
-            y0.min(y1).min(y2)
-        }
-        Shape::Checkerboard(board) => board.y - 1.0,
+    let bottoms = scene.objects.iter().filter_map(|object| {
+        let bottom = object.shape.bounding_box(vertices).map(|[min, _]| min.y);
+        bottom.or_else(|| Some(object.shape.checkerboard()?.y - 1.0))
     });
     bottoms.fold(below_eye, f64::min)
 }
 
-/// A place in front of the camera where nothing is yet, and half of the size that something may
-/// have there.
+/// Returns a free place in front of the camera, and half of the size that an object may have there.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
     let size = significant(0.15 * projection.size.y * projection.pitch * distance, 1);
-    let floors = scene
-        .objects
-        .iter()
-        .filter_map(|object| match object.shape {
-            Shape::Checkerboard(board) => (board.y < projection.eye.y).then_some(board.y),
-            _ => None,
-        });
-    // Without a board, a little above or below the ground, things stand there: boards come there.
+    let boards = scene.objects.iter();
+    let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
+    let floors = boards.filter(|y| *y < projection.eye.y);
+    // Without a board, objects near the height 0 stand on it, because a board will be there.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
     });
     let shapes = scene.objects.iter().map(|object| object.shape);
-    let shapes = shapes.filter(|shape| !matches!(shape, Shape::Checkerboard(_)));
+    let shapes = shapes.filter(|shape| shape.checkerboard().is_none());
     let middles =
         shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
     let taken: Vec<DVec3> = middles.collect();
     let place = |floor: Option<f64>, steps: i32, row: i32| {
-        // Every other row is half a place aside, so that it is seen between what stands before it.
+        // Every other row is shifted by half a place, so that it is seen between the objects before
+        // it.
         let aside = f64::from(steps) + 0.5 * f64::from(row % 2);
         let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
-        // What stands on a floor keeps all digits of its height.
+        // An object on a floor keeps all digits of its height.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);
-    // Each row has seven places, and the next one is behind it. Where no floor is seen, they are in
-    // the air.
+    // Each row has seven places, and the next row is behind it. If no floor is seen, the places are
+    // in the air.
     let row = |floor, row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(floor, steps, row));
     let rows = |floor| (0..ROWS).flat_map(move |it| row(floor, it));
     let mut places = rows(floor).chain(rows(None)).filter(is_seen);
@@ -254,7 +249,7 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     (found, size)
 }
 
-/// Whether a cube about a place, so far in each direction, lies within the picture.
+/// Whether a cube around a place lies within the picture; `size` is half of its side.
 fn is_seen(at: DVec3, size: f64, projection: &Projection) -> bool {
     let corner = |index: u8| {
         let sides = [1, 2, 4].map(|bit| if index & bit == 0 { -size } else { size });

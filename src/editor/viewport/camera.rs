@@ -1,4 +1,4 @@
-//! What the pointer does to the camera: orbit, pan, dolly, roll, look, view distance.
+//! Moves the camera by the pointer: orbit, pan, dolly, roll, look, view distance.
 
 use std::f64::consts::PI;
 
@@ -9,18 +9,18 @@ use crate::{
     math::{Angle, trig},
     probe::probe,
     projection::Projection,
-    scene::{Camera, Lens, Part, Scene, View},
+    scene::{Camera, FieldOwner, Lens, Scene, View},
 };
 
-/// So near, in radians, the view direction may come to the up vector: one degree.
+/// Minimum angle between the view direction and the up vector, in radians: one degree.
 const POLE: f64 = PI / 180.0;
 
-/// What the camera's distance, or its view distance, is multiplied by over the height of the
-/// picture.
+/// Factor of the camera's distance, or of its view distance, per height of the picture that the
+/// pointer moves.
 const ZOOM: f64 = 4.0;
 
-/// How far away that is which the camera is moved about: `lookat`, or else what is seen in the
-/// middle of the picture, or the nearest object.
+/// Returns the distance of the point that the camera is moved about: `lookat`, or else the point
+/// seen in the middle of the picture, or the nearest object.
 pub fn distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let from_eye = |point: DVec3| unit(point - camera.eye).1;
@@ -40,8 +40,12 @@ pub fn distance(scene: &Scene) -> f64 {
     seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
 }
 
-/// A camera after the pointer has moved from one point of the picture to another; `distance` is how
-/// far away that is which it is moved about.
+/// Returns the camera after the pointer has moved from one point of the picture to another;
+/// `distance` is that of the point which the camera is moved about.
+///
+/// # Errors
+///
+/// Why the camera cannot be moved so, in a sentence.
 pub fn moved(
     camera: &Camera,
     projection: &Projection,
@@ -62,8 +66,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // What is seen follows the hand in both: the camera goes the other way where it stays
-            // in its place.
+            // The picture follows the pointer in both. So the camera turns the other way if it
+            // stays in its place.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -87,7 +91,8 @@ pub fn moved(
             if from == DVec2::ZERO || to == DVec2::ZERO {
                 return Err("the middle of the picture has no direction to roll to".to_owned());
             }
-            // Clockwise in the picture, where y points down; the camera turns the other way.
+            // The angle is clockwise in the picture, because y points down; the camera turns the
+            // other way.
             let turn = trig::atan2(from.perp_dot(to), from.dot(to));
             moved.roll = within_half_turn(camera.roll, -turn.in_degrees());
         }
@@ -104,22 +109,23 @@ pub fn moved(
         }
         _ => return Err(format!("a camera has no handle `{handle}`")),
     }
-    match Part::Camera(moved).is_possible() {
-        true => Ok(moved),
-        false => Err(TOO_FAR.to_owned()),
+    if FieldOwner::Camera(moved).is_possible() {
+        Ok(moved)
+    } else {
+        Err(TOO_FAR.to_owned())
     }
 }
 
+/// Returns the factor for a movement, in heights of the picture.
 fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// The view direction turned as the pointer has moved, in heights of the picture, each of which is
-/// half a turn: about the up vector where it goes to the right, and away from the up vector where
-/// it goes down.
+/// Turns the view direction by a movement of the pointer in heights of the picture, each of which
+/// is half a turn: to the right about the up vector, and down away from the up vector.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
-    // What right and up in the world are in the rolled picture.
+    // Right and up of the world in the rolled picture.
     let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
     let level_top = projection.top * cos - projection.right * sin;
     let pointer = DVec2::new(by.x * cos - by.y * sin, -by.x * sin - by.y * cos) * PI;
@@ -127,10 +133,11 @@ fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let axial = ahead.dot(up);
     let radial = ahead - up * axial;
     let polar = trig::atan2(radial.length(), axial).radians;
-    // Straight up or down, the picture's top says where level is.
-    let level = match radial == DVec3::ZERO {
-        true => -level_top * axial.signum(),
-        false => unit(radial).0,
+    // If the camera looks straight up or down, the picture's top gives the level direction.
+    let level = if radial == DVec3::ZERO {
+        -level_top * axial.signum()
+    } else {
+        unit(radial).0
     };
     let polar = match polar + pointer.y {
         turned if pointer.y != 0.0 => turned.clamp(polar.min(POLE), polar.max(PI - POLE)),

@@ -1,9 +1,9 @@
-//! A handle is moved: what has to change in the text.
+//! Changes the text as a handle is moved.
 //!
-//! The object or the camera is moved first, in real numbers. Then the fields that differ are
-//! written to one decimal after another, until the text means something that is seen within half a
-//! pixel of where it would be. It may not come to that: a text ties numbers to others, or breaks a
-//! condition of the language.
+//! The object or the camera is moved first, in unrounded numbers. Then the fields that differ are
+//! written with one more decimal after another, until the text means something that is seen within
+//! half a pixel of its exact place. That may fail, because the text shares numbers between fields,
+//! or because a condition of the language would be broken.
 
 use std::{iter, sync::Arc};
 
@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use super::{
     camera,
-    edits::{Change, changes, edits, rounded, together},
+    edits::{FieldChange, changes, edits, rounded, together},
     handles::{self, Along, TOLERANCE, TOO_FAR, handles},
 };
 use crate::{
@@ -20,47 +20,47 @@ use crate::{
     inspect,
     numbers::short,
     projection::Projection,
-    scene::{self, Image, Part, Scene, Shape},
+    scene::{self, FieldOwner, Image, Scene, Shape},
+    schema::{CAMERA, SPHERE},
     source::{Source, SourceId, Sources, Span},
     syntax::tree::Block,
 };
 
-/// A number of an `f64` has no more digits than this.
+/// Maximum number of significant digits of an `f64`.
 const DIGITS: i32 = 17;
 
-/// A handle is moved.
+/// A movement of a handle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag<'a> {
-    /// The object's index in the file; none for the camera.
+    /// The object's index in the file; `None` for the camera.
     pub object: Option<usize>,
-    /// Which handle.
+    /// The name of the handle.
     pub handle: &'a str,
-    /// Where the pointer was: it counts for the camera alone.
+    /// The point where the pointer was; only the camera depends on it.
     pub from: DVec2,
-    /// Where the pointer is.
+    /// The point where the pointer is.
     pub to: DVec2,
-    /// What a point moves along.
+    /// The axis or plane that the handle moves along, if it is restricted.
     pub along: Option<Along>,
-    /// So many pixels a handle may go at once: its numbers are multiples of the greatest power of
-    /// ten that moves it no farther.
+    /// The grid that the handle snaps to, in pixels: numbers are multiples of the greatest power
+    /// of ten that moves the handle no farther.
     pub step: Option<f64>,
 }
 
-/// What has to change in the text, and what becomes of the fields that do; nothing at all where
-/// nobody would see it.
+/// The changes of a text by a moved handle; empty if nobody would see them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
-    /// The changes.
+    /// The edits.
     pub edits: Vec<Edit>,
-    /// The fields with their new values, as `Ball.radius = 2`.
+    /// The changed fields with their new values, as `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Fields of other blocks that change with them, as `camera.lookat`, and of other objects of
+    /// Fields that change with them in other blocks, as `camera.lookat`, and in other objects of
     /// the same block.
     pub also: Vec<String>,
 }
 
-/// The text of a scene with spaces in the place of all blocks of objects but that of one, so that
-/// what is left stands where it stood and is read quickly.
+/// Returns the text of a scene with blanks in place of all blocks of objects except one. The rest
+/// keeps its place and is read quickly.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
@@ -77,7 +77,7 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     Sources::new(Source::from_text(source.name(), text))
 }
 
-/// The blocks of all objects but one.
+/// Returns the blocks of all objects except that of one object.
 fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
     let own = object
         .and_then(|index| scene.objects.get(index))
@@ -87,8 +87,8 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
     blocks.filter(move |span| Some(*span) != own)
 }
 
-/// What has to change in a text that means a scene where a handle is moved; `alone` is that text
-/// with the moved object [`alone`].
+/// Returns the changes of the text of a scene if a handle is moved; `alone` is that text with only
+/// the moved object, by [`alone`].
 ///
 /// # Errors
 ///
@@ -103,7 +103,7 @@ pub fn drag(
     if !(drag.from.is_finite() && drag.to.is_finite()) {
         return Err("the pointer is nowhere".to_owned());
     }
-    let dragged = part(scene, drag.object).zip(block(analysis, scene, drag));
+    let dragged = owner(scene, drag.object).zip(block(analysis, scene, drag));
     let (current, (block, name)) = dragged.ok_or_else(|| match drag.object {
         Some(index) => format!("there is no object {index}"),
         None => "the text has no camera".to_owned(),
@@ -111,7 +111,7 @@ pub fn drag(
     let image = &scene.image;
     let projection = Projection::new(&scene.camera, image);
     let (ideal, points) = match current {
-        Part::Shape(shape) => {
+        FieldOwner::Shape(shape) => {
             let held = handles(&shape, &projection, DVec3::ZERO)[0].1;
             let ideal = handles::moved(shape, drag.handle, drag.to, drag.along, &projection)?;
             (ideal, Some(Vec::from_iter(held)))
@@ -121,7 +121,7 @@ pub fn drag(
             let (handle, by) = (drag.handle, [drag.from, drag.to]);
             let moved = camera::moved(&scene.camera, &projection, handle, by, distance)?;
             let seen = landmarks(&Projection::new(&moved, image), distance);
-            (Part::Camera(moved), seen)
+            (FieldOwner::Camera(moved), seen)
         }
     };
     let changes = changes(block, current, ideal);
@@ -129,7 +129,7 @@ pub fn drag(
         return Err(TOO_FAR.to_owned());
     }
     let not_seen = "it would not be seen there";
-    let view = View {
+    let view = DragView {
         image,
         projection,
         drag,
@@ -148,22 +148,23 @@ pub fn drag(
         objects: Arc::new(of_block.cloned().collect()),
         ..scene.clone()
     };
-    // Where it stands among the objects of its block.
+    // The index among the objects of the block.
     let place = drag.object.map(|index| {
         let before = scene.objects.iter().take(index);
         before.filter(|it| it.span == block.span).count()
     });
-    let tied = || tied(analysis, block, &name, &changes);
-    let mut refusal = tied();
-    let greatest = changes.iter().map(Change::size).fold(0.0, f64::max);
+    let refused = || shared_numbers(analysis, block, &name, &changes);
+    let mut refusal = refused();
+    let greatest = changes.iter().map(FieldChange::size).fold(0.0, f64::max);
     let first = -1 - libm::log10(greatest).floor() as i32;
     let snapped = drag
         .step
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // Within a step nobody would see that a number is shared with another field.
-    let keeps_others = |found: Part| {
+    // Within a step of the grid, a change of another field that shares a number would not be
+    // noticed.
+    let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
         snapped.is_none()
@@ -173,7 +174,7 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // The place of the press is one of those that it snaps to.
+        // The handle snaps to its old place, too.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
             return Ok(Dragged::default());
@@ -182,28 +183,27 @@ pub fn drag(
             continue;
         };
         let read_alone = read(analysis.source(), [&edits, &without_others]);
-        match read_alone.map(|scene| (part(&scene, place), scene)) {
+        match read_alone.map(|scene| (owner(&scene, place), scene)) {
             Ok((Some(found), after))
                 if view.agree(ideal, found, tolerance) && keeps_others(found) =>
             {
-                // What stands in the block itself concerns no other one, which saves reading a long
-                // text.
+                // Edits within the block change no other block, so that a long text need not be
+                // read.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
-                let also = match edits.iter().all(is_own) {
-                    true => others_changed(analysis, place, changes, [&scene_alone, &after]),
-                    false => {
-                        let after = read(&sources.file, [&edits, &[]])?;
-                        others_changed(
-                            &Analysis::new(sources),
-                            drag.object,
-                            changes,
-                            [scene, &after],
-                        )
-                    }
+                let also = if edits.iter().all(is_own) {
+                    others_changed(analysis, place, changes, [&scene_alone, &after])
+                } else {
+                    let after = read(&sources.file, [&edits, &[]])?;
+                    others_changed(
+                        &Analysis::new(sources),
+                        drag.object,
+                        changes,
+                        [scene, &after],
+                    )
                 };
-                let value = |change: &Change| {
+                let value = |change: &FieldChange| {
                     let after = found.value(change.name)?;
                     let is_new = after != change.from;
                     is_new.then(|| format!("{name}.{} = {after}", change.name))
@@ -216,9 +216,8 @@ pub fn drag(
                     also,
                 });
             }
-            Ok(_) => refusal = tied(),
-            // More digits might slip by what the language forbids, and nobody would see the
-            // difference.
+            Ok(_) => refusal = refused(),
+            // With more digits the error might disappear, although nobody would see the difference.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
@@ -228,10 +227,17 @@ pub fn drag(
     Err(refusal)
 }
 
-/// How much a camera sees, in all of the ways that the language has, where one of them has changed.
-fn lens(image: &Image, changes: &[Change], found: Part) -> Option<String> {
-    let is_lens = |change: &Change| matches!(change.name, "d" | "fov" | "hfov" | "view_height");
-    let (Part::Camera(camera), true) = (found, changes.iter().any(is_lens)) else {
+/// Describes the field of view of a camera in all of the language's ways, if one of them has
+/// changed.
+fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<String> {
+    const LENS: [&str; 4] = [
+        CAMERA.d.name,
+        CAMERA.fov.name,
+        CAMERA.hfov.name,
+        CAMERA.view_height.name,
+    ];
+    let is_lens = |change: &FieldChange| LENS.contains(&change.name);
+    let (FieldOwner::Camera(camera), true) = (found, changes.iter().any(is_lens)) else {
         return None;
     };
     let (seen, _) = inspect::inspect_camera(&camera, image);
@@ -239,15 +245,19 @@ fn lens(image: &Image, changes: &[Change], found: Part) -> Option<String> {
     Some(format!("d {d} = fov {fov:.1}° of a window {high} high"))
 }
 
-/// Why fields cannot take the values that they should have, where the text could be changed so that
-/// they can, and how.
-fn tied(analysis: &Analysis<'_>, block: &Block<'_>, name: &str, changes: &[Change]) -> String {
+/// Returns the message that fields cannot take their values because they share numbers with others,
+/// and what to change in the text.
+fn shared_numbers(
+    analysis: &Analysis<'_>,
+    block: &Block<'_>,
+    name: &str,
+    changes: &[FieldChange],
+) -> String {
     let Some(change) = changes.first() else {
         return TOO_FAR.to_owned();
     };
     let field = change.name;
-    let mut written = block.fields.iter();
-    let written = written.find(|it| it.name.text == field);
+    let written = block.fields.iter().find(|it| it.name.text == field);
     let line = analysis.line(written.map_or(block.span, |field| field.span));
     let value = change.from;
     format!(
@@ -255,15 +265,15 @@ fn tied(analysis: &Analysis<'_>, block: &Block<'_>, name: &str, changes: &[Chang
     )
 }
 
-/// An object or the camera; none if there is no such object.
-fn part(scene: &Scene, object: Option<usize>) -> Option<Part> {
+/// Returns an object, or the camera; `None` if there is no such object.
+fn owner(scene: &Scene, object: Option<usize>) -> Option<FieldOwner> {
     Some(match object {
-        None => Part::Camera(scene.camera),
-        Some(index) => Part::Shape(scene.objects.get(index)?.shape),
+        None => FieldOwner::Camera(scene.camera),
+        Some(index) => FieldOwner::Shape(scene.objects.get(index)?.shape),
     })
 }
 
-/// The block of the text that is to change, and what it is called.
+/// Returns the block of the text that changes, and its name.
 fn block<'a, 's>(
     analysis: &'a Analysis<'s>,
     scene: &Scene,
@@ -280,12 +290,12 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// The fields of the camera and of other objects, by the names of their blocks, in which two scenes
-/// differ that have the same blocks.
+/// Returns the fields of the camera and of other objects in which two scenes of the same blocks
+/// differ, each behind the name of its block.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
-    changes: &[Change],
+    changes: &[FieldChange],
     scenes: [&Scene; 2],
 ) -> Vec<String> {
     let mut next = 0;
@@ -298,20 +308,23 @@ fn others_changed(
             .iter()
             .take_while(|it| it.span == block.span)
             .count();
-        let of_block: Vec<_> = match kind.text {
-            "camera" => vec![None],
-            _ => (first..next).map(Some).collect(),
+        let of_block: Vec<_> = if kind.text == "camera" {
+            vec![None]
+        } else {
+            (first..next).map(Some).collect()
         };
         let others = of_block.into_iter().filter(|index| *index != dragged);
-        let parts = others.map(|index| scenes.map(|scene| part(scene, index)));
+        let parts = others.map(|index| scenes.map(|scene| owner(scene, index)));
         let parts: Vec<_> = parts.collect();
         let name = block.name.map_or(kind.text, |name| name.text);
-        let fields: Vec<&str> = match dragged.is_some_and(|index| (first..next).contains(&index)) {
-            true => changes.iter().map(|change| change.name).collect(),
-            false => block.fields.iter().map(|it| it.name.text).collect(),
+        let is_dragged = dragged.is_some_and(|index| (first..next).contains(&index));
+        let fields: Vec<&str> = if is_dragged {
+            changes.iter().map(|change| change.name).collect()
+        } else {
+            block.fields.iter().map(|it| it.name.text).collect()
         };
         let differ = fields.into_iter().filter(|field| {
-            let differs = |[before, after]: &[Option<Part>; 2]| match (before, after) {
+            let differs = |[before, after]: &[Option<FieldOwner>; 2]| match (before, after) {
                 (Some(before), Some(after)) => before.value(field) != after.value(field),
                 _ => false,
             };
@@ -322,7 +335,7 @@ fn others_changed(
     changed
 }
 
-/// The scene that a text means after some edits.
+/// Reads the scene of a text after edits.
 fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
@@ -335,8 +348,8 @@ fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Points that a camera sees in the middle and in the corners of its picture, before and behind
-/// what it is moved about; none where numbers have too few digits for them.
+/// Returns points that a camera sees in the middle and in the corners of its picture, before and
+/// behind the point that it is moved about. Returns `None` if numbers have too few digits for them.
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -350,29 +363,29 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// How the scene before a drag is seen.
-struct View<'a> {
+/// The view of the scene before a drag, in which results are compared.
+struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// The points of the world by which cameras, and boards, are compared.
+    /// The points of the world by which cameras and boards are compared.
     points: Vec<DVec3>,
 }
 
-impl View<'_> {
-    /// The number of decimals of the greatest power of ten that moves what is held by no more than
-    /// `step` pixels, and that `step`; none of what is not a handle's. Beyond the digits that
-    /// numbers have, nothing snaps.
-    fn snapped(&self, part: Part, changes: &[Change], step: f64) -> Option<(i32, f64)> {
-        let held = |part: Part| {
-            let mut marks = self.marks(part).into_iter();
+impl DragView<'_> {
+    /// Returns the number of decimals of the greatest power of ten that moves the held handle by at
+    /// most `step` pixels, and `step` itself. Returns `None` for the camera, and if numbers
+    /// have too few digits for that.
+    fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
+        let held = |owner: FieldOwner| {
+            let mut marks = self.marks(owner).into_iter();
             marks.find_map(|(is_held, at)| at.filter(|_| is_held))
         };
-        let here = held(part).filter(|_| self.drag.object.is_some())?;
+        let here = held(owner).filter(|_| self.drag.object.is_some())?;
         let is_small = |decimals: &i32| {
             let parts = changes
                 .iter()
-                .flat_map(|change| change.with_unit(part, *decimals));
+                .flat_map(|change| change.with_unit(owner, *decimals));
             let ways: Vec<f64> = parts
                 .filter_map(|it| Some(held(it)?.distance(here)))
                 .collect();
@@ -381,10 +394,10 @@ impl View<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Whether everything in the picture or near to it, and what is held, is seen no farther than
-    /// this from where it should be.
-    fn agree(&self, ideal: Part, found: Part, tolerance: f64) -> bool {
-        // With few digits a distance may have become 0.
+    /// Whether the held handle, and every other one in the picture or near to it, is seen no
+    /// farther than a tolerance from its ideal place, in pixels.
+    fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
+        // Rounded to few digits, a length may have become 0.
         if ideal.is_possible() && !found.is_possible() {
             return false;
         }
@@ -400,27 +413,28 @@ impl View<'_> {
         })
     }
 
-    /// Where that is seen which tells a camera or an object from others, and whether it is what is
-    /// held.
-    fn marks(&self, part: Part) -> Vec<(bool, Option<DVec2>)> {
+    /// Returns the points of the picture by which a camera or an object is compared, and whether
+    /// each is held by the pointer.
+    fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
-        match part {
-            Part::Camera(camera) => {
+        match owner {
+            FieldOwner::Camera(camera) => {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board stays where the view axis meets it: what moves is the point
-            // that it holds now.
-            Part::Shape(Shape::Checkerboard(board)) => {
+            // The handle of a board stays where the view axis meets it, so the point of the board
+            // that is held is compared.
+            FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()
             }
-            Part::Shape(shape) => {
+            FieldOwner::Shape(shape) => {
                 let Drag { handle, to, .. } = *self.drag;
-                // That of a radius is on the side where it is moved to.
-                let towards = match handle {
-                    "radius" => self.projection.ray(to),
-                    _ => self.projection.right,
+                // The handle of a radius is on the side that it is moved to.
+                let towards = if handle == SPHERE.radius.name {
+                    self.projection.ray(to)
+                } else {
+                    self.projection.right
                 };
                 let seen = |at: Option<DVec3>| self.projection.point(at?);
                 let handles = handles(&shape, &self.projection, towards).into_iter();
@@ -428,7 +442,7 @@ impl View<'_> {
                     .map(|(name, at)| (name == handle, seen(at)))
                     .collect()
             }
-            Part::Image(_) => Vec::new(),
+            FieldOwner::Image(_) => Vec::new(),
         }
     }
 }

@@ -1,9 +1,8 @@
-//! Numbers of fields, written into the text where they stand.
+//! Writes changed numbers of fields into the text.
 //!
-//! A literal is replaced, number by number, so that one that does not change stays as it is
-//! written. Where a name stands, the literal of its `let` changes; to an expression an offset is
-//! added, or changed where the expression ends in one. A field that is not there is added to its
-//! block.
+//! A literal is replaced number by number, so that unchanged numbers stay as they are written. For
+//! a name, the literal of its `let` changes. To an expression an offset is added, or changed if the
+//! expression ends in one. A missing field is added to its block.
 
 use glam::DVec3;
 
@@ -11,25 +10,25 @@ use crate::{
     diagnostic::Edit,
     editor::Analysis,
     math::Angle,
-    scene::{Part, operate},
-    schema::{self, Value},
+    scene::{FieldOwner, operate},
+    schema::{self, BOX, Value},
     source::{SourceId, Span, sort_by_span},
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// A field that has to change.
+/// A change of a field.
 #[derive(Clone, Copy, Debug)]
-pub struct Change {
-    /// The field.
+pub struct FieldChange {
+    /// The field's name.
     pub name: &'static str,
-    /// The value that it has.
+    /// The old value.
     pub from: Value,
-    /// The amount that is to be added to it.
+    /// The amount that is added to it.
     pub by: Value,
 }
 
-impl Change {
-    /// The greatest number in the amount; of an angle, in degrees.
+impl FieldChange {
+    /// Returns the greatest number in the amount; for an angle, in degrees.
     pub fn size(&self) -> f64 {
         match self.by {
             Value::Vector(vector) => vector.abs().max_element(),
@@ -37,8 +36,9 @@ impl Change {
         }
     }
 
-    /// A part after each of the numbers that change alone has been changed by a power of ten.
-    pub fn with_unit(&self, part: Part, decimals: i32) -> Vec<Part> {
+    /// For each number that changes, returns the owner with only that number changed by a power of
+    /// ten.
+    pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
             Value::Vector(by) => {
@@ -49,49 +49,51 @@ impl Change {
             Value::Angle(_) => vec![Value::Angle(Angle::from_degrees(unit))],
             _ => vec![Value::Number(unit)],
         };
-        let changed = |by| part.with(self.name, operate(Operator::Add, self.from, by)?);
+        let changed = |by| owner.with(self.name, operate(Operator::Add, self.from, by)?);
         units.into_iter().filter_map(changed).collect()
     }
 }
 
-/// The fields of a block in which its part differs from what it is to be; of a box those of the
-/// form that the text has.
-pub fn changes(block: &Block<'_>, current: Part, ideal: Part) -> Vec<Change> {
-    let other_form = match block.fields.iter().any(|field| field.name.text == "min") {
-        true => ["center", "size"],
-        false => ["min", "max"],
+/// Returns the fields of a block in which its owner differs from the ideal one. For a box, they are
+/// the fields of the way that the text takes.
+pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec<FieldChange> {
+    let has_min = |field: &tree::Field<'_>| field.name.text == BOX.min.name;
+    let other_way = if block.fields.iter().any(has_min) {
+        [BOX.center.name, BOX.size.name]
+    } else {
+        [BOX.min.name, BOX.max.name]
     };
     let fields = block.kind.and_then(|kind| schema::block(kind.text));
     let fields = fields.into_iter().flat_map(|row| row.fields);
-    let changes = fields.filter_map(|&schema::Field { name, .. }| {
+    let changes = fields.filter_map(|&schema::FieldRow { name, .. }| {
         let from = current.value(name)?;
         let by = operate(Operator::Subtract, ideal.value(name)?, from)?;
-        Some(Change { name, from, by })
+        Some(FieldChange { name, from, by })
     });
     changes
-        .filter(|change| change.size() != 0.0 && !other_form.contains(&change.name))
+        .filter(|change| change.size() != 0.0 && !other_way.contains(&change.name))
         .collect()
 }
 
 /// Ratios between the amounts of numbers that change together: `v0` and `v1` change by the same
-/// amount, the center of a box by half of that of its size, to either side.
+/// amount, and the center of a box by half of the amount of its size, in either direction.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Relative deviation of two amounts that are the same but for rounding.
+/// Maximum relative difference of two amounts that are equal apart from rounding.
 const SAME: f64 = 1e-6;
 
-/// How numbers are written that have changed.
+/// The rounding of changed numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rounding {
-    /// Number of decimals, which may be less than 0.
+pub struct DecimalRounding {
+    /// Number of decimals, which may be negative.
     decimals: i32,
-    /// Sizes of amounts that are rounded already: a sum with one of them keeps all of its digits.
+    /// Absolute amounts that are rounded already: a sum with one of them keeps all of its digits.
     exact: Vec<f64>,
 }
 
-/// Changes for a number of decimals: numbers along an axis that change together do so by the same
-/// rounded amount, so that what is not held stays where it is to the last digit.
-pub fn together(changes: &[Change], decimals: i32) -> (Vec<Change>, Rounding) {
+/// Rounds changes to a number of decimals. Numbers along an axis that change together change by the
+/// same rounded amount, so that points which are not held stay in place to the last digit.
+pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
     for axis in 0..3 {
@@ -113,45 +115,50 @@ pub fn together(changes: &[Change], decimals: i32) -> (Vec<Change>, Rounding) {
             }
         }
     }
-    (changes, Rounding { decimals, exact })
+    (changes, DecimalRounding { decimals, exact })
 }
 
-/// The amount by which a vector changes along an axis; none if it does not.
-fn along(change: &mut Change, axis: usize) -> Option<&mut f64> {
+/// Returns the amount by which a vector changes along an axis; `None` if it does not.
+fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
     match &mut change.by {
         Value::Vector(by) => Some(&mut by[axis]).filter(|by| **by != 0.0),
         _ => None,
     }
 }
 
-impl Rounding {
+impl DecimalRounding {
     /// Returns the rounded sum of a number and an amount: the number itself if the amount is
     /// rounded to 0.
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // Half of a rounded amount has a digit more.
+            // Half of a rounded amount has one more digit.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
-        match round(by, decimals) == 0.0 {
-            true => from,
-            false => round(from + by, decimals),
+        if round(by, decimals) == 0.0 {
+            from
+        } else {
+            round(from + by, decimals)
         }
     }
 }
 
-/// The number of decimals that a number is written with.
+/// Returns the number of decimals that a number is written with.
 fn decimals_of(number: f64) -> i32 {
     let text = format!("{number}");
     text.split_once('.')
         .map_or(0, |(_, digits)| digits.len() as i32)
 }
 
-/// A part whose fields have changed, with their values rounded.
-pub fn rounded(part: Part, changes: &[Change], rounding: &Rounding) -> Option<Part> {
+/// Returns an owner with changed fields, whose values are rounded.
+pub fn rounded(
+    owner: FieldOwner,
+    changes: &[FieldChange],
+    rounding: &DecimalRounding,
+) -> Option<FieldOwner> {
     let number = |from: f64, by: f64| rounding.sum(from, by);
-    changes.iter().try_fold(part, |part, change| {
+    changes.iter().try_fold(owner, |owner, change| {
         let value = match (change.from, change.by) {
             (Value::Vector(from), Value::Vector(by)) => {
                 let number = |axis| number(from[axis], by[axis]);
@@ -163,25 +170,25 @@ pub fn rounded(part: Part, changes: &[Change], rounding: &Rounding) -> Option<Pa
             }
             _ => Value::Number(number(amount(change.from, None), amount(change.by, None))),
         };
-        part.with(change.name, value)
+        owner.with(change.name, value)
     })
 }
 
-/// The edits that change fields of a block, in order. None if two of them want different things of
-/// one number.
+/// Returns the edits that change fields of a block, in order; `None` if two of them change one
+/// number differently.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
-    changes: &[Change],
-    rounding: &Rounding,
+    changes: &[FieldChange],
+    rounding: &DecimalRounding,
 ) -> Option<Vec<Edit>> {
-    let mut writer = Writer {
+    let mut writer = NumberWriter {
         analysis,
         rounding,
         edits: Vec::new(),
     };
     let mut added = Vec::new();
-    for &Change { name, from, by } in changes {
+    for &FieldChange { name, from, by } in changes {
         match block.fields.iter().find(|field| field.name.text == name) {
             Some(field) => writer.change(&field.value, by)?,
             None => added.push(format!("{name} {}", writer.sum(from, by, None))),
@@ -201,14 +208,16 @@ pub fn edits<'s>(
     edits.windows(2).all(apart).then_some(edits)
 }
 
-struct Writer<'a, 's> {
+/// Writes changed numbers as edits.
+struct NumberWriter<'a, 's> {
     analysis: &'a Analysis<'s>,
-    rounding: &'a Rounding,
+    rounding: &'a DecimalRounding,
     edits: Vec<Edit>,
 }
 
-impl<'s> Writer<'_, 's> {
-    /// Changes a value by an amount; none if it has no amounts.
+impl<'s> NumberWriter<'_, 's> {
+    /// Changes a value by an amount. Returns `None` if the value has no negative or cannot be
+    /// scaled.
     fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
         if let Some(unit) = literal_unit(tree) {
@@ -243,7 +252,7 @@ impl<'s> Writer<'_, 's> {
         self.offset(tree.span, by)
     }
 
-    /// Changes the literal that a sum ends in: of a number the sign is the operator.
+    /// Changes the literal that a sum ends in. The operator becomes the sign of a number.
     fn change_last(&mut self, step: &Step<'s>, by: Value) -> Option<()> {
         let (sign, other) = match step.operator {
             Operator::Subtract => (-1.0, '+'),
@@ -260,7 +269,7 @@ impl<'s> Writer<'_, 's> {
         Some(())
     }
 
-    /// Adds an offset behind an expression.
+    /// Adds an offset to an expression.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
         let text = self.sum(zero, by, None);
@@ -275,8 +284,8 @@ impl<'s> Writer<'_, 's> {
         Some(())
     }
 
-    /// A value that has changed by an amount, with as many decimals as there are to be; the old
-    /// number where the amount has none of them. An angle that has no unit yet is in degrees.
+    /// Writes a value that has changed by an amount, with the decimals of the rounding; the old
+    /// number if the amount is rounded to 0. An angle without a unit is written in degrees.
     fn sum(&self, from: Value, by: Value, unit: Option<Unit>) -> String {
         if let (Value::Vector(from), Value::Vector(by)) = (from, by) {
             let number = |axis| {
@@ -292,8 +301,7 @@ impl<'s> Writer<'_, 's> {
     }
 }
 
-/// The unit of a number or an angle, with a sign or without, if it has one; none at all of other
-/// values.
+/// Returns the unit of a number or angle literal, if it has one; `None` for any other value.
 fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     match &tree.kind {
         ValueKind::Number(_) => Some(None),
@@ -303,12 +311,12 @@ fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     }
 }
 
-/// Whether a value is written in numbers, at least in part, so that it can take up any change.
+/// Whether a value is a literal or a list, whose numbers can take up any change.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
     literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
-/// A number, or how many of its unit an angle is.
+/// Returns a number, or the number of units of an angle.
 fn amount(value: Value, unit: Option<Unit>) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,
@@ -318,17 +326,18 @@ fn amount(value: Value, unit: Option<Unit>) -> f64 {
     }
 }
 
-/// A number with all its digits.
+/// Writes a number with all its digits.
 fn spelled(number: f64, unit: Option<Unit>) -> String {
     let number = number + 0.0;
-    let text = match number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
-        true => format!("{number}"),
-        false => format!("{number:e}"),
+    let text = if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
+        format!("{number}")
+    } else {
+        format!("{number:e}")
     };
     text + unit.map_or("", Unit::name)
 }
 
-/// A number rounded to so many decimals, which may be fewer than none.
+/// Rounds a number to a number of decimals, which may be negative.
 fn round(x: f64, decimals: i32) -> f64 {
     let text = match usize::try_from(decimals) {
         Ok(decimals) => format!("{x:.decimals$}"),

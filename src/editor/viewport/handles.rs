@@ -1,38 +1,45 @@
-//! Where an object's handles are, and what the object becomes where one is moved.
+//! What the viewport knows of each kind of object: its handles, its outline, and the object after
+//! one of the handles is moved.
 
 use glam::{DVec2, DVec3};
 
+use super::lines::Polyline;
 use crate::{
     math::{Angle, trig},
     projection::Projection,
-    scene::{CenteredTriangle, Cuboid, Outline, Part, Shape, Sphere, Triangle, operate},
-    schema::Value,
+    scene::{
+        CenteredTriangle, Checkerboard, Cuboid, FieldOwner, Shape, Sphere, Triangle,
+        TriangleOutline, operate,
+    },
+    schema::{BOX, CHECKERBOARD, SPHERE, TRIANGLE, Value},
     syntax::tree::Operator,
     tracer::vertices,
 };
 
-/// So far, in pixels, something may be seen from where it should be.
+/// Maximum distance of a handle from where it should be seen, in pixels.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Why nothing is moved where numbers have too few digits, or are too large.
+/// Message for a move that numbers have too few digits for, or that makes them too large.
 pub const TOO_FAR: &str = "that is too far away";
 
-/// A handle's name, and where it is in the world; nowhere if it cannot be seen from where the eye
-/// is. The name is that of the field that moves with it, with an axis behind it where it moves
-/// along that alone.
+/// A handle's name and its point in the world; `None` if it cannot be seen from the eye.
+///
+/// The name is that of the field that moves with the handle, followed by an axis if the handle
+/// moves only along that axis.
 pub type Handle = (&'static str, Option<DVec3>);
 
-/// What a point moves along, other than the plane through it that is parallel to the view plane.
+/// The axis or plane that a point moves along, instead of the plane through it that is parallel to
+/// the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The axis x, y or z (0, 1 or 2).
     Axis(usize),
-    /// The plane of equal y.
+    /// The horizontal plane.
     Floor,
 }
 
 impl Along {
-    /// An axis, or `floor`, by its name.
+    /// Returns an axis, or the floor, by its name.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "floor" => Some(Self::Floor),
@@ -41,23 +48,33 @@ impl Along {
     }
 }
 
-const CORNERS: [&str; 3] = ["v0", "v1", "v2"];
+/// The fields of a triangle's vertices.
+const CORNERS: [&str; 3] = [TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name];
+
+/// The handle of an object's middle, for all kinds that have one.
+const CENTER: &str = BOX.center.name;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The faces of a box: of each axis the one of least coordinates, and the other.
+/// The handles of a box's faces: for each axis the face of least coordinates, and the opposite one.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
-/// The handles of an object; that of a sphere's radius is on the side of a direction.
+/// Number of sides of a sphere's outline.
+const SIDES: u32 = 64;
+
+/// Returns the handles of an object. That of a sphere's radius is on the side of a direction.
 pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
     match shape {
         Shape::Sphere(sphere) => vec![
-            ("center", Some(sphere.center)),
-            ("radius", outline_point(sphere, projection.eye, towards)),
+            (SPHERE.center.name, Some(sphere.center)),
+            (
+                SPHERE.radius.name,
+                outline_point(sphere, projection.eye, towards),
+            ),
         ],
         Shape::Box(Cuboid { min, max, .. }) => {
             let center = min.midpoint(*max);
-            let mut handles = vec![("center", Some(center))];
+            let mut handles = vec![(BOX.center.name, Some(center))];
             for (face, name) in FACES.into_iter().enumerate() {
                 let mut at = center;
                 at[face / 2] = [min, max][face % 2][face / 2];
@@ -66,33 +83,95 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
             handles
         }
         Shape::Triangle(triangle) => match triangle.outline {
-            Outline::Centered(own) => {
+            TriangleOutline::Centered(own) => {
                 let [.., apex] = vertices(triangle);
                 let tip = own.centroid + unit(own.normal).0 * own.sides.z;
                 vec![
-                    ("centroid", Some(own.centroid)),
-                    ("normal", Some(tip)),
-                    ("spin", Some(apex)),
+                    (TRIANGLE.centroid.name, Some(own.centroid)),
+                    (TRIANGLE.normal.name, Some(tip)),
+                    (TRIANGLE.spin.name, Some(apex)),
                 ]
             }
-            Outline::Vertices(corners) => {
+            TriangleOutline::Vertices(corners) => {
                 let corners = CORNERS.into_iter().zip(corners.map(Some));
-                let center = [("center", Some(triangle.outline.centroid()))];
+                // Vertices have no field for their centroid, which moves all of them.
+                let center = [(CENTER, Some(triangle.outline.centroid()))];
                 corners.chain(center).collect()
             }
         },
         Shape::Checkerboard(board) => {
             let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
-            vec![("y", met.map(|met| met.with_y(board.y)))]
+            vec![(CHECKERBOARD.y.name, met.map(|met| met.with_y(board.y)))]
         }
     }
 }
 
-/// Where a ray from the eye touches a sphere, on the side of a direction; nowhere from inside it.
+/// Returns the four edges of a box along an axis; other shapes have none.
+pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
+    let (min, max) = match *shape {
+        Shape::Box(Cuboid { min, max, .. }) => (min, max),
+        Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_) => return Vec::new(),
+    };
+    let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+    let edges = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(j, k)| {
+        let mut from = min;
+        from[second] = [min, max][j][second];
+        from[third] = [min, max][k][third];
+        let mut to = from;
+        to[axis] = max[axis];
+        [from, to]
+    });
+    edges.into()
+}
+
+/// Returns the outline of a shape.
+pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
+    match shape {
+        Shape::Sphere(sphere) => {
+            let points: Option<Vec<DVec3>> = circle(projection, sphere).collect();
+            points.map_or_else(Vec::new, |points| projection.line(&points))
+        }
+        Shape::Triangle(triangle) => {
+            let [a, b, c] = vertices(triangle);
+            projection.line(&[a, b, c, a])
+        }
+        Shape::Box(_) => {
+            let edges = (0..3).flat_map(|axis| edges_along(shape, axis));
+            edges.flat_map(|edge| projection.line(&edge)).collect()
+        }
+        Shape::Checkerboard(board) => square(projection, board),
+    }
+}
+
+/// Returns the points where rays from the eye touch a sphere, all around; `None`s if the eye is
+/// inside.
+fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Option<DVec3>> {
+    let axis = (sphere.center - projection.eye).normalize_or(projection.ahead);
+    let (first, second) = axis.any_orthonormal_pair();
+    (0..=SIDES).map(move |side| {
+        let angle = Angle::from_degrees(360.0 * f64::from(side) / f64::from(SIDES));
+        let towards = first * trig::cos(angle) + second * trig::sin(angle);
+        outline_point(sphere, projection.eye, towards)
+    })
+}
+
+/// Returns the square of a checkerboard that the view axis meets.
+fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
+    let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
+    met.map_or_else(Vec::new, |met| {
+        let side = board.square;
+        let corner = ((met / side).floor() * side).with_y(board.y);
+        let [x, z] = [DVec3::X * side, DVec3::Z * side];
+        projection.line(&[corner, corner + x, corner + x + z, corner + z, corner])
+    })
+}
+
+/// Returns the point where a ray from the eye touches a sphere, on the side of a direction; `None`
+/// if the eye is inside the sphere.
 ///
-/// With c from the eye to the centre, k = r/|c| and t the direction across c, of length 1, this is
-/// (1 − k²) c + r √(1 − k²) t.
-pub fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
+/// With c from the eye to the centre, k = r/|c| and t the direction across c, of length 1, the
+/// point is (1 − k²) c + r √(1 − k²) t.
+fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
     let (axis, distance) = unit(sphere.center - eye);
     let across = towards - axis * towards.dot(axis);
     let k = sphere.radius / distance;
@@ -102,23 +181,27 @@ pub fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec
     (k < 1.0 && at.is_finite()).then_some(at)
 }
 
-/// A vector of length 1, and its length, which may be anything that a number can be.
+/// Returns the vector of length 1 in a direction, and the length, without overflow.
 pub fn unit(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     let scaled = v / greatest;
     (scaled.normalize(), scaled.length() * greatest)
 }
 
-/// An object with a handle moved to where it is to be seen at a point of the picture, or as near to
-/// that as it can be.
+/// Moves a handle of an object to where it is seen at a point of the picture, or as near to that as
+/// it can be.
+///
+/// # Errors
+///
+/// Why the handle cannot be moved there, in a sentence.
 pub fn moved(
     shape: Shape,
     handle: &str,
     to: DVec2,
     along: Option<Along>,
     projection: &Projection,
-) -> Result<Part, String> {
-    let part = Part::Shape(shape);
+) -> Result<FieldOwner, String> {
+    let owner = FieldOwner::Shape(shape);
     let no_handle = || {
         let kind = shape.kind();
         format!("a {kind} of this form has no handle `{handle}`")
@@ -126,48 +209,51 @@ pub fn moved(
     let mut handles = handles(&shape, projection, projection.right).into_iter();
     let found = handles.find(|(known, _)| *known == handle);
     let (_, at) = found.ok_or_else(no_handle)?;
-    let centered = match shape {
+    let value = match shape {
+        Shape::Sphere(sphere) if handle == SPHERE.radius.name => {
+            Some(Value::Number(radius(&sphere, to, projection)?))
+        }
         Shape::Triangle(Triangle {
-            outline: Outline::Centered(own),
+            outline: TriangleOutline::Centered(own),
             ..
-        }) => Some(own),
-        _ => None,
+        }) => match at {
+            _ if handle == TRIANGLE.normal.name => {
+                Some(Value::Vector(turned_normal(&own, to, projection)))
+            }
+            Some(apex) if handle == TRIANGLE.spin.name => {
+                Some(Value::Angle(spun(&own, apex, to, projection)?))
+            }
+            _ => None,
+        },
+        Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) | Shape::Checkerboard(_) => None,
     };
-    let moved = match (handle, shape, centered, at) {
-        ("radius", Shape::Sphere(sphere), ..) => {
-            part.with(handle, Value::Number(radius(&sphere, to, projection)?))
-        }
-        ("normal", _, Some(own), _) => {
-            part.with(handle, Value::Vector(turned_normal(&own, to, projection)))
-        }
-        ("spin", _, Some(own), Some(apex)) => {
-            part.with(handle, Value::Angle(spun(&own, apex, to, projection)?))
-        }
-        (.., Some(at)) if projection.depth(at) > 0.0 => {
-            let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
-            let along = Along::named(axis).or(along);
-            let by = moved_point(at, to, along, projection)? - at;
-            // What has corners moves by them: as a field, the centre of a box is rounded, and that
-            // of three vertices is none.
-            let fields = match (field, shape) {
-                ("center", Shape::Box(_)) => &["min", "max"][..],
-                ("center", Shape::Triangle(_)) => &CORNERS,
-                _ => &[field],
-            };
-            fields.iter().try_fold(part, |part, field| {
-                let by = match part.value(field)? {
-                    Value::Number(_) => Value::Number(by.y),
-                    _ => Value::Vector(by),
-                };
-                part.with(field, operate(Operator::Add, part.value(field)?, by)?)
-            })
-        }
-        _ => return Err(format!("the handle `{handle}` is not in front of the eye")),
+    if let Some(value) = value {
+        return owner.with(handle, value).ok_or_else(no_handle);
+    }
+    let Some(at) = at.filter(|at| projection.depth(*at) > 0.0) else {
+        return Err(format!("the handle `{handle}` is not in front of the eye"));
     };
+    let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
+    let along = Along::named(axis).or(along);
+    let by = moved_point(at, to, along, projection)? - at;
+    // A centre moves by its corners: as a field, the centre of a box is rounded, and vertices have
+    // none.
+    let fields = match shape {
+        Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
+        Shape::Triangle(_) if field == CENTER => &CORNERS,
+        Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) | Shape::Checkerboard(_) => &[field],
+    };
+    let moved = fields.iter().try_fold(owner, |owner, field| {
+        let by = match owner.value(field)? {
+            Value::Number(_) => Value::Number(by.y),
+            _ => Value::Vector(by),
+        };
+        owner.with(field, operate(Operator::Add, owner.value(field)?, by)?)
+    });
     moved.ok_or_else(no_handle)
 }
 
-/// A point moved to where it is seen at a point of the picture, or as near to that as what it moves
+/// Moves a point to where it is seen at a point of the picture, or as near to that as what it moves
 /// along allows.
 fn moved_point(
     point: DVec3,
@@ -180,8 +266,8 @@ fn moved_point(
         None => projection.on_plane(to, point, projection.ahead),
         Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            // The axis is seen as a line, and what is seen across it from `to` lies in a plane with
-            // the eye, which the axis meets at the nearest point.
+            // The picture of the axis is a line. The points seen across it from `to` form a plane
+            // with the eye, which the axis meets at the nearest point.
             let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
             let normal = unit(from_eye.cross(axis)).0;
             across = unit(normal.reject_from(projection.ahead)).0;
@@ -203,31 +289,33 @@ fn moved_point(
     })?;
     let across = DVec2::new(across.dot(projection.right), -across.dot(projection.top));
     let left = (seen - to) - across * (seen - to).dot(across);
-    match left.length() <= TOLERANCE {
-        true => Ok(moved),
-        false => Err(TOO_FAR.to_owned()),
+    if left.length() <= TOLERANCE {
+        Ok(moved)
+    } else {
+        Err(TOO_FAR.to_owned())
     }
 }
 
-/// The radius with which a sphere's outline passes through a point of the picture.
+/// Returns the radius with which a sphere's outline passes through a point of the picture.
 fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, String> {
     let (axis, distance) = unit(sphere.center - projection.eye);
     let (ray, _) = unit(projection.ray(to));
     let radius = ray.cross(axis).length() * distance;
-    // From the surface, or from inside, no outline is seen.
-    match ray.dot(axis) > 0.0 && radius < distance {
-        true => Ok(radius),
-        false => Err("the outline of a sphere cannot come so far".to_owned()),
+    // From the surface or from inside, no outline is seen.
+    if ray.dot(axis) > 0.0 && radius < distance {
+        Ok(radius)
+    } else {
+        Err("the outline of a sphere cannot come so far".to_owned())
     }
 }
 
-/// The normal whose tip is seen at a point of the picture, on the side of the centroid where it is
-/// now; or that whose tip comes nearest.
+/// Returns the normal whose tip is seen at a point of the picture, on the same side of the centroid
+/// as now; or else the normal whose tip comes nearest.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
-    // Where the ray is nearest to the centroid, and from there to the sphere of all tips.
+    // The point of the ray nearest to the centroid, and from there to the sphere of all tips.
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());
@@ -235,8 +323,8 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
     unit(tip).0 * length
 }
 
-/// The spin with which the apex is seen in the direction of a point of the picture from the
-/// centroid.
+/// Returns the spin with which the apex is seen from the centroid in the direction of a point of
+/// the picture.
 fn spun(
     triangle: &CenteredTriangle,
     apex: DVec3,
@@ -254,12 +342,13 @@ fn spun(
     Ok(within_half_turn(triangle.spin, turn))
 }
 
-/// An angle and so many degrees more; by whole turns less where that is more than half a turn.
+/// Adds degrees to an angle. If the sum is more than half a turn, whole turns are taken away.
 pub fn within_half_turn(angle: Angle, degrees: f64) -> Angle {
     let whole = angle.in_degrees() + degrees;
-    let turns = match whole.abs() > 180.0 {
-        true => (whole / 360.0).round(),
-        false => 0.0,
+    let turns = if whole.abs() > 180.0 {
+        (whole / 360.0).round()
+    } else {
+        0.0
     };
     angle + Angle::from_degrees(degrees - 360.0 * turns)
 }

@@ -1,25 +1,25 @@
-//! Lines of the world as lines of the picture.
+//! Projects lines of the world into the picture.
 
 use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Lines are cut off where they come nearer to the plane of the eye than this part of their size: a
-/// point in it is infinitely far away in the picture.
+/// Depth at which lines are cut off, relative to their size. A point in the plane of the eye would
+/// be infinitely far away in the picture.
 const NEAREST: f64 = 1e-6;
 
-/// Lines are cut off so many picture sizes outside of it: browsers draw in single precision, in
-/// which a tenth of a pixel is kept up to 2^20 pixels, and a page shows a picture with up to 8192
-/// in a row.
+/// Distance outside of the picture at which lines are cut off, in picture sizes. Browsers draw in
+/// single precision, which keeps a tenth of a pixel up to 2^20 pixels, and a page shows a picture
+/// with up to 8192 pixels in a row.
 const REACH: f64 = 128.0;
 
-/// A line through some points of the picture.
-pub type Line = Vec<DVec2>;
+/// A line through points of the picture.
+pub type Polyline = Vec<DVec2>;
 
 impl Projection {
-    /// What is seen of a line through some points: several lines where parts of it are not in front
-    /// of the eye, or too far outside of the picture.
-    pub fn line(&self, points: &[DVec3]) -> Vec<Line> {
+    /// Returns the visible parts of a line through points of the world: several lines if parts of
+    /// it are behind the eye, or too far outside of the picture.
+    pub fn line(&self, points: &[DVec3]) -> Vec<Polyline> {
         let far = points
             .iter()
             .map(|point| (point - self.eye).abs().max_element());
@@ -38,10 +38,10 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Segments of the picture, or what of them is not too far outside, as lines: one goes on where
-    /// the next segment begins where it ends.
-    pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Line> {
-        let mut lines: Vec<Line> = Vec::new();
+    /// Joins segments of the picture to lines, without parts too far outside. A segment that begins
+    /// at the end of the one before it continues that line.
+    pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
+        let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();
         for [from, to] in segments.filter_map(|segment| self.clip(segment, REACH)) {
             match lines.last_mut() {
@@ -52,8 +52,8 @@ impl Projection {
         lines
     }
 
-    /// The part of a segment in the picture grown by so many of its sizes on each side (Liang and
-    /// Barsky's algorithm).
+    /// Clips a segment to the picture grown by a number of its sizes on each side (algorithm of
+    /// Liang and Barsky). Returns `None` if nothing of it is left.
     pub(super) fn clip(&self, [from, to]: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         let along = to - from;
         let (mut first, mut last): (f64, f64) = (0.0, 1.0);
@@ -69,15 +69,15 @@ impl Projection {
         (first < last).then(|| [first, last].map(|part| from.lerp(to, part)))
     }
 
-    /// The image of all directions whose y, at a depth of 1, is this: a line from one edge to
-    /// another of the picture grown by its own size on each side. None where there is none, or
-    /// where it does not cross that.
+    /// Returns the image of all directions whose y is `height` at a depth of 1: a line from one
+    /// edge to another of the picture grown by its own size on each side. Returns `None` if
+    /// there is no such line, or if it does not cross the grown picture.
     pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
         // The ray through (x, y) has the height ahead.y + (right.y (x − w/2) − top.y (y − h/2))
         // pitch.
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
-        // The point of it that is nearest to the middle, and its direction.
+        // The line's point nearest to the middle, and its direction.
         let foot = middle + normal * ((height - self.ahead.y) / normal.length_squared());
         let along = normal.perp().normalize_or_zero();
         let far = along * (foot.distance(middle) + 3.0 * self.size.length());

@@ -1,14 +1,13 @@
-//! What an interactive view of the picture needs: what is seen at a point, what to draw over it,
-//! and what moving a handle does to the text.
+//! Answers for an interactive view of the picture: what is seen at a point, what to draw over it,
+//! and how moving a handle changes the text.
 //!
 //! In: a text and its scene, and points of the picture in pixels from its top left corner. Out:
-//! points, and edits of the text. Nothing here is told to anybody before it was computed from the
-//! scene's numbers, so `f64` is exact enough; what is seen the tracer decides.
+//! points, and edits of the text. Points are computed from the scene's numbers, for which `f64` is
+//! exact enough; the tracer decides what is seen.
 //!
-//! `lines` says where lines of the world are seen. `handles` knows where an object's handles are
-//! and how one moves the object, `camera` how the pointer moves the camera; `edits` writes the
-//! fields that change into the text. `drag` is all of that together. `add` writes blocks that
-//! are new.
+//! `lines` projects lines of the world. `handles` places the handles of an object and moves the
+//! object, `camera` moves the camera, and `edits` writes the changed fields into the text. `drag`
+//! puts these together. `add` writes new blocks.
 
 mod add;
 mod camera;
@@ -28,14 +27,16 @@ use crate::{
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
-pub use overlays::{MOST_OBJECTS, Outline, Overlays, Shown, Vanishing, hide, overlays};
+pub use overlays::{
+    MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,
+};
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
-/// For each object the place that stands for it: its name, or the keyword of its block.
+/// Returns for each object the span that is selected for it: its name, or the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
-        // Several objects may stand in one block.
+        // A repeated block has several objects.
         while blocks
             .next_if(|block| block.span.start < object.span.start)
             .is_some()

@@ -1,4 +1,4 @@
-//! What is seen at a point of the picture, and what a pixel's samples see.
+//! Finds the object at a point of the picture, and the colours of a pixel's samples.
 
 use glam::DVec2;
 
@@ -12,14 +12,14 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// No more samples of a pixel are shown.
+/// Maximum number of samples of a pixel that are shown.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
-/// More samples of a pixel would take too long.
+/// Maximum number of samples of a pixel for which the pixel is rendered. More would take too long.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// What is seen at a point of the picture: where an object is hit, unless it is the background, and
-/// the colour. Nothing outside the picture.
+/// Returns the visible hit at a point of the picture, or `None` for the background, and the colour.
+/// Returns `None` outside of the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
@@ -34,14 +34,14 @@ pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, 
 /// The samples of a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelSamples {
-    /// Where they lie in it, from its top left corner, and what each sees.
+    /// The samples' places in the pixel, from its top left corner, and their colours.
     pub samples: Vec<(DVec2, Color)>,
-    /// The pixel's colour.
+    /// The colour of the pixel.
     pub color: Color,
 }
 
-/// The samples of the pixel in a column and a row, which lies in the picture; none of an exact
-/// picture. Of more than [`MOST_SAMPLES`] only the first are shown.
+/// Returns the samples of the pixel in a column and a row of the picture, at most the first
+/// [`MOST_SAMPLES`]. Exact pictures have no samples.
 ///
 /// # Errors
 ///

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::converter::{Converter, escaped, markup};
 use crate::{
-    editor::{Completion, CompletionKind, Piece},
+    editor::{Completion, CompletionKind, SnippetPart},
     lsp::protocol::without_nulls,
 };
 
@@ -30,7 +30,7 @@ impl Converter<'_> {
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
-        let is_hole = |piece: &Piece| matches!(piece, Piece::Hole(_));
+        let is_hole = |piece: &SnippetPart| matches!(piece, SnippetPart::Placeholder(_));
         let is_snippet = self.client.snippets && completion.insert.iter().any(is_hole);
         let text = if is_snippet {
             snippet(&completion.insert)
@@ -55,21 +55,21 @@ impl Converter<'_> {
 }
 
 /// Returns the inserted text without placeholders.
-fn plain(pieces: &[Piece]) -> String {
+fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
-        Piece::Text(text) | Piece::Hole(text) => text.as_str(),
+        SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
     });
     texts.collect()
 }
 
 /// Returns the inserted text as a snippet, with placeholders to type over.
-fn snippet(pieces: &[Piece]) -> String {
+fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;
     for piece in pieces {
         match piece {
-            Piece::Text(piece) => text.push_str(&escaped(piece)),
-            Piece::Hole(value) => {
+            SnippetPart::Text(piece) => text.push_str(&escaped(piece)),
+            SnippetPart::Placeholder(value) => {
                 holes += 1;
                 text.push_str(&format!("${{{holes}:{}}}", escaped(value)));
             }

@@ -17,7 +17,7 @@ pub use self::number::{N, Number, V, length};
 use self::number::{abs, axpy, cross, dot, scale, size, sub, unit};
 use crate::{
     math::Angle,
-    scene::{Lens, Outline, Scene, Shape, View},
+    scene::{Lens, Scene, Shape, TriangleOutline, View},
 };
 
 /// Number of bits for scenes whose numbers have any size of an `f64`.
@@ -279,12 +279,12 @@ impl PreparedShape {
             }
             Shape::Triangle(triangle) => {
                 let (vertices, normal, point) = match &triangle.outline {
-                    Outline::Centered(triangle) => (
+                    TriangleOutline::Centered(triangle) => (
                         number.vertices(triangle),
                         number.vector(triangle.normal),
                         number.vector(triangle.centroid),
                     ),
-                    Outline::Vertices(vertices) => {
+                    TriangleOutline::Vertices(vertices) => {
                         let [a, b, c] = vertices.map(|vertex| number.vector(vertex));
                         let normal = cross(&sub(&b, &a), &sub(&c, &a));
                         ([a.clone(), b, c], normal, a)

@@ -1,4 +1,4 @@
-//! Functions and their arguments.
+//! Evaluates calls of functions, and reports wrong ones.
 
 use super::{
     evaluator::{Evaluator, LARGEST},
@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// Functions of other languages, and what to write here.
+/// Functions of other languages, each with what to write instead.
 #[rustfmt::skip]
 const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("pow power sq square", "write a product, such as `x * x`"),
@@ -37,10 +37,12 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
-/// So many of the problems before are looked at: of ten thousand all would be slow.
+/// Number of recent problems that are searched for the same help; searching ten thousand would be
+/// slow.
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
+    /// Returns the result of a call; `None` if it has errors, which are reported.
     pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
         let Call {
             function,
@@ -95,6 +97,7 @@ impl<'s> Evaluator<'_, 's> {
         Some(result)
     }
 
+    /// Reports an unknown function, with the nearest one that takes these arguments.
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
         if self.names.suggestions.is_trying() {
             return;
@@ -119,12 +122,13 @@ impl<'s> Evaluator<'_, 's> {
             Some((_, instead)) => (*instead).to_owned(),
             None => format!("the functions are {}", suggest::list(all_names())),
         };
-        // The same list once, as far as one looks back.
-        let is_told = |it: &Diagnostic| it.help.as_ref() == Some(&all);
+        // The list of functions is not repeated if a recent report has it.
+        let has_list = |it: &Diagnostic| it.help.as_ref() == Some(&all);
         let mut last = self.problems.iter().rev().take(LOOKED_BACK);
-        let all = match last.any(is_told) && elsewhere.is_none() {
-            true => "`pinhole explain functions` lists them".to_owned(),
-            false => all,
+        let all = if last.any(has_list) && elsewhere.is_none() {
+            "`pinhole explain functions` lists them".to_owned()
+        } else {
+            all
         };
         if let Some(row) = near.and_then(schema::function) {
             self.names.suggestions.push(Suggestion {
@@ -164,8 +168,9 @@ impl<'s> Evaluator<'_, 's> {
         );
     }
 
+    /// Reports a call with a wrong number of arguments.
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
-        // What is wrong with an argument may be wrong with their number.
+        // An argument that could not be parsed may be several ones.
         if arguments.iter().any(|it| it.value.kind == ValueKind::Bad) {
             return;
         }
@@ -179,9 +184,10 @@ impl<'s> Evaluator<'_, 's> {
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
         let is_color = |name| css::color(name).is_some();
         let is_rgb = row.gives == Type::Color;
-        // What a vector is made of stands in parentheses of its own, and what numbers are does not.
+        // The coordinates of a vector need parentheses of their own, and numbers must not have
+        // them.
         let meant = match (row.takes, arguments) {
-            // There is no transparency, and a colour stands by itself.
+            // A fourth channel would be transparency, and a colour by itself needs no `rgb`.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb
@@ -228,6 +234,7 @@ impl<'s> Evaluator<'_, 's> {
         );
     }
 
+    /// Reports an argument of another type.
     fn argument_type(
         &mut self,
         row: &Function,
@@ -258,7 +265,7 @@ impl<'s> Evaluator<'_, 's> {
         self.problems.push(problem);
     }
 
-    /// Whether the channels of a colour lie from 0 to 255; what does not is reported.
+    /// Whether the channels of a colour lie from 0 to 255; reports those that do not.
     fn in_range(&mut self, color: Color, arguments: &[Element<'s>]) -> bool {
         let mut fits = true;
         let names = ["red", "green", "blue"];
@@ -267,9 +274,10 @@ impl<'s> Evaluator<'_, 's> {
                 continue;
             }
             fits = false;
-            let (bound, label) = match channel > 255.0 {
-                true => ("255", "too much"),
-                false => ("0", "too little"),
+            let (bound, label) = if channel > 255.0 {
+                ("255", "too much")
+            } else {
+                ("0", "too little")
             };
             let found = numbers::beside(channel, &[0.0, 255.0]);
             let message = format!("the {name} of a colour is from 0 to 255, and this is {found}");
@@ -283,7 +291,7 @@ impl<'s> Evaluator<'_, 's> {
         fits
     }
 
-    /// Warns of a colour whose parts seem to go from 0 to 1: all are at most 1, and one is a
+    /// Warns of a colour whose channels seem to go from 0 to 1: all are at most 1, and one has a
     /// fraction.
     fn unit_parts(&mut self, span: Span, color: Color, arguments: &[Element<'s>]) {
         let parts = color.srgb;
@@ -305,6 +313,7 @@ impl<'s> Evaluator<'_, 's> {
         );
     }
 
+    /// Reports a call whose result is infinite or NaN.
     fn not_finite(
         &mut self,
         row: &Function,
@@ -329,7 +338,7 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // Farther off than by rounding.
+                    // More than a rounding error out of range.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }
@@ -357,7 +366,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// What may stand between two values.
+/// Returns the operator that may have been left out between two values.
 fn operator_between(kinds: (Type, Type)) -> Option<char> {
     match kinds {
         (Type::Vector, Type::Vector) | (Type::Angle, Type::Angle) => Some('+'),

@@ -1,6 +1,6 @@
-//! Evaluates literals, and says what messages call a value.
+//! Evaluates expressions; literals and numbers without a unit are handled in this file.
 
-use super::{names::Names, origin::Origin};
+use super::{names::Names, origin::UnitOrigin};
 use crate::{
     color::Color,
     diagnostic::{Applicability, Diagnostic, Edit, Fix, Problems},
@@ -13,18 +13,18 @@ use crate::{
     },
 };
 
-/// Evaluates values, and collects what is wrong with them.
+/// Evaluates values and collects their problems.
 #[derive(Debug)]
 pub struct Evaluator<'a, 's> {
     /// The texts.
     pub sources: &'s Sources,
-    /// The names that can be used.
+    /// The names that are defined.
     pub names: &'a Names<'s>,
-    /// What is wrong.
+    /// The problems found so far.
     pub problems: &'a mut Problems,
 }
 
-/// The value of a text that stands for a value by itself, such as a default of the schema.
+/// Returns the value of a text that uses no names of a scene, such as a default of the schema.
 pub fn literal(written: &str, takes: Type) -> Option<Value> {
     if takes == Type::Method {
         return schema::method(written).map(Value::Method);
@@ -39,9 +39,9 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     evaluator.value(&tree, Some(takes))
 }
 
-/// Whether a value is of the type that a field takes, and keeps its conditions.
+/// Whether a value is of a field's type and meets its conditions.
 pub fn suits<'s>(
-    field: &schema::Field,
+    field: &schema::FieldRow,
     tree: &tree::Value<'s>,
     sources: &'s Sources,
     names: &Names<'s>,
@@ -59,7 +59,7 @@ pub fn suits<'s>(
 }
 
 impl<'s> Evaluator<'_, 's> {
-    /// The value of an expression; `wanted` is the type that would fit, if one is known.
+    /// Returns the value of an expression; `wanted` is the type that would fit, if it is known.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         match &value.kind {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
@@ -78,6 +78,7 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
+    /// Parses a number; warns of one that is rounded to 0.
     fn number(&mut self, written: &str, span: Span) -> Option<f64> {
         let number: f64 = if written.contains('_') {
             written.replace('_', "").parse().ok()?
@@ -109,7 +110,7 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// What is wrong with a number in the place of an angle. Only units with which it fits are
+    /// Describes a number in the place of an angle. Only units with which the number fits are
     /// offered.
     pub fn bare_angle(
         &self,
@@ -150,9 +151,10 @@ impl<'s> Evaluator<'_, 's> {
             _ => {
                 let [first, second] = shown;
                 let second = second.trim_start_matches("write ");
-                match second.ends_with(')') {
-                    true => format!("{first} or {second}"),
-                    false => format!("{first} (or {second})"),
+                if second.ends_with(')') {
+                    format!("{first} or {second}")
+                } else {
+                    format!("{first} (or {second})")
                 }
             }
         };
@@ -168,8 +170,8 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// The first name in a value that an argument gives another value, and that: what is wrong with
-    /// it is not the file's.
+    /// Returns the first name in a value whose own value comes from an argument, and the span of
+    /// that argument, where the mistake is.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -179,7 +181,8 @@ impl<'s> Evaluator<'_, 's> {
         is_set.then_some((name, from))
     }
 
-    /// The only factor of a product that a `let` of the file defines by a plain number, and that.
+    /// Returns the only factor of a product that a `let` of the file defines as a plain number, and
+    /// that number; `None` if there are none or several.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
             return None;
@@ -203,10 +206,12 @@ impl<'s> Evaluator<'_, 's> {
             .filter(|_| is_product && numbers.next().is_none())
     }
 
-    /// Writes a number as an angle, in both units. What comes from `pi` or is at most pi is more
-    /// likely in radians, anything else in degrees; what is more than a turn in radians is surely
-    /// none. Where that is not sure, the titles say what each comes to, and where the formula
-    /// speaks for both, the author is to choose.
+    /// Returns fixes that write a number as an angle, the likelier unit first.
+    ///
+    /// A number that comes from `pi` or is at most pi is more likely in radians, any other in
+    /// degrees; a number of more than one turn in radians is surely in degrees. If the unit is
+    /// not sure, the titles give the angle in the other unit. If the formula speaks for both
+    /// units, the author is to choose.
     pub fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);
@@ -218,7 +223,7 @@ impl<'s> Evaluator<'_, 's> {
         let is_small = number != 0.0 && number.abs() <= std::f64::consts::PI;
         let is_sure = number == 0.0 || number.abs() > 2.0 * std::f64::consts::PI;
         let mut units = [Unit::Degrees, Unit::Radians];
-        if origin == Origin::In(Unit::Radians) || (origin == Origin::Plain && is_small) {
+        if origin == UnitOrigin::In(Unit::Radians) || (origin == UnitOrigin::Plain && is_small) {
             units.reverse();
         }
         units.map(|unit| {
@@ -240,29 +245,31 @@ impl<'s> Evaluator<'_, 's> {
             (
                 unit,
                 fix.with_applicability(match origin {
-                    Origin::Unclear => Applicability::Placeholder,
+                    UnitOrigin::Unclear => Applicability::Placeholder,
                     _ => Applicability::safe_if(is_safe),
                 }),
             )
         })
     }
 
-    /// What stands under a span, for a message: a literal as it is, anything else in backquotes.
+    /// Returns the text of a span for a message: a literal as it is, any other text in backquotes.
     pub fn quoted(&self, span: Span) -> String {
         let written = shorten(self.sources.text(span));
         let literal = written
             .starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '(' | '.'))
             && !written.contains(['`', '*', '/']);
-        match literal {
-            true => written,
-            false => format!("`{written}`"),
+        if literal {
+            written
+        } else {
+            format!("`{written}`")
         }
     }
 }
 
+/// Help for a number that is too large.
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
-/// A colour from its code; the parser checked the number of digits.
+/// Returns the colour of a code; the parser has checked the number of digits.
 pub(super) fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;
     let code = u32::from_str_radix(digits, 16).ok()?;
@@ -275,7 +282,7 @@ pub(super) fn color_code(written: &str) -> Option<Color> {
     }))
 }
 
-/// Whether a number is written out, perhaps with a sign.
+/// Whether a value is a number literal, perhaps with a sign.
 fn is_plain_number(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
@@ -283,10 +290,11 @@ fn is_plain_number(value: &tree::Value<'_>) -> bool {
     }
 }
 
-/// The other unit's number for people: of degrees tenths are enough, and of radians thousandths.
+/// Rounds an angle in the other unit for people: degrees to tenths, radians to thousandths.
 fn rounded(number: f64) -> String {
-    match number.abs() < 1.0 {
-        true => format!("{number:.3}"),
-        false => format!("{number:.1}"),
+    if number.abs() < 1.0 {
+        format!("{number:.3}")
+    } else {
+        format!("{number:.1}")
     }
 }

@@ -1,4 +1,4 @@
-//! Vectors and pairs of colours.
+//! Evaluates lists: vectors, and pairs and triples of colours.
 
 use glam::DVec3;
 
@@ -15,6 +15,7 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
+    /// Returns the value of a list; `None` if it has errors, which are reported.
     pub(super) fn tuple(
         &mut self,
         elements: &[Element<'s>],
@@ -67,7 +68,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports a part of a vector that is no number, or of a pair that is no colour.
+    /// Reports a part of a list of the wrong type.
     fn wrong_part(&mut self, list: Type, part: &tree::Value<'s>, found: Type) {
         let parts = list
             .parts()
@@ -88,6 +89,7 @@ impl<'s> Evaluator<'_, 's> {
         );
     }
 
+    /// Reports a list with a wrong number of parts.
     fn part_count(
         &mut self,
         list: Type,
@@ -128,8 +130,8 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// A third number behind two that are written out: the greater one of them, with which sides form a
-/// triangle, but not 0, with which there might be no direction.
+/// Returns a third number for two literals: the greater one of them, because such sides form a
+/// triangle, but not 0, because a zero vector has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -139,7 +141,7 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     })
 }
 
-/// The vector of four numbers, if one of the commas stands for a decimal point: the only one
+/// Returns the vector of four numbers of which two are joined by a decimal comma: the only comma
 /// without a blank behind it.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {

@@ -1,4 +1,4 @@
-//! What a name stands for, and what is wrong with one that stands for nothing.
+//! Looks names up, and reports those that are not defined.
 
 use super::{
     evaluator::{Evaluator, color_code, literal},
@@ -15,6 +15,7 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
+    /// Returns the value of a name; `None` if it has none, which is reported.
     pub(super) fn name(
         &mut self,
         name: &'s str,
@@ -25,7 +26,7 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // A block that an argument changes is read after all definitions.
+        // Blocks that an argument changes are evaluated after all definitions.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -59,7 +60,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports a name that stands for nothing, or adds this place to the report.
+    /// Reports a name that is not defined, or adds this use of it to the report.
     fn report(&self, name: &'s str, span: Span, wanted: Option<Type>) {
         let mut problems = self.names.problems.borrow_mut();
         let mut reported = self.names.reported.borrow_mut();
@@ -71,7 +72,7 @@ impl<'s> Evaluator<'_, 's> {
                 }
                 suggested
             }
-            // More than are kept are not remembered, either.
+            // Problems beyond the maximum are dropped, so they are not remembered.
             None if problems.is_full() => None,
             None => {
                 let (problem, suggested) = match self.names.definition(name) {
@@ -102,7 +103,8 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// `light-blue` from its first word on, and the colour that it is in one word.
+    /// Returns the span of a colour such as `light-blue` that begins at a name, and the colour in
+    /// one word.
     fn hyphenated(&self, span: Span) -> Option<(Span, String)> {
         let text = self.sources.get(span.source).text().get(span.start..)?;
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '-';
@@ -113,6 +115,7 @@ impl<'s> Evaluator<'_, 's> {
         is_one.then_some((Span { end, ..span }, joined))
     }
 
+    /// Describes a use of a name before its definition.
     fn used_before(&self, name: &str, span: Span, definition: Span) -> Diagnostic {
         let line = self.sources.get(definition.source).line(definition.start);
         let used = self.sources.get(span.source).line(span.start);
@@ -131,8 +134,8 @@ impl<'s> Evaluator<'_, 's> {
             })
     }
 
-    /// The problem of a name that is not defined, and what the name stands for that is suggested in
-    /// its place.
+    /// Describes a name that is not defined, and returns the meaning of the name that is suggested
+    /// instead.
     fn unknown_name(
         &self,
         name: &str,
@@ -146,14 +149,15 @@ impl<'s> Evaluator<'_, 's> {
             Some((_, joined)) => (Some(joined), Some(Applicability::Safe)),
             None => self.nearest(name, wanted, is_color).unzip(),
         };
-        let problem = match is_color {
-            true => error(
+        let problem = if is_color {
+            error(
                 "unknown_color",
                 format!("there is no colour named `{name}`"),
             )
-            .at(span, "not a colour, and not defined"),
-            false => error("unknown_name", format!("there is nothing named `{name}`"))
-                .at(span, "not defined"),
+            .at(span, "not a colour, and not defined")
+        } else {
+            error("unknown_name", format!("there is nothing named `{name}`"))
+                .at(span, "not defined")
         };
         let is_object = self.names.objects.contains(name);
         let help = match &near {
@@ -183,7 +187,7 @@ impl<'s> Evaluator<'_, 's> {
         )
     }
 
-    /// The value of a name that is suggested, or of a colour's code.
+    /// Returns the value of a suggested name or colour code.
     pub(super) fn meaning(&self, name: &str) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
@@ -194,15 +198,15 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// The nearest name: of the colours where one is wanted, otherwise of what can be computed
-    /// with. What is known to be of another type than the one that is wanted is passed over.
+    /// Returns the nearest name: of colours if one is wanted, and otherwise of values that can be
+    /// computed with. Names whose values are known to be of another type are passed over.
     fn nearest(
         &self,
         name: &str,
         wanted: Option<Type>,
         is_color: bool,
     ) -> Option<(String, Applicability)> {
-        // `ff0000`, the code of a colour without its sign.
+        // The code of a colour without its sign, such as `ff0000`.
         let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());
         if is_color && matches!(name.len(), 3 | 6) && is_digits {
             return Some((format!("#{name}"), Applicability::Safe));
@@ -211,7 +215,7 @@ impl<'s> Evaluator<'_, 's> {
             let pi = if name == "M_PI" { "pi" } else { "(2 * pi)" };
             return Some((pi.to_owned(), Applicability::Unsafe));
         }
-        // `olive green`: of two colours nobody knows which one.
+        // Two colours, as in `olive green`: nobody knows which one is meant.
         if name.contains(' ') && name.split(' ').all(|word| css::color(word).is_some()) {
             return None;
         }
@@ -222,16 +226,17 @@ impl<'s> Evaluator<'_, 's> {
         let lets = self.names.to_compare()?.iter().copied();
         let colors = css::names().map(|name| name as &str);
         let constants = schema::CONSTANTS.iter().map(|&(name, ..)| name);
-        let near = match is_color {
-            true => suggest::nearest_name(name, lets.clone().chain(colors).filter(is_of_type)),
-            false => suggest::nearest_name(name, lets.clone().chain(constants).filter(is_of_type)),
+        let near = if is_color {
+            suggest::nearest_name(name, lets.clone().chain(colors).filter(is_of_type))
+        } else {
+            suggest::nearest_name(name, lets.clone().chain(constants).filter(is_of_type))
         };
         let near = near.or_else(|| match wanted {
             None => suggest::nearest_name(name, css::names()),
             Some(_) => None,
         });
         let near = near?;
-        // `lightred` is no slip of `lightgrey`, nor `tau` one of the colour `tan`.
+        // `lightred` is no misspelling of `lightgrey`.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;
@@ -243,7 +248,7 @@ impl<'s> Evaluator<'_, 's> {
         Some((near.to_owned(), Applicability::safe_if(is_sure)))
     }
 
-    /// What a value is, and where its name was defined if it is one.
+    /// Returns the type of a value in words, and where it was defined if it is a name.
     pub fn described(&self, value: &tree::Value<'s>, kind: Type) -> String {
         let noun = kind.noun();
         let defined = match value.kind {
@@ -266,8 +271,8 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Whether a name is made of a colour and a word such as `light` that stands before others, too: it
-/// is no slip of another name.
+/// Whether a name consists of a colour and a word such as `light` that begins the names of other
+/// colours, so that it is no misspelling of another name.
 fn is_of_tone(name: &str) -> bool {
     let name = name.to_ascii_lowercase().replace('_', "");
     css::names().any(|hue| {
@@ -281,27 +286,25 @@ fn is_of_tone(name: &str) -> bool {
     })
 }
 
-/// What to do about a name if no other one was meant.
+/// Returns the help for an undefined name without a suggestion.
 fn no_other(name: &str, is_color: bool) -> String {
-    match is_color {
-        true if name.contains(' ') => {
-            format!(
-                "write one of them, or `({})` to take turns in a `for`",
-                name.replace(' ', ", ")
-            )
-        }
-        true => "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned(),
-        false => format!("define it before it is used: `let {name} = …`"),
+    if !is_color {
+        format!("define it before it is used: `let {name} = …`")
+    } else if name.contains(' ') {
+        let pair = name.replace(' ', ", ");
+        format!("write one of them, or `({pair})` to take turns in a `for`")
+    } else {
+        "write a CSS colour's name, `#rrggbb` or `rgb(r, g, b)`".to_owned()
     }
 }
 
-/// Adds another place where the same name is used.
+/// Adds another use of the same name to a problem.
 fn and_here(problem: &mut Diagnostic, span: Span) {
-    // What is tried twice is there once.
+    // A value that is evaluated twice has one label.
     if problem.labels.iter().any(|label| label.span == span) {
         return;
     }
-    // More places than these would hide the first.
+    /// Maximum number of further uses that are labelled. More would hide the first one.
     const MOST: usize = 20;
     if problem.labels.len() <= MOST {
         let message = "and here".to_owned();

@@ -1,10 +1,10 @@
-//! The value of an expression.
+//! The values of expressions.
 //!
-//! In: a value's tree and the names that are defined. Out: what it is, or problems. A value that
-//! failed is unknown (`None`), and what uses it stays silent. What a value is for is not known
-//! here, beyond the type that is wanted.
+//! In: the tree of a value, and the names that are defined. Out: the value, or problems. A value
+//! with errors is unknown (`None`), and expressions that use it stay silent. The purpose of a value
+//! is not known here, except the type that is wanted.
 //!
-//! `evaluator` has literals, and what messages call a value; what is made of parts has a file each.
+//! `evaluator` handles literals; lists, operators, calls and names have a file each.
 
 mod calls;
 mod evaluator;

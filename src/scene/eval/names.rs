@@ -1,4 +1,4 @@
-//! The names that are defined at some place.
+//! The names that are defined at a place of the text.
 
 use std::{
     cell::RefCell,
@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    origin::Origin,
+    origin::UnitOrigin,
     suggestion::{Meaning, Suggestions},
 };
 use crate::{
@@ -20,30 +20,29 @@ use crate::{
     },
 };
 
-/// The names that are defined at some place.
+/// The names that are defined at a place of the text.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
-    /// The `let`s so far.
+    /// The `let`s and indices so far.
     pub(super) defined: HashMap<&'s str, Defined>,
-    /// The same names, in order.
+    /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
-    /// Words in what was reported, such as what was to be a name and cannot be one. They stand for
-    /// nothing, and nothing is said of their uses.
+    /// Words of texts that could not be parsed and were reported. They may have been meant as
+    /// names, so their uses are not reported.
     pub(super) parts: HashSet<&'s str>,
-    /// Every `let` of the file, wherever.
+    /// Every `let` of the file, wherever it is.
     definitions: HashMap<&'s str, Span>,
     /// The names of the file's objects, which are no values.
     pub(super) objects: HashSet<&'s str>,
-    /// The indices of all its blocks.
+    /// The names of the indices of all blocks.
     pub(super) indices: HashSet<&'s str>,
-    /// The comparisons that are left in search of the nearest name.
+    /// The number of comparisons left for nearest names.
     budget: ComparisonBudget,
-    /// What was reported of names, apart from the other problems, some of which are dropped again.
+    /// Problems of names, kept apart from the other problems, some of which are dropped again.
     pub(in crate::scene) problems: RefCell<Problems>,
-    /// The names that were reported: the next use of the same name is another label of its
-    /// problem.
+    /// The names that were reported. Further uses become labels of the same problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
-    /// What is suggested in place of names.
+    /// The names that are suggested in place of undefined ones.
     pub(in crate::scene) suggestions: Suggestions<'s>,
 }
 
@@ -52,24 +51,25 @@ pub struct Names<'s> {
 pub(super) struct Reported {
     /// The index of its problem.
     pub index: usize,
-    /// What the name stands for that is suggested in its place, unless none is.
+    /// The meaning of the name that is suggested instead, if one is.
     pub suggested: Option<Meaning>,
 }
 
+/// A `let` or an index.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct Defined {
-    /// None if it failed.
+    /// The value; `None` if it has errors or is not known yet.
     pub value: Option<Value>,
     /// The name in the definition.
     pub place: Span,
-    /// Its value, in the file or in an argument.
+    /// The span of the value, in the file or in an argument.
     pub from: Span,
-    /// What its formula tells of the unit that it lacks.
-    pub origin: Origin,
+    /// The unit of a number without one, as far as its formula tells.
+    pub origin: UnitOrigin,
 }
 
 impl<'s> Names<'s> {
-    /// The names of a file, none of which is defined yet.
+    /// Returns the names of a file, none of which is defined yet.
     pub fn of(tree: &Tree<'s>) -> Self {
         let mut names = Self::default();
         for item in &tree.items {
@@ -90,7 +90,7 @@ impl<'s> Names<'s> {
         names
     }
 
-    /// Defines a name; a second time it keeps its value.
+    /// Defines a name, unless it is defined already.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, tree: &tree::Value<'s>) {
         let origin = self.origin(tree);
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
@@ -104,26 +104,26 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// What a number's formula tells of the unit that it lacks.
-    pub fn origin(&self, value: &tree::Value<'_>) -> Origin {
-        Origin::of(value, &|name| Some(self.defined.get(name)?.origin))
+    /// Returns the unit that a number without one counts, as far as its formula tells.
+    pub fn origin(&self, value: &tree::Value<'_>) -> UnitOrigin {
+        UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
 
-    /// Gives an index a value, within its block; none while it is not known yet.
+    /// Gives an index a value within its block, or `None` if it is not known yet.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {
             value,
             place: name.span,
             from: name.span,
-            origin: Origin::Plain,
+            origin: UnitOrigin::Plain,
         };
         if self.defined.insert(name.text, index).is_none() {
             self.order.push(name.text);
         }
     }
 
-    /// Takes away what an index hides: a definition of its name that stands further down, and is
-    /// known already where values are set.
+    /// Removes and returns the definition that an index hides: one of the same name further down,
+    /// which is known already if arguments are given.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -134,7 +134,7 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Has what was hidden known again.
+    /// Restores hidden definitions.
     pub fn restore(&mut self, hidden: Vec<(&'s str, Defined)>) {
         self.defined.extend(hidden);
     }
@@ -148,43 +148,43 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Knows the words of what cannot be told, such as what was to be a name and cannot be one.
+    /// Remembers the words of a text that could not be parsed: uses of them are not reported.
     pub fn know_words(&mut self, text: &'s str) {
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
         self.parts.extend(text.split(is_other));
     }
 
-    /// Where a name was defined, if it was.
+    /// Returns the span of the name in its definition, if it is defined.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
     }
 
-    /// The value of a name that was defined; none if it failed.
+    /// Returns the value of a defined name; `None` if it has errors.
     pub fn value(&self, name: &str) -> Option<Value> {
         self.defined.get(name)?.value
     }
 
-    /// The first `let` of the file that defines it.
+    /// Returns the first `let` of the file that defines a name, wherever it is.
     pub fn definition(&self, name: &str) -> Option<Span> {
         self.definitions.get(name).copied()
     }
 
-    /// The names that are defined so far, to search for the nearest; none if there was enough of
-    /// searching.
+    /// Returns the names that are defined so far, to search for the nearest one; `None` if the
+    /// budget of comparisons is spent.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
     }
 
-    /// Forgets what is suggested in place of a name.
+    /// Forgets the suggestion for a name.
     pub fn withdraw(&self, name: &str) {
         if let Some(reported) = self.reported.borrow_mut().get_mut(name) {
             reported.suggested = None;
         }
     }
 
-    /// The comparisons that are left in search of the nearest name.
+    /// Returns the number of comparisons left for nearest names.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

@@ -1,4 +1,4 @@
-//! Signs and operators.
+//! Evaluates signs and operators.
 
 use super::evaluator::{Evaluator, LARGEST};
 use crate::{
@@ -13,10 +13,11 @@ use crate::{
     },
 };
 
-/// What stands before an operator: its value, its place, and its tree if it is not a result itself.
+/// The left operand: its value, its span, and its tree unless it is the result of an operator.
 type Left<'t, 's> = (Value, Span, Option<&'t tree::Value<'s>>);
 
 impl<'s> Evaluator<'_, 's> {
+    /// Returns the negative of a value; reports a type that has none.
     pub(super) fn negation(&mut self, sign: Span, operand: &tree::Value<'s>) -> Option<Value> {
         let value = self.value(operand, None)?;
         let negative = value::negate(value);
@@ -33,18 +34,19 @@ impl<'s> Evaluator<'_, 's> {
         negative
     }
 
+    /// Returns the result of operators of one precedence, from left to right.
     pub(super) fn chain(
         &mut self,
         first: &tree::Value<'s>,
         rest: &[Step<'s>],
         wanted: Option<Type>,
     ) -> Option<Value> {
-        // What an operation among others should give is not known.
+        // The wanted type of an intermediate result is not known.
         let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
-            // What is added to something is of its type.
+            // Both operands of a sum are of one type.
             let alike = left.filter(|_| !step.operator.is_of_product());
             let right = self.value(&step.operand, alike.map(|left| left.kind()));
             left = match (left, right) {
@@ -59,6 +61,7 @@ impl<'s> Evaluator<'_, 's> {
         left
     }
 
+    /// Returns the result of one operator.
     fn step(
         &mut self,
         step: &Step<'s>,
@@ -104,8 +107,8 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports operands that do not go together. What would do is offered where it gives what is
-    /// wanted.
+    /// Reports operands that do not go together. Fixes are offered only if they give the wanted
+    /// type.
     fn operand_types(
         &mut self,
         step: &Step<'s>,
@@ -146,7 +149,7 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        // The unit of the other side first.
+        // The unit of the other operand comes first.
         let with_unit = |tree: &tree::Value<'s>, value: Value, other: Value| match (value, other) {
             (Value::Number(number), Value::Angle(angle)) if self.set_in(tree).is_none() => {
                 let mut units = self.units(tree, number);
@@ -166,10 +169,9 @@ impl<'s> Evaluator<'_, 's> {
             (Vector, Number) if fits(Vector) => vector(right_span, right_text),
             (Number, Vector) if fits(Vector) => vector(left_span, left_text),
             (Angle, Number) if fits(Angle) => with_unit(&step.operand, values.1, values.0),
-            (Number, Angle) if fits(Angle) => {
-                let fixes = left_tree.map(|tree| with_unit(tree, values.0, values.1));
-                fixes.unwrap_or_default()
-            }
+            (Number, Angle) if fits(Angle) => left_tree
+                .map(|tree| with_unit(tree, values.0, values.1))
+                .unwrap_or_default(),
             _ => Vec::new(),
         };
         let left_label = match left_tree {
@@ -187,11 +189,13 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
+/// Returns the message that an operator does not take two types.
 fn cannot(operator: Operator, left: Type, right: Type) -> String {
     let (a, b) = (left.noun(), right.noun());
-    let both = match left == right {
-        true => format!("two {}", left.plural()),
-        false => format!("{a} and {b}"),
+    let both = if left == right {
+        format!("two {}", left.plural())
+    } else {
+        format!("{a} and {b}")
     };
     match operator {
         Operator::Add => format!("{both} cannot be added"),

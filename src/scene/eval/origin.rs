@@ -1,31 +1,32 @@
-//! Where a number without a unit comes from: from `pi`, so that it counts radians, or not.
+//! Derives the unit of a number without one from its formula: a number that comes from `pi` counts
+//! radians.
 //!
-//! In: a value's tree, and the origins of the `let`s that it uses. Out: the unit that was meant, as
-//! far as its formula tells.
+//! In: the tree of a value, and the origins of the `let`s that it uses. Out: the unit that was
+//! meant, as far as the formula tells.
 
 use crate::{
     schema::predefined,
     syntax::tree::{self, Operator, Unit, ValueKind},
 };
 
-/// What the formula of a number tells of the unit that it lacks.
+/// The unit of a number without one, as far as its formula tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// Nothing: it is made of numbers without `pi`.
+pub enum UnitOrigin {
+    /// Unknown: the formula consists of numbers without `pi`.
     Plain,
-    /// It counts these.
+    /// The number counts this unit.
     In(Unit),
-    /// What it is made of speaks for both units.
+    /// Parts of the formula speak for both units.
     Unclear,
 }
 
-use Origin::{In, Plain, Unclear};
+use UnitOrigin::{In, Plain, Unclear};
 
-/// The first digits of pi, of multiples of it, and of pi / 180, as people write them out.
+/// The first digits of pi, of its multiples, and of pi / 180, as people write them.
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
-impl Origin {
-    /// What a number's formula tells of its unit, with the origins of the names that it uses.
+impl UnitOrigin {
+    /// Returns the origin of a value, given the origins of the names that it uses.
     pub fn of(value: &tree::Value<'_>, known: &impl Fn(&str) -> Option<Self>) -> Self {
         let all = || {
             let parts = value.parts().into_iter();
@@ -79,7 +80,7 @@ impl Origin {
         }
     }
 
-    /// That of a sum.
+    /// Returns the origin of a sum.
     fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Plain, it) | (it, Plain) => it,
@@ -89,7 +90,7 @@ impl Origin {
     }
 }
 
-/// Whether a factor is the degrees of a half or a whole turn.
+/// Whether a factor is the number of degrees of a half or a whole turn.
 fn is_half_turn(factor: &tree::Value<'_>) -> bool {
     matches!(factor.kind, ValueKind::Number("180" | "360"))
 }

@@ -1,8 +1,8 @@
-//! What is suggested in place of a name, until it is known whether it will do there.
+//! Suggestions for undefined names, which are kept until they have been tried.
 //!
-//! In: a name that stands for nothing, and the nearest one. Out: what the name stands for while the
-//! suggestion is tried. Whether that makes another mistake only the whole value tells, which
-//! whoever evaluates it does once more.
+//! In: an undefined name, and the nearest defined one. Out: the meaning of the undefined name while
+//! the suggestion is tried. Only the whole value shows whether the suggestion leads to another
+//! error, so the caller evaluates the value again.
 
 use std::cell::RefCell;
 
@@ -11,59 +11,59 @@ use crate::{
     source::Span,
 };
 
-/// A name to write in place of another one.
+/// A name to write in place of an undefined one.
 #[derive(Clone, Debug)]
 pub struct Suggestion<'s> {
-    /// The name that stands for nothing.
+    /// The undefined name.
     pub name: &'s str,
-    /// What the suggested one stands for.
+    /// The meaning of the suggested name.
     pub means: Meaning,
     /// The first label of the report.
     pub report: Span,
-    /// The report's help if the suggestion will not do.
+    /// The help of the report if the suggestion is withdrawn.
     pub otherwise: String,
 }
 
-/// What a suggested name stands for.
+/// The meaning of a suggested name.
 #[derive(Clone, Copy, Debug)]
 pub enum Meaning {
-    /// A value; none if it failed.
+    /// A value; `None` if it has errors.
     Value(Option<Value>),
     /// A function.
     Function(&'static Function),
 }
 
-/// The suggestions in a value.
+/// The suggestions made while a value is evaluated.
 #[derive(Debug, Default)]
 pub struct Suggestions<'s> {
     made: RefCell<Vec<Suggestion<'s>>>,
-    /// The name that stands for something else while that is tried.
+    /// The name whose suggestion is being tried, and its meaning.
     tried: RefCell<Option<(&'s str, Meaning)>>,
 }
 
 impl<'s> Suggestions<'s> {
-    /// Adds one.
+    /// Adds a suggestion.
     pub fn push(&self, suggestion: Suggestion<'s>) {
         self.made.borrow_mut().push(suggestion);
     }
 
-    /// Those that were made since they were last taken.
+    /// Takes the suggestions made since they were last taken.
     pub fn take(&self) -> Vec<Suggestion<'s>> {
         self.made.take()
     }
 
-    /// Lets a name stand for what is suggested in its place, until it is given another one or none.
+    /// Begins to try a suggestion, or ends trying if there is none.
     pub fn set_tried(&self, suggestion: Option<&Suggestion<'s>>) {
         let tried = suggestion.map(|suggestion| (suggestion.name, suggestion.means));
         *self.tried.borrow_mut() = tried;
     }
 
-    /// Whether one is being tried. No name is reported then.
+    /// Whether a suggestion is being tried. Undefined names are not reported then.
     pub fn is_trying(&self) -> bool {
         self.tried.borrow().is_some()
     }
 
-    /// What a name stands for while a suggestion is tried.
+    /// Returns the meaning of a name if its suggestion is being tried.
     pub fn meaning(&self, name: &str) -> Option<Meaning> {
         let tried = *self.tried.borrow();
         tried.and_then(|(known, meaning)| (known == name).then_some(meaning))

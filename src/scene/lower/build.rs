@@ -1,7 +1,6 @@
-//! Blocks → scene: what each part is, once all fields have their values.
+//! Blocks → scene: the parts of the scene, once all fields have values.
 
 use super::{
-    block::Block,
     fixes,
     lowering::{Lowering, mentions},
 };
@@ -9,37 +8,39 @@ use crate::{
     diagnostic::{Applicability, Diagnostic, Fix},
     scene::{
         error::{error, warning},
+        lowered_block::LoweredBlock,
         model::{Count, Image, SMALLEST, Sampler},
         semantic_model::Parts,
     },
-    schema::{self, Kind, Method},
+    schema::{self, BlockKind, IMAGE, ImageFields, Method, SAMPLER, SamplerFields},
     source::{SourceId, Span},
+    suggest,
     syntax::shorten,
 };
 
-/// The place of what is not there.
+/// Span of what is missing from the file.
 const START: Span = Span {
     source: SourceId::File,
     start: 0,
     end: 0,
 };
 
-/// The most samples of a picture, also where they are given by `per_pixel`.
+/// Maximum number of samples of a picture, also if `per_pixel` is given.
 const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {
-    /// The parts of the scene; what failed is missing.
+    /// Builds the parts of the scene; a part with errors is missing.
     pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
             self.missing_fields(block);
         }
         let one = |kind| blocks.iter().find(|block| block.row.kind == kind);
-        let empty = [Kind::Image, Kind::Sampler];
-        let [image, sampler] = &empty.map(|kind| Block::empty(schema::of_kind(kind), START));
-        let image = self.image(one(Kind::Image).unwrap_or(image));
-        let sampler = self.sampler(one(Kind::Sampler).unwrap_or(sampler), image);
-        let camera = match one(Kind::Camera) {
+        let empty = [BlockKind::Image, BlockKind::Sampler];
+        let [image, sampler] = &empty.map(|kind| LoweredBlock::empty(schema::of_kind(kind), START));
+        let image = self.image(one(BlockKind::Image).unwrap_or(image));
+        let sampler = self.sampler(one(BlockKind::Sampler).unwrap_or(sampler), image);
+        let camera = match one(BlockKind::Camera) {
             Some(block) => self.camera(block),
             None => {
                 self.missing_camera();
@@ -51,7 +52,7 @@ impl<'s> Lowering<'s> {
             self.no_objects();
         }
         if let (Some(image), Some(camera)) = (&image, &camera)
-            && let Some(block) = one(Kind::Camera)
+            && let Some(block) = one(BlockKind::Camera)
             && !self.has_errors()
             && !objects.is_empty()
         {
@@ -70,7 +71,7 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        // What is reported of names is always an error.
+        // Every problem of a name is an error.
         all.any(Diagnostic::is_error)
             || !self.names.problems.borrow().is_empty()
             || !self.sources.file.invalid_utf8().is_empty()
@@ -80,10 +81,11 @@ impl<'s> Lowering<'s> {
         if self.cut || self.bad.iter().any(|text| mentions(text, "camera")) {
             return;
         }
-        let (example, add) = self.new_block(Kind::Camera);
-        let fix = match self.has_items {
-            true => add,
-            false => fixes::at_end("write the smallest scene", SMALLEST, self.sources),
+        let (example, add) = self.new_block(BlockKind::Camera);
+        let fix = if self.has_items {
+            add
+        } else {
+            fixes::at_end("write the smallest scene", SMALLEST, self.sources)
         };
         self.problems.push(
             error("missing_camera", "the scene has no camera")
@@ -94,40 +96,59 @@ impl<'s> Lowering<'s> {
     }
 
     fn no_objects(&mut self) {
-        let (example, add) = self.new_block(Kind::Sphere);
-        let none = "no sphere, triangle, box or checkerboard in this text";
+        let (example, add) = self.new_block(BlockKind::Sphere);
+        let objects = schema::BLOCKS.iter().filter(|row| row.is_object);
+        let kinds = suggest::choice(objects.map(|row| row.name));
         let help = format!("the picture shows the background only; add one, such as `{example}`");
         self.problems.push(
             warning("no_objects", "the scene has no objects")
-                .at(START, none)
+                .at(START, format!("no {kinds} in this text"))
                 .help(help)
                 .fixes([add]),
         );
     }
 
-    /// A block with the fields that it needs, and a fix that adds it.
-    fn new_block(&self, kind: Kind) -> (String, Fix) {
+    /// Returns a block with the fields that it needs, and a fix that adds it.
+    fn new_block(&self, kind: BlockKind) -> (String, Fix) {
         let row = schema::of_kind(kind);
         let (example, title) = (row.example(), format!("add {}", row.noun));
         let fix = fixes::at_end(title, &format!("{example}\n"), self.sources);
         (example, fix)
     }
 
-    fn image(&mut self, block: &Block<'s>) -> Option<Image> {
+    /// Builds the image; `None` if a value is missing or wrong.
+    fn image(&mut self, block: &LoweredBlock<'s>) -> Option<Image> {
+        let ImageFields {
+            width,
+            height,
+            background,
+        } = IMAGE;
         Some(Image {
-            width: block.number("width")? as u32,
-            height: block.number("height")? as u32,
-            background: block.color("background")?,
+            width: block.value(width)? as u32,
+            height: block.value(height)? as u32,
+            background: block.value(background)?,
         })
     }
 
-    pub(super) fn sampler(&mut self, block: &Block<'s>, image: Option<Image>) -> Option<Sampler> {
-        let (total, per_pixel) = (block.given("total"), block.given("per_pixel"));
-        let count = match total {
-            Some(_) => Count::Total(block.number("total")? as u64),
-            None => Count::PerPixel(block.number("per_pixel")? as u64),
+    /// Builds the sampler; `None` if a value is missing or wrong. A number of samples that does not
+    /// go with the picture's size is reported.
+    pub(super) fn sampler(
+        &mut self,
+        block: &LoweredBlock<'s>,
+        image: Option<Image>,
+    ) -> Option<Sampler> {
+        let SamplerFields {
+            method,
+            per_pixel,
+            total,
+            seed,
+        } = SAMPLER;
+        let count = match block.given(total) {
+            Some(_) => Count::Total(block.value(total)? as u64),
+            None => Count::PerPixel(block.value(per_pixel)? as u64),
         };
-        let method = block.method("method");
+        let (total, per_pixel) = (block.given(total), block.given(per_pixel));
+        let method = block.value(method);
         let pixels = image.map(|image| u64::from(image.width) * u64::from(image.height));
         match (count, pixels, total.xor(per_pixel)) {
             (Count::Total(total), Some(pixels), Some(given))
@@ -164,7 +185,7 @@ impl<'s> Lowering<'s> {
         Some(Sampler {
             method: method?,
             count,
-            seed: block.number("seed")? as u64,
+            seed: block.value(seed)? as u64,
         })
     }
 }

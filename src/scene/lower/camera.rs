@@ -1,20 +1,20 @@
-//! The camera: what its fields come to, and what it sees.
+//! The camera, and warnings about what it sees.
 
 use glam::DVec3;
 
-use super::{
-    block::{Block, Given},
-    lowering::Lowering,
-};
+use super::lowering::Lowering;
 use crate::{
     diagnostic::{Applicability, Fix},
     math::predicates,
     numbers,
     scene::{
         error::{error, warning},
-        model::{Camera, Checkerboard, Image, Lens, Object, View, level_direction},
-        unseen::{LEAST_SINE, Place, Sight, Unseen, are_squares_lost, sphere_around, why_unseen},
+        lowered_block::{Given, LoweredBlock},
+        model::{Camera, Image, Lens, Object, View, level_direction},
+        shape::Checkerboard,
+        unseen::{LEAST_SINE, Outside, Sight, WhyUnseen, are_squares_lost, why_unseen},
     },
+    schema::{CAMERA, CameraFields},
     suggest,
 };
 
@@ -22,53 +22,66 @@ use crate::{
 const MOST_NAMED: usize = 3;
 
 impl<'s> Lowering<'s> {
-    pub(super) fn camera(&mut self, block: &Block<'s>) -> Option<Camera> {
-        let (eye, up) = (block.vector("eye"), block.vector("up"));
-        let direction = block.given("direction");
-        let mut view = match direction {
-            Some(_) => block.vector("direction").map(View::Direction),
-            None => block.vector("lookat").map(View::Lookat),
+    /// Builds the camera; `None` if a value is missing or wrong.
+    pub(super) fn camera(&mut self, block: &LoweredBlock<'s>) -> Option<Camera> {
+        let CameraFields {
+            eye,
+            lookat,
+            direction,
+            up,
+            roll,
+            d,
+            view_height,
+            fov,
+            hfov,
+            near,
+            far,
+        } = CAMERA;
+        let (eye_place, given_far) = (block.place(eye), block.given(far));
+        let (eye, up, near) = (block.value(eye), block.value(up), block.value(near));
+        let given_direction = block.given(direction);
+        let mut view = match given_direction {
+            Some(_) => block.value(direction).map(View::Direction),
+            None => block.value(lookat).map(View::Lookat),
         };
-        let seen = block.given("lookat").or(direction);
-        match (eye, view, seen) {
-            (Some(eye), Some(View::Lookat(point)), Some(seen)) if point == eye => {
+        let given_view = block.given(lookat).or(given_direction);
+        match (eye, view, given_view) {
+            (Some(eye), Some(View::Lookat(point)), Some(given)) if point == eye => {
                 let message = "the camera stands on the point that it looks at";
                 self.problems.push(
                     error("view_undefined", message)
-                        .at(seen.span, "the same point as the eye")
-                        .at(block.place("eye"), "the eye")
+                        .at(given.span, "the same point as the eye")
+                        .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // A camera that looks nowhere is none, for those too who show what there is of a
-                // broken scene.
+                // Editors, which show what there is of a broken scene, get no camera either.
                 view = None;
             }
-            (Some(eye), Some(view), Some(seen)) => {
-                self.up_parallel(block, view.ends(eye), up, seen)
+            (Some(eye), Some(view), Some(given)) => {
+                self.up_parallel(block, view.ends(eye), up, given)
             }
             _ => {}
         }
-        let near = block.number("near");
-        let far = block.given("far").map(|given| (given, block.number("far")));
+        let far = given_far.map(|given| (given, block.value(far)));
         if let (Some(near), Some((given, Some(far)))) = (near, far)
             && near >= far
         {
             self.empty_depth(block, near, far, given);
         }
-        let lens = if block.given("fov").is_some() {
-            block.angle("fov").map(Lens::Fov)
-        } else if block.given("hfov").is_some() {
-            block.angle("hfov").map(Lens::HorizontalFov)
+        let lens = if block.given(fov).is_some() {
+            block.value(fov).map(Lens::Fov)
+        } else if block.given(hfov).is_some() {
+            block.value(hfov).map(Lens::HorizontalFov)
         } else {
-            block.number("d").map(Lens::Distance)
+            block.value(d).map(Lens::Distance)
         };
         Some(Camera {
             eye: eye?,
             view: view?,
             up: up?,
-            roll: block.angle("roll")?,
+            roll: block.value(roll)?,
             lens: lens?,
-            view_height: block.number("view_height")?,
+            view_height: block.value(view_height)?,
             near: near?,
             far: match far {
                 Some((_, far)) => Some(far?),
@@ -77,36 +90,36 @@ impl<'s> Lowering<'s> {
         })
     }
 
+    /// Warns of an up vector that is parallel to the view direction, or nearly so.
     fn up_parallel(
         &mut self,
-        block: &Block<'s>,
+        block: &LoweredBlock<'s>,
         (from, to): (DVec3, DVec3),
         up: Option<DVec3>,
-        seen: Given,
+        given_view: Given,
     ) {
         let Some(up) = up else { return };
         let is_parallel = predicates::cross_is_zero(up, from, to);
-        // Of numbers at the ends of their range neither differences nor squares need be there.
+        // Differences and squares of numbers near the ends of their range may overflow or vanish.
         let unit = |v: DVec3| (v / v.abs().max_element()).normalize();
-        let along = match (to - from).is_finite() {
-            true => to - from,
-            false => 0.5 * to - 0.5 * from,
+        let along = if (to - from).is_finite() {
+            to - from
+        } else {
+            0.5 * to - 0.5 * from
         };
         let sine = unit(up).cross(unit(along)).length();
-        // What is not a number is not less.
+        // A comparison with NaN is false.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // Against up, the top of the picture is the part of the level direction across up; along
-        // up, the opposite. The scale of up does not matter, and its square could be too
-        // large.
+        // See `level_direction`. The scale of up does not matter, but its square could overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
         let along = predicates::dot_sign(up, from, to).is_gt();
         let top = if along { -across } else { across };
         let top = numbers::short_vector(top / top.abs().max_element());
-        let given = block.given("up");
+        let given = block.given(CAMERA.up);
         let label = match given {
             _ if !is_parallel => {
                 "less than a millionth of a radian off the view direction".to_owned()
@@ -124,25 +137,27 @@ impl<'s> Lowering<'s> {
                 self.add_fields(block, format!("add `{field}`"), &[field])
             }
         };
-        let (message, why) = match is_parallel {
-            true => (
+        let (message, why) = if is_parallel {
+            (
                 "the camera looks straight along its up vector",
                 format!("the top of the picture is towards {top} here"),
-            ),
-            false => (
+            )
+        } else {
+            (
                 "the camera looks all but straight along its up vector",
                 "which way is up hangs on the last digits of these numbers".to_owned(),
-            ),
+            )
         };
         self.problems.push(
             warning("up_parallel", message)
-                .at(given.map_or(seen.span, |given| given.span), label)
+                .at(given.map_or(given_view.span, |given| given.span), label)
                 .help(format!("{why}; write `up {top}` to say so yourself"))
                 .fixes(fix),
         );
     }
 
-    fn empty_depth(&mut self, block: &Block<'s>, near: f64, far: f64, given: Given) {
+    /// Reports a far plane that is not behind the near plane.
+    fn empty_depth(&mut self, block: &LoweredBlock<'s>, near: f64, far: f64, given: Given) {
         let (near, far) = (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
         let problem = error("empty_depth", "`far` must be more than `near`")
             .help(format!(
@@ -153,7 +168,7 @@ impl<'s> Lowering<'s> {
                 given.field(),
                 self.sources,
             )]);
-        self.problems.push(match block.given("near") {
+        self.problems.push(match block.given(CAMERA.near) {
             Some(near_given) => problem
                 .at(given.span, format!("{far} is not more"))
                 .at(near_given.span, format!("than {near}")),
@@ -164,10 +179,10 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Warns where the camera sees nothing of the scene.
+    /// Warns of a camera that sees no object, or of named objects outside of the picture.
     pub(super) fn unseen(
         &mut self,
-        block: &Block<'s>,
+        block: &LoweredBlock<'s>,
         camera: &Camera,
         image: &Image,
         objects: &[Object],
@@ -175,35 +190,34 @@ impl<'s> Lowering<'s> {
         let Some(why) = why_unseen(camera, image, objects) else {
             return self.outside(camera, image, objects);
         };
-        let looks = match camera.view {
-            View::Lookat(_) => "lookat",
-            View::Direction(_) => "direction",
+        let view_field = match camera.view {
+            View::Lookat(_) => CAMERA.lookat.name,
+            View::Direction(_) => CAMERA.direction.name,
         };
         let (message, label, field) = match why {
-            Unseen::Behind => (
+            WhyUnseen::Behind => (
                 "everything is behind the camera",
                 "away from everything",
-                looks,
+                view_field,
             ),
-            Unseen::Outside => (
+            WhyUnseen::Outside => (
                 "the camera sees nothing of the scene",
                 "past everything",
-                looks,
+                view_field,
             ),
-            Unseen::Clipped(field) => {
+            WhyUnseen::Clipped(field) => {
                 let message = "nothing of the scene is between `near` and `far`";
                 (message, "depths count along the view direction", field)
             }
         };
-        let Some(given) = block.given(field) else {
+        let Some(given) = block.given_by_name(field) else {
             return;
         };
         let problem = warning("nothing_seen", message).at(given.span, label);
-        let mut objects = objects.iter();
-        let middle = objects.find_map(|object| sphere_around(&object.shape));
-        let towards = middle.and_then(|(middle, _)| towards(camera, middle));
+        let center = objects.iter().find_map(|object| object.shape.center());
+        let towards = center.and_then(|center| towards(camera, center));
         self.problems.push(match (why, towards) {
-            (Unseen::Clipped(_), _) => problem
+            (WhyUnseen::Clipped(_), _) => problem
                 .help(format!("change `{field}`, or leave it out"))
                 .fixes([Fix::remove_whole(
                     format!("leave `{field}` out"),
@@ -219,8 +233,8 @@ impl<'s> Lowering<'s> {
 }
 
 impl Lowering<'_> {
-    /// Warns of named objects that lie wholly outside of the picture; of a block with indices if
-    /// all of its objects do.
+    /// Warns of named objects that lie wholly outside of the picture, and of repeated blocks all of
+    /// whose objects do.
     fn outside(&mut self, camera: &Camera, image: &Image, objects: &[Object]) {
         let Some(sight) = Sight::new(camera, image) else {
             return;
@@ -237,11 +251,12 @@ impl Lowering<'_> {
             let Some(first) = places.next().flatten() else {
                 continue;
             };
-            let others: Option<Vec<Place>> = places.collect();
+            let others: Option<Vec<Outside>> = places.collect();
             let Some(others) = others else { continue };
-            let words = match others.iter().all(|other| *other == first) {
-                true => first.words(),
-                false => "outside of the picture",
+            let words = if others.iter().all(|other| *other == first) {
+                first.words()
+            } else {
+                "outside of the picture"
             };
             outside.push((format!("`{name}`"), place, words));
         }
@@ -272,20 +287,21 @@ impl Lowering<'_> {
         self.problems.push(problem);
     }
 
-    /// Warns of boards whose squares samples cannot tell apart.
+    /// Warns of checkerboards whose squares samples cannot tell apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);
-        // Of those of one block the first one is told.
-        let mut told = None;
+        // Only the first board of a repeated block is reported.
+        let mut reported = None;
         for (board, place) in boards {
             let is_lost =
                 |square| are_squares_lost(camera, image, &Checkerboard { square, ..board });
-            let is_new = board.colors[0] != board.colors[1] && told != Some(place);
+            let is_new = board.colors[0] != board.colors[1] && reported != Some(place);
             if !is_new || !is_lost(board.square) {
                 continue;
             }
-            told = Some(place);
-            // As many squares as people can see: of a metre, or of the eye's height over the board.
+            reported = Some(place);
+            // Suggested sides that people can tell apart: a metre, or the eye's height over the
+            // board.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);
@@ -308,11 +324,11 @@ impl Lowering<'_> {
     }
 }
 
-/// What to write for the camera to look at a point, if it can.
-fn towards(camera: &Camera, middle: DVec3) -> Option<String> {
+/// Writes the value with which the camera looks at a point; `None` if it cannot.
+fn towards(camera: &Camera, point: DVec3) -> Option<String> {
     let (from, to) = match camera.view {
-        View::Lookat(_) => (camera.eye, middle),
-        View::Direction(_) => (DVec3::ZERO, middle - camera.eye),
+        View::Lookat(_) => (camera.eye, point),
+        View::Direction(_) => (DVec3::ZERO, point - camera.eye),
     };
     let is_one = to.is_finite() && !predicates::cross_is_zero(camera.up, from, to);
     is_one.then(|| numbers::short_vector(to))

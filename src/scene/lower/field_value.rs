@@ -1,4 +1,4 @@
-//! The value of a field: of the type that the field takes, and within its range.
+//! Evaluates the value of a field, and checks its type and its conditions.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::{
     math::Angle,
     numbers,
     scene::{error::error, eval::Evaluator},
-    schema::{self, Condition, Field, Preset, Type, Value},
+    schema::{self, Condition, FieldRow, Preset, Type, Value},
     suggest,
     syntax::{
         shorten,
@@ -18,12 +18,17 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// The value of a field, if it is of the field's type and keeps its conditions.
-    pub(super) fn typed(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
-        self.trying(tree.span, |it| it.typed_once(row, tree))
+    /// Returns the value of a field, if it is of the field's type and meets its conditions.
+    /// Problems are reported.
+    pub(super) fn typed(
+        &mut self,
+        row: &'static FieldRow,
+        tree: &tree::Value<'s>,
+    ) -> Option<Value> {
+        self.with_tried_suggestions(tree.span, |it| it.typed_once(row, tree))
     }
 
-    fn typed_once(&mut self, row: &'static Field, tree: &tree::Value<'s>) -> Option<Value> {
+    fn typed_once(&mut self, row: &'static FieldRow, tree: &tree::Value<'s>) -> Option<Value> {
         let before = self.problems.len();
         let value = match (row.takes, &tree.kind) {
             (Type::Method, ValueKind::Name(written)) => return self.method(written, tree),
@@ -36,7 +41,7 @@ impl<'s> Lowering<'s> {
                 self.evaluate(tree, Some(Type::Colors))?
             }
             (_, ValueKind::Tuple(elements)) if elements.len() != 3 => {
-                self.list(row, tree, elements);
+                self.unexpected_list(row, tree, elements);
                 return None;
             }
             _ => self.evaluate(tree, Some(row.takes))?,
@@ -56,7 +61,8 @@ impl<'s> Lowering<'s> {
         let Some(&condition) = broken else {
             return Some(value);
         };
-        // That a number rounds to 0 is why it does not hold.
+        // A number that rounds to 0 was reported for that; the broken condition is reported
+        // instead.
         let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
         if is_rounded {
             self.problems.truncate(before);
@@ -87,8 +93,13 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    /// Reports a list in the place of something that is none.
-    fn list(&mut self, row: &'static Field, tree: &tree::Value<'s>, elements: &[Element<'s>]) {
+    /// Reports a list in the place of a value that is none.
+    fn unexpected_list(
+        &mut self,
+        row: &'static FieldRow,
+        tree: &tree::Value<'s>,
+        elements: &[Element<'s>],
+    ) {
         for element in elements {
             if self.evaluate(&element.value, None).is_none() {
                 return;
@@ -98,7 +109,7 @@ impl<'s> Lowering<'s> {
         let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
         let meant = match (row.takes, texts.as_slice()) {
             (Type::Color, [r, g, b, _]) => Some(format!("rgb({r}, {g}, {b})")),
-            // A field without a default, such as `far`, has conditions of its own.
+            // Fields without a default, such as `far`, depend on other fields.
             (Type::Number, [first, second])
                 if first == second && matches!(row.preset, Preset::Value(_)) =>
             {
@@ -108,11 +119,12 @@ impl<'s> Lowering<'s> {
         };
         let meant = meant.map(|meant| (meant, Applicability::Unsafe));
         let problem = self
-            .of_type(row, tree, "a list", meant)
+            .other_type(row, tree, "a list", meant)
             .at(tree.span, "a list");
         self.problems.push(problem);
     }
 
+    /// Returns a method by its word; reports an unknown one.
     fn method(&mut self, written: &str, tree: &tree::Value<'s>) -> Option<Value> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
@@ -132,24 +144,25 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    fn wrong_type(&mut self, row: &Field, tree: &tree::Value<'s>, value: Value) -> Diagnostic {
+    /// Describes a value of another type than that of its field.
+    fn wrong_type(&mut self, row: &FieldRow, tree: &tree::Value<'s>, value: Value) -> Diagnostic {
         if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
             let what = format!("`{}`", row.name);
-            // `fov 45rad` would be the next mistake.
+            // Only units with which the condition holds are offered: `fov 45rad` would be an error.
             let fits = |unit: Unit| row.allows(Value::Angle(unit.of(number)));
             return self.evaluator().bare_angle(&what, tree, number, fits);
         }
         let meant = self.converted(row, tree, value);
         let label = self.evaluator().described(tree, value.kind());
-        self.of_type(row, tree, value.kind().noun(), meant)
+        self.other_type(row, tree, value.kind().noun(), meant)
             .at(tree.span, label)
     }
 
-    /// How a value of another type has to be written for a field, if that can be told, and whether
-    /// that is sure.
+    /// Returns how a value of another type has to be written for a field, and how sure that is;
+    /// `None` if nobody can tell.
     pub(super) fn converted(
         &mut self,
-        row: &Field,
+        row: &FieldRow,
         tree: &tree::Value<'s>,
         value: Value,
     ) -> Option<(String, Applicability)> {
@@ -172,16 +185,16 @@ impl<'s> Lowering<'s> {
                 Some(unsure(format!("({text}, {text}, {text})")))
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
-            // A plane of one colour.
+            // A checkerboard of one colour.
             (Type::Colors, Value::Color(_), _) => Some(unsure(format!("({text}, {text})"))),
             _ => None,
         }
     }
 
-    /// What is wrong with a value that is not of the field's type, and what was probably meant.
-    fn of_type(
+    /// Describes a value of another type, with what was probably meant.
+    fn other_type(
         &mut self,
-        row: &Field,
+        row: &FieldRow,
         tree: &tree::Value<'s>,
         found: &str,
         meant: Option<(String, Applicability)>,
@@ -204,6 +217,7 @@ impl<'s> Lowering<'s> {
         )
     }
 
+    /// Returns the value of an expression; `wanted` is the type that would fit, if it is known.
     pub(super) fn evaluate(
         &mut self,
         value: &tree::Value<'s>,
@@ -221,8 +235,9 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// A value that keeps a condition, in the place of one that does not: made of it, or made up.
-fn allowed(row: &Field, condition: Condition, value: Value) -> (String, Applicability) {
+/// Returns a value that meets a condition, in the place of one that does not: derived from that
+/// one, or made up.
+fn allowed(row: &FieldRow, condition: Condition, value: Value) -> (String, Applicability) {
     let allowed = match (condition, value) {
         (Condition::Whole, Value::Number(number))
             if row.allows(Value::Number(number.round().max(1.0))) =>
@@ -241,8 +256,8 @@ fn allowed(row: &Field, condition: Condition, value: Value) -> (String, Applicab
     (allowed, Applicability::Placeholder)
 }
 
-/// The colour whose parts were written as a vector: from 0 to 1 if none is more, or else from 0 to
-/// 255.
+/// Returns a colour whose channels were written as a vector: from 0 to 1 if none is greater, and
+/// otherwise from 0 to 255.
 fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;

@@ -1,41 +1,41 @@
-//! Edits of fields and blocks as a whole.
+//! Fixes that add or remove whole fields and blocks.
 
-use super::{block::Block, lowering::Lowering};
+use super::lowering::Lowering;
 use crate::{
     diagnostic::{Applicability, Edit, Fix},
-    scene::examples::example_beside,
+    scene::{examples::example_beside, lowered_block::LoweredBlock},
     schema::{Choice, Preset},
     source::{SourceId, Sources, Span},
     suggest,
 };
 
-/// Adds lines with made-up values at the end of the file.
+/// Returns a fix that adds lines with made-up values at the end of the file.
 pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -> Fix {
     let text = sources.file.text();
     let line_end = sources.file.line_end();
-    let apart = match text.ends_with('\n') || text.len() == sources.file.bom_len() {
-        true => "",
-        false => line_end,
-    };
-    let added = format!("{apart}{}", lines.replace('\n', line_end));
+    let is_line_start = text.ends_with('\n') || text.len() == sources.file.bom_len();
+    let separator = if is_line_start { "" } else { line_end };
+    let added = format!("{separator}{}", lines.replace('\n', line_end));
     Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)]).placeholder()
 }
 
-/// Of a thing that is there twice, keeps the first or the second one. Of equal ones either will do.
+/// Returns the fixes for a thing that is given twice: keep the first one, or the second. If both
+/// are equal, the fixes are safe.
 pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sources) -> [Fix; 2] {
     let ways = [("first", "second", second), ("second", "first", first)];
     ways.map(|(kept, removed, span)| {
         let title = format!("keep the {kept} `{name}`, remove the {removed}");
         let words = |span| sources.text(span).split_whitespace();
-        match words(first).eq(words(second)) {
-            true => remove_equal(title, span, sources),
-            false => Fix::remove_whole(title, span, sources),
+        if words(first).eq(words(second)) {
+            remove_equal(title, span, sources)
+        } else {
+            Fix::remove_whole(title, span, sources)
         }
     })
 }
 
-/// Takes away what stands elsewhere, too: nothing is lost, unless a comment goes with it or stands
-/// in it.
+/// Returns a fix that removes a text which is also given elsewhere. It is safe unless a comment is
+/// removed as well.
 pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
@@ -44,11 +44,11 @@ pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix 
 }
 
 impl Lowering<'_> {
-    /// Adds fields with made-up values at the end of a block that stands in the file: on its line,
-    /// or on lines of their own.
+    /// Returns a fix that adds fields with made-up values at the end of a block: on its line, or on
+    /// lines of their own. Returns `None` if the block is not in the file.
     pub(super) fn add_fields(
         &self,
-        block: &Block<'_>,
+        block: &LoweredBlock<'_>,
         title: impl Into<String>,
         fields: &[String],
     ) -> Option<Fix> {
@@ -56,11 +56,12 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Of two fields that exclude each other, keeps either one with what belongs to it, if that is
-    /// all that it needs, and nothing else stands between the fields that go.
+    /// Returns the fixes for two fields that exclude each other: keep either way and remove the
+    /// other. A way is kept only if it is complete, and removed only if no other field stands
+    /// between its own.
     pub(super) fn one_of(
         &self,
-        block: &Block<'_>,
+        block: &LoweredBlock<'_>,
         choice: &Choice,
         fields: [&str; 2],
     ) -> impl Iterator<Item = Fix> {
@@ -68,7 +69,7 @@ impl Lowering<'_> {
             let ways = choice.ways.iter().copied();
             let (kept, removed): (Vec<&[&str]>, Vec<&[&str]>) =
                 ways.partition(|way| way.contains(&field));
-            let is_given = |name: &&str| block.given(name).is_some();
+            let is_given = |name: &&str| block.given_by_name(name).is_some();
             let is_missing = |name: &&str| {
                 let row = block.row.field(name);
                 row.is_some_and(|row| row.preset == Preset::Alternative) && !is_given(name)
@@ -79,7 +80,7 @@ impl Lowering<'_> {
             }
             kept.retain(is_given);
             removed.retain(is_given);
-            let places = removed.iter().filter_map(|name| block.given(name));
+            let places = removed.iter().filter_map(|name| block.given_by_name(name));
             let whole = places.map(|given| given.field()).reduce(Span::to)?;
             let within = block.given.iter().flatten();
             let within =
@@ -92,17 +93,17 @@ impl Lowering<'_> {
     }
 }
 
-/// Names in a title.
+/// Lists names in a title.
 pub(super) fn quoted(names: &[&str]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     suggest::list(names.iter().map(String::as_str))
 }
 
-/// Fields with values that they can have beside those that are given.
-pub(super) fn examples(block: &Block<'_>, names: &[&str]) -> Vec<String> {
+/// Writes fields with values that fit those of the given fields.
+pub(super) fn examples(block: &LoweredBlock<'_>, names: &[&str]) -> Vec<String> {
     let rows = names.iter().filter_map(|name| block.row.field(name));
     rows.map(|row| {
-        let value = example_beside(row, &|other| block.given(other)?.value);
+        let value = example_beside(row, &|other| block.given_by_name(other)?.value);
         format!("{} {value}", row.name)
     })
     .collect()

@@ -1,24 +1,26 @@
-//! Each item of a file: a definition, or a block with its fields.
+//! Lowers each item of a file: a definition, or a block with its fields.
 
 use super::{
-    block::{Block, Given},
     fixes,
     lowering::{Lowering, mentions},
 };
 use crate::{
     diagnostic::{Applicability, Diagnostic, Edit, Fix},
-    scene::error::{error, twice},
-    schema::{self, Kind, Type, predefined},
+    scene::{
+        error::{error, twice},
+        lowered_block::{Given, LoweredBlock},
+    },
+    schema::{self, BOX, BlockKind, BlockRow, TRIANGLE, Type, predefined},
     source::{Span, sort_by_span},
     suggest,
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
-/// Shapes of other programs that triangles make.
-const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid polygon quad mesh prism";
+/// Shapes of other programs that can be built of triangles.
+const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";
 
 impl<'s> Lowering<'s> {
-    /// Makes sense of the next items of the file.
+    /// Lowers the next items of the file.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
             if !self.is_wanted() {
@@ -40,11 +42,11 @@ impl<'s> Lowering<'s> {
     fn definition(&mut self, definition: &Definition<'s>) {
         let name = definition.name;
         let first = name.and_then(|name| self.names.place(name.text));
-        let value = self.trying(definition.value.span, |it| {
+        let value = self.with_tried_suggestions(definition.value.span, |it| {
             it.evaluate(&definition.value, None)
         });
         let Some(name) = name else { return };
-        // A name without its `let` was reported.
+        // A name without its `let` was reported by the parser.
         let reported = definition.keyword.range().is_empty();
         match (predefined(name.text), first) {
             (Some(what), _) => {
@@ -55,13 +57,13 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // What uses it below is silent: what it means there, nobody can tell.
+                // Uses of the name are silent, because nobody can tell what they mean.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
                 self.names.define(name, value, &definition.value);
             }
-            // It stays what it is.
+            // The name keeps its value.
             (None, Some(_)) if reported => {}
             (None, Some(first)) => {
                 let message = format!("`{}` is defined twice", name.text);
@@ -72,9 +74,10 @@ impl<'s> Lowering<'s> {
                 let is_equal = value.is_some()
                     && value == self.names.value(name.text)
                     && text.starts_with(written);
-                let fix = match is_equal {
-                    true => fixes::remove_equal(title, definition.span, self.sources),
-                    false => Fix::remove_whole(title, definition.span, self.sources),
+                let fix = if is_equal {
+                    fixes::remove_equal(title, definition.span, self.sources)
+                } else {
+                    Fix::remove_whole(title, definition.span, self.sources)
                 };
                 let help = "remove one of them, or give it another name; a name keeps its value";
                 self.problems.push(
@@ -94,7 +97,7 @@ impl<'s> Lowering<'s> {
             let message = format!("there are two `{}` blocks", row.name);
             twice("duplicate_block", message, [first.keyword, block.keyword()])
                 .help(match row.kind {
-                    Kind::Camera => "keep one; `--set camera.eye='(4, 2, 8)'` shows the scene from elsewhere, and `pinhole sheet --sweep` from many places",
+                    BlockKind::Camera => "keep one; `--set camera.eye='(4, 2, 8)'` shows the scene from elsewhere, and `pinhole sheet --sweep` from many places",
                     _ => "keep one, with the fields of both",
                 })
                 .fixes(fixes::one_of_two(
@@ -122,25 +125,25 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// The values of a block's fields, and what is wrong with them.
+    /// Evaluates the fields of a block, and reports their problems.
     pub(super) fn lowered(
         &mut self,
-        row: &'static schema::Block,
+        row: &'static BlockRow,
         block: &tree::Block<'s>,
-    ) -> Block<'s> {
+    ) -> LoweredBlock<'s> {
         let open = block.open.map(|open| open.start);
-        let mut lowered = Block {
+        let mut lowered = LoweredBlock {
             keyword: block.keyword(),
             name: block.name.filter(|_| row.is_object),
-            // The end is missing, or what stands before the `{` may have been a field.
+            // The end of the block is missing, or the text before the `{` may have been a field.
             unfinished: block.close.is_none() || block.bad.iter().any(|bad| Some(bad.start) < open),
-            ..Block::empty(row, block.span)
+            ..LoweredBlock::empty(row, block.span)
         };
         for span in &block.bad {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
-            // What was to be an index is not reported again.
+            // Names in an index that could not be parsed are not reported again.
             if Some(span.start) < open {
                 self.names.know_words(text);
             }
@@ -153,7 +156,7 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered);
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
-        // Of two words for one field nobody knows which one it is.
+        // If two words stand for one field, nobody knows which of them is meant.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -164,7 +167,7 @@ impl<'s> Lowering<'s> {
             }
             tried.push(field.name);
         }
-        // What else there is tells what they can have meant.
+        // Unknown fields come last, because the others tell what they can mean.
         for field in unknown {
             self.unknown_field(field, &mut lowered);
         }
@@ -175,24 +178,24 @@ impl<'s> Lowering<'s> {
         lowered
     }
 
-    /// The table's row for a block; for a mistyped kind that of the nearest one.
-    fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static schema::Block> {
+    /// Returns the row of a block; for a mistyped keyword that of the nearest kind, after a report.
+    fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static BlockRow> {
         let kind = block.kind?;
         let row = schema::block(kind.text);
         if row.is_some() {
             return row;
         }
         let near = schema::nearest_block(kind.text);
-        let is_sure = |near: &schema::Block| {
+        let is_sure = |near: &BlockRow| {
             let is_tried = suggest::is_among(kind.text, near.also_tried);
-            // A plane of one colour has no squares.
+            // A plane of another program has one colour and no squares.
             let is_plane = matches!(kind.text, "plane" | "floor" | "ground");
             is_tried && !is_plane && !schema::is_word(kind.text)
                 || suggest::is_only_near(kind.text, near.name, schema::block_names())
         };
-        // Nobody can tell what it was to be: an object, perhaps.
+        // A block of an unknown kind may be an object.
         self.has_objects |= near.is_none();
-        // Of a block that is only begun, the parser says all.
+        // The parser has reported all there is of a block that is only begun.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;
         }
@@ -224,8 +227,9 @@ impl<'s> Lowering<'s> {
         near
     }
 
-    fn field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
-        let told = self.problems.len();
+    /// Evaluates a field that the block has, and reports one that is given twice.
+    fn field(&mut self, field: &tree::Field<'s>, block: &mut LoweredBlock<'s>) {
+        let before = self.problems.len();
         let mut rows = block.row.fields.iter().enumerate();
         let Some((at, row)) = rows.find(|(_, row)| row.name == field.name.text) else {
             return;
@@ -238,12 +242,12 @@ impl<'s> Lowering<'s> {
             span: field.value.span,
             value: self.typed(row, &field.value),
         };
-        if self.problems.len() > told {
-            let mut others = ["color", "colors"].into_iter();
-            let is_free = others
-                .find(|name| *name != row.name)
-                .is_some_and(|it| block.row.field(it).is_some() && block.given(it).is_none());
-            self.other_colors(told, field, row.takes, is_free);
+        if self.problems.len() > before {
+            let mut others = [BOX.color.name, BOX.colors.name].into_iter();
+            let is_free = others.find(|name| *name != row.name).is_some_and(|it| {
+                block.row.field(it).is_some() && block.given_by_name(it).is_none()
+            });
+            self.other_colors(before, field, row.takes, is_free);
         }
         let Some(slot) = block.given.get_mut(at) else {
             return;
@@ -261,9 +265,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Colours of another number than a field takes, as in `color (red, green, blue)`: where the
-    /// block has a free field for so many, it is that one.
-    fn other_colors(&mut self, told: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
+    /// Improves the report of a field with a wrong number of colours, such as
+    /// `color (red, green, blue)`: if the block has a free field for that number, it is suggested.
+    fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
             kind => matches!(kind, ValueKind::Name(_) | ValueKind::ColorCode(_)),
@@ -273,8 +277,10 @@ impl<'s> Lowering<'s> {
             _ => vec![&field.value],
         };
         let (other, help) = match (takes, parts.len(), self.is_odd) {
-            (Type::Color, 3, _) if is_free => ("colors", ""),
-            (Type::FaceColors, 1, _) | (Type::FaceColors, 2, Some(_)) if is_free => ("color", ""),
+            (Type::Color, 3, _) if is_free => (BOX.colors.name, ""),
+            (Type::FaceColors, 1, _) | (Type::FaceColors, 2, Some(_)) if is_free => {
+                (BOX.color.name, "")
+            }
             (Type::Color, 2, None) => (
                 "",
                 "write one colour; a pair takes turns where objects have indices, as in `for i < 8`",
@@ -285,7 +291,7 @@ impl<'s> Lowering<'s> {
             ),
             _ => return,
         };
-        let new = self.problems.get_mut(told..).unwrap_or_default();
+        let new = self.problems.get_mut(before..).unwrap_or_default();
         if let [problem] = new
             && problem.code == "pinhole::wrong_type"
             && parts.into_iter().all(is_color)
@@ -297,13 +303,13 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Two fields that exclude each other: the later one is labelled first.
-    fn conflicts(&mut self, block: &Block<'s>) {
-        // One report for each choice: for a box with center, size, min and max.
+    /// Reports two fields that exclude each other; the first label is on the later one.
+    fn conflicts(&mut self, block: &LoweredBlock<'s>) {
+        // A choice is reported once, even for a box with center, size, min and max.
         for choice in block.row.choices {
             let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
-            let given =
-                fields.filter_map(|name| Some((block.row.field(name)?, block.given(name)?)));
+            let given = fields
+                .filter_map(|name| Some((block.row.field(name)?, block.given_by_name(name)?)));
             let mut given: Vec<_> = given.collect();
             sort_by_span(&mut given, |(_, given)| given.name);
             let [(first, earlier), ..] = given[..] else {
@@ -324,14 +330,14 @@ impl<'s> Lowering<'s> {
                     .at(
                         later.name,
                         match second.name {
-                            "spin" => "the vertices fix the turn already",
+                            it if it == TRIANGLE.spin.name => "the vertices fix the turn already",
                             _ => "this says it again, in another way",
                         },
                     )
                     .at(
                         earlier.name,
                         match first.name {
-                            "spin" => "the vertices fix the turn",
+                            it if it == TRIANGLE.spin.name => "the vertices fix the turn",
                             _ => "this says it already",
                         },
                     )
@@ -342,25 +348,27 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// What to write for a `size` beside one corner of a box: the other corner.
-    fn other_corner(&self, block: &Block<'s>) -> Option<Fix> {
-        let given = |name| block.given(name);
-        let size = given("size").filter(|_| given("center").is_none())?;
-        let (corner, other, sign) = match (given("min"), given("max")) {
-            (Some(corner), None) => (corner, "max", "+"),
-            (None, Some(corner)) => (corner, "min", "-"),
+    /// Returns a fix that replaces the `size` beside one corner of a box by the other corner.
+    fn other_corner(&self, block: &LoweredBlock<'s>) -> Option<Fix> {
+        if block.row.kind != BlockKind::Box || block.given(BOX.center).is_some() {
+            return None;
+        }
+        let size = block.given(BOX.size)?;
+        let (corner, other, sign) = match (block.given(BOX.min), block.given(BOX.max)) {
+            (Some(corner), None) => (corner, BOX.max.name, "+"),
+            (None, Some(corner)) => (corner, BOX.min.name, "-"),
             _ => return None,
         };
         let texts = [corner, size].map(|it| self.sources.text(it.span));
         let written = format!("{} {sign} {}", texts[0], texts[1]);
-        // A sum would lose its parentheses.
+        // Behind a minus sign, a sum would need parentheses.
         let is_sum = sign == "-" && size.value.is_some() && !texts[1].starts_with('(');
         let is_sum = is_sum && texts[1].contains(['+', '-']);
         (!is_sum).then(|| Fix::write(size.field(), format!("{other} {written}")))
     }
 
-    /// A field without a value. A sign of other languages behind its name goes.
-    fn missing_value(&mut self, name: &Name<'s>, row: &schema::Field) {
+    /// Reports a field without a value. The fix replaces a sign of other languages behind the name.
+    fn missing_value(&mut self, name: &Name<'s>, row: &schema::FieldRow) {
         let (noun, field, example) = (row.takes.noun(), row.name, row.example);
         let text = self.sources.get(name.span.source).text();
         let rest = text
@@ -374,7 +382,7 @@ impl<'s> Lowering<'s> {
         let behind = Span::new(name.span.source, name.span.end, end);
         let edit = Edit::new(behind, format!(" {example}"));
         self.problems.push(Diagnostic {
-            // Only reading the scene tells what a field without a value is called.
+            // The parser cannot report it, because only lowering knows the names of fields.
             is_of_syntax: true,
             ..error("missing_value", format!("`{field}` has no value"))
                 .at(name.span, "a value should follow this")
@@ -385,12 +393,13 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Knows the name of an object. Other blocks take none.
-    fn name_of_block(&mut self, row: &schema::Block, block: &tree::Block<'s>) {
+    /// Remembers the name of an object, and reports one that cannot be used. Other blocks take no
+    /// name.
+    fn name_of_block(&mut self, row: &BlockRow, block: &tree::Block<'s>) {
         let Some(name) = block.name else { return };
         let text = name.text;
         let problem = if !row.is_object {
-            // What is bad may be a field, and the name a part of it.
+            // The text that could not be parsed may be a field, and the name a part of it.
             if !block.bad.is_empty() {
                 return;
             }
@@ -422,5 +431,17 @@ impl<'s> Lowering<'s> {
         let title = format!("take the name `{text}` away");
         let fix = Fix::remove(title, name.span, self.sources);
         self.problems.push(problem.fixes([fix]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_of_other_programs_are_no_kinds_of_blocks() {
+        for shape in OTHER_SHAPES.split(' ') {
+            assert!(schema::nearest_block(shape).is_none(), "{shape}");
+        }
     }
 }

@@ -1,45 +1,42 @@
-//! What is known of a scene while its items are read.
+//! The state of lowering: what is known of a scene while its items are read.
 
 use std::{collections::HashMap, sync::atomic::AtomicBool};
 
-use super::block::Block;
 use crate::{
     cancel,
     diagnostic::{Diagnostic, Problems},
-    scene::{
-        eval::Names,
-        model::{Checkerboard, Object},
-    },
+    scene::{eval::Names, lowered_block::LoweredBlock, model::Object, shape::Checkerboard},
     source::{Sources, Span},
 };
 
+/// The state of lowering.
 pub(super) struct Lowering<'s> {
     pub(super) sources: &'s Sources,
-    /// Once it is set, the rest is left out.
+    /// Set by another thread to give up.
     pub(super) cancel: &'s AtomicBool,
-    /// Whether a mistake took the end of the text, such as a comment that is never closed.
+    /// Whether a mistake hides the end of the text, such as a comment that is never closed.
     pub(super) cut: bool,
     pub(super) names: Names<'s>,
-    /// The blocks that are no objects, each the first of its kind.
-    pub(super) blocks: Vec<Block<'s>>,
-    /// Whether the sum of the indices is odd in the block that is read, if that has indices.
+    /// The blocks other than objects, each the first of its kind.
+    pub(super) blocks: Vec<LoweredBlock<'s>>,
+    /// Whether the sum of the current indices is odd, within a repeated block.
     pub(super) is_odd: Option<bool>,
-    /// The objects.
+    /// The objects built so far.
     pub(super) objects: Vec<Object>,
-    /// The checkerboards, each with the number of its squares' side, or its keyword.
+    /// The checkerboards, each with the span of its `square`, or of its keyword.
     pub(super) boards: Vec<(Checkerboard, Span)>,
-    /// Whether there is anything in the file but comments.
+    /// Whether the file has any items.
     pub(super) has_items: bool,
-    /// Whether there is an object, built or not.
+    /// Whether the file has a block of an object, built or not.
     pub(super) has_objects: bool,
-    /// Where each object's name stands first.
+    /// The span of the first use of each object's name.
     pub(super) first_names: HashMap<&'s str, Span>,
-    /// The texts of items that could not be understood.
+    /// The texts of items that could not be parsed.
     pub(super) bad: Vec<&'s str>,
-    /// What was found before: wrong with the syntax, and with the targets of arguments.
+    /// Problems from before lowering: of the syntax, and of the targets of arguments.
     pub(super) found: Vec<Diagnostic>,
     pub(super) problems: Problems,
-    /// The values of unknown fields, in the order of the text.
+    /// The spans of the values of unknown fields, in the order of the text.
     pub(super) unknown: Vec<Span>,
 }
 
@@ -69,7 +66,7 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Whether a word stands in a text.
+/// Whether a text contains a word.
 pub(super) fn mentions(text: &str, word: &str) -> bool {
     let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
     text.split(other).any(|found| found == word)

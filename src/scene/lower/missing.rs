@@ -1,30 +1,33 @@
 //! Fields that a block needs and is not given.
 
 use super::{
-    block::Block,
     fixes::{examples, quoted},
     lowering::Lowering,
 };
-use crate::{scene::error::error, schema::Preset};
+use crate::{
+    scene::{error::error, lowered_block::LoweredBlock},
+    schema::Preset,
+};
 
 impl<'s> Lowering<'s> {
-    pub(super) fn missing_fields(&mut self, block: &Block<'s>) {
+    /// Reports the fields that a block needs and is not given.
+    pub(super) fn missing_fields(&mut self, block: &LoweredBlock<'s>) {
         if block.unfinished {
             return;
         }
         let row = block.row;
-        let has = |name: &&str| block.given(name).is_some() || block.meant.contains(name);
+        let has = |name: &&str| block.given_by_name(name).is_some() || block.meant.contains(name);
         let is_missing = |name: &&str, preset| {
             row.field(name).is_some_and(|field| field.preset == preset) && !has(name)
         };
         let required = row.field_names();
         let required = required.filter(|name| is_missing(name, Preset::Required));
-        // Each is one way to give what is missing.
+        // Each element is one way to give what is missing.
         let mut ways: Vec<Vec<&'static str>> = vec![required.collect()];
         for choice in row.choices {
             let is_taken = |way: &&&[&str]| way.iter().any(has);
             let taken = choice.ways.iter().filter(is_taken).count();
-            // Two that are taken exclude each other, which is reported.
+            // Two ways that are taken exclude each other, which is reported elsewhere.
             let open = choice
                 .ways
                 .iter()
@@ -46,10 +49,8 @@ impl<'s> Lowering<'s> {
             return;
         };
         let all: Vec<String> = ways.iter().map(|way| quoted(way)).collect();
-        let or = match ways.iter().all(|way| way.len() == 1) {
-            true => " or ",
-            false => ", or ",
-        };
+        let is_short = ways.iter().all(|way| way.len() == 1);
+        let or = if is_short { " or " } else { ", or " };
         let fixes = ways.iter().filter_map(|names| {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))

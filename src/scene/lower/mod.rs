@@ -1,11 +1,10 @@
 //! Tree → scene.
 //!
-//! In: the tree of a file, with the values of arguments in it. Out: the scene, or what is wrong
-//! with it. The items are walked once, in order: every name is defined, every field evaluated and
-//! every object built where it stands; then image, camera and sampler are built. A problem of one
-//! field never hides one of another.
+//! In: the tree of a file, with the values of arguments in it. Out: the scene, or problems. The
+//! items are walked once, in order: each item defines its name, evaluates its fields and builds its
+//! objects; then image, camera and sampler are built. A problem of one field never hides a problem
+//! of another.
 
-mod block;
 mod build;
 mod camera;
 mod field_value;

@@ -1,4 +1,4 @@
-//! From the text to the tree, and on to the scene: in parts where all is well, and as a whole.
+//! From the text to the tree and on to the scene: in parts if there are no mistakes, or as a whole.
 
 use std::sync::atomic::AtomicBool;
 
@@ -16,37 +16,39 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that tell whether it is a text.
+/// Number of bytes at the start of a file by which binary files are recognised.
 const BINARY_BYTES: usize = 1 << 14;
 
-/// Reads a scene: parses the file and the overrides, and makes of them what they mean.
+/// Reads a scene: parses the file and the overrides, and lowers them.
 pub fn read(sources: &Sources) -> Reading {
-    read_in_parts(sources, PART)
+    read_in_parts(sources, PART_BYTES)
 }
 
-/// The same, given up soon after the flag is set.
+/// Reads a scene as [`read`] does, but gives up soon after a flag is set.
 ///
 /// # Errors
 ///
 /// The flag is set.
 pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Cancelled> {
-    let reading = read_as_far(sources, PART, cancel);
+    let reading = read_as_far(sources, PART_BYTES, cancel);
     cancel::unless_set(cancel, reading)
 }
 
-/// A part is long enough to be worth a thread with a stack of its own, and so short that its tree
-/// takes little memory, and that soon none is read when nobody wants it.
-const PART: usize = 1 << 16;
+/// Minimum size of the parts that a file is read in, in bytes. A part is long enough to be worth a
+/// thread with a stack of its own, and so short that its tree takes little memory and that reading
+/// can soon be given up.
+const PART_BYTES: usize = 1 << 16;
 
-/// The same as [`read`] with a file in parts of at least so many bytes, which are parsed and made
-/// sense of one after the other, so that there is never a tree of the whole. The result does not
-/// depend on the parts: a file with mistakes is read again as a whole, for a report may tell of
-/// what stands elsewhere.
+/// Reads a scene as [`read`] does, in parts of at least a number of bytes. The parts are parsed and
+/// lowered one after the other, so that there is never a tree of the whole file.
+///
+/// The result does not depend on the parts: a file with mistakes is read again as a whole, because
+/// a report may point to other places.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }
 
-/// The same or, cancelled, something of no use.
+/// Reads a scene. The result is of no use if reading is cancelled.
 fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading {
     in_parts(sources, bytes, cancel).unwrap_or_else(|| {
         let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
@@ -54,11 +56,11 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
     })
 }
 
-/// Reads a file in parts, if it is long and nothing is wrong.
+/// Reads a file in parts; `None` if it has problems.
 fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Reading> {
     let mut lowering = Lowering::new(sources, Names::default(), cancel);
     let mut overrides = overrides::read(sources, &mut lowering.problems);
-    // The value of a field that is set sees all names.
+    // The value of an argument may use all names, so items that are set come last.
     let mut last = Vec::new();
     let file = &sources.file;
     let all = lowering.is_right()
@@ -78,8 +80,7 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     lowering.is_right().then(|| lowering.reading())
 }
 
-/// Reads a scene as [`read`] does, and keeps what it was read from and what was understood in spite
-/// of errors.
+/// Reads a scene as [`read`] does, and keeps its tree and the parts that have no errors.
 pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let (parts, diagnostics, names) = whole(sources, &parsed, &cancel::NEVER).finish();
@@ -92,7 +93,7 @@ pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     }
 }
 
-/// Makes sense of the tree of a whole file.
+/// Lowers the tree of a whole file.
 fn whole<'s>(
     sources: &'s Sources,
     parsed: &syntax::Parsed<'s>,
@@ -110,7 +111,7 @@ fn whole<'s>(
     let mut overrides = overrides::read(sources, &mut lowering.found);
     overrides::apply(&mut overrides, &mut items);
     lowering.problems = overrides::add(overrides, &mut items, sources, lowering.names.budget());
-    // The value of a field that is set sees all names.
+    // The value of an argument may use all names, so items that are set come last.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
     lowering.items(&definitions);
@@ -119,7 +120,7 @@ fn whole<'s>(
 }
 
 impl<'s> Lowering<'s> {
-    /// Makes the scene of what was read.
+    /// Returns the scene and the problems.
     fn reading(self) -> Reading {
         let (parts, diagnostics, _) = self.finish();
         let failed = diagnostics.iter().any(Diagnostic::is_error);
@@ -129,19 +130,19 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Whether nothing was reported so far.
+    /// Whether there are no problems so far.
     fn is_right(&self) -> bool {
         self.problems.is_empty() && self.names.problems.borrow().is_empty()
     }
 
-    /// What there is of a scene, errors or not, and the names that were defined.
+    /// Returns the parts of the scene that have no errors, all problems, and the defined names.
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);
-        // How a value is written does not matter where its field is unknown.
+        // The syntax of a value does not matter if its field is unknown.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let mut of_names = Vec::from(self.names.problems.take());
-        // The uses of a name are not always found in the order of the text.
+        // Uses of a name are not always found in the order of the text.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             sort_by_span(&mut fix.edits, |edit| edit.span);
         }
@@ -152,11 +153,11 @@ impl<'s> Lowering<'s> {
             .iter_mut()
             .flat_map(|problem| &mut problem.fixes);
         fixes.for_each(|fix| fix.make_careful(self.sources));
-        // An argument that is used in several places is wrong once.
+        // An argument that is used in several places is reported once.
         let mut in_sets: Vec<Span> = Vec::new();
-        let is_told = |it: &Diagnostic| it.is("bare_angle");
+        let is_reported_once = |it: &Diagnostic| it.is("bare_angle");
         diagnostics.retain(|it| match it.labels.first().map(|label| label.span) {
-            Some(span) if span.source != SourceId::File && is_told(it) => {
+            Some(span) if span.source != SourceId::File && is_reported_once(it) => {
                 let is_new = !in_sets.contains(&span);
                 in_sets.push(span);
                 is_new
@@ -168,7 +169,7 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Whether a problem stands in one of some places, which are in the order of the text.
+/// Whether a problem is in one of several places, which are in the order of the text.
 fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
     let Some(label) = diagnostic.labels.first() else {
         return false;
@@ -180,8 +181,7 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
         && place.is_some_and(|place| place.start <= label.span.start)
 }
 
-/// Reports bytes that are not UTF-8, in place of what else was found wrong with the words that they
-/// are in.
+/// Reports bytes that are not UTF-8, and drops other problems of the words that contain them.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
     if sources.file.is_utf16() {
@@ -190,7 +190,7 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         diagnostics.push(syntax::UTF16.at(first, &[], None));
         return;
     }
-    // No text has these; two may be slips.
+    // No text contains zero bytes; up to two may be slips.
     let mut start = sources.file.text().as_bytes();
     start = start.get(..BINARY_BYTES).unwrap_or(start);
     if start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {

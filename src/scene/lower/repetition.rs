@@ -1,4 +1,4 @@
-//! Blocks with indices, each of which stands for many objects.
+//! Repeated blocks: a block with indices stands for many objects.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::{
     diagnostic::{Edit, Fix, Label},
     numbers,
     scene::error::{error, twice, warning},
-    schema::{self, Type, Value, predefined},
+    schema::{BlockRow, Type, Value, predefined},
     source::Span,
     syntax::{
         NESTING_LIMIT, shorten,
@@ -16,20 +16,20 @@ use crate::{
     },
 };
 
-/// Maximum number of objects of a scene with repetitions.
+/// Maximum number of objects of a scene with repeated blocks.
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {
-    /// Makes an object for each combination of the indices' values, the last index fastest. A
-    /// mistake ends that, so that it is reported once.
+    /// Builds an object for each combination of the indices' values, the last index fastest. A
+    /// mistake ends the repetition, so that it is reported once.
     pub(super) fn repeated(
         &mut self,
-        row: &'static schema::Block,
+        row: &'static BlockRow,
         block: &Block<'s>,
         repetition: &Repetition<'s>,
     ) {
         if repetition.indices.is_empty() {
-            // How its indices are called is not known.
+            // The names of the indices are not known; these are the likely ones.
             self.names.know_words("i j k");
             return self.unbuilt(row, block);
         }
@@ -47,8 +47,8 @@ impl<'s> Lowering<'s> {
         } else if are_right {
             match self.combinations(block, repetition) {
                 Some(combinations) => self.objects_of(row, block, repetition, combinations),
-                // What is wrong in the block is told, whatever is wrong with its head.
-                None => self.unbuilt_at_all(row, block, repetition),
+                // Problems of the block are reported even if its head is wrong.
+                None => self.unbuilt_without_indices(row, block, repetition),
             }
         }
         for index in &repetition.indices {
@@ -57,11 +57,11 @@ impl<'s> Lowering<'s> {
         self.names.restore(hidden);
     }
 
-    /// The combinations of the indices' values one behind the other, in order: each of those of the
-    /// indices before one goes on with all of its values. None if a count is wrong.
+    /// Returns the combinations of the indices' values one behind the other, in order; `None` if a
+    /// count is wrong. Each index extends the combinations of those before it by all of its values.
     ///
-    /// Counts that depend on no index are known before memory is taken for any combination, so that
-    /// a product that is too large is reported whatever the order of its factors.
+    /// Counts that depend on no index are evaluated before memory is taken for any combination, so
+    /// that a product that is too large is reported whatever the order of its factors.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
         if !self.are_counted_before(repetition) {
@@ -69,9 +69,10 @@ impl<'s> Lowering<'s> {
         }
         let mut counts = Vec::new();
         for index in &repetition.indices {
-            counts.push(match self.depends(index.count.span, repetition) {
-                true => None,
-                false => Some(self.count(index).filter(|_| self.is_wanted())?),
+            counts.push(if self.depends(index.count.span, repetition) {
+                None
+            } else {
+                Some(self.count(index).filter(|_| self.is_wanted())?)
             });
         }
         let mut combinations = Vec::new();
@@ -88,9 +89,9 @@ impl<'s> Lowering<'s> {
                     Some(count) => count,
                     None => {
                         self.set_indices(repetition, values);
-                        let told = self.problems.len();
+                        let before = self.problems.len();
                         let count = self.count(index).filter(|_| self.is_wanted());
-                        self.say_where(told, block, repetition, values);
+                        self.label_with_indices(before, block, repetition, values);
                         count?
                     }
                 };
@@ -100,7 +101,7 @@ impl<'s> Lowering<'s> {
                     self.too_many(repetition, &found);
                     return None;
                 }
-                // Where none are left behind it, there may be any number of it.
+                // If a later index has no values, this one may have any number of them.
                 if behind > 0 {
                     for last in 0..count as u32 {
                         longer.extend_from_slice(values);
@@ -113,9 +114,10 @@ impl<'s> Lowering<'s> {
         Some(combinations)
     }
 
+    /// Builds the objects of a block, one for each combination of the indices' values.
     fn objects_of(
         &mut self,
-        row: &'static schema::Block,
+        row: &'static BlockRow,
         block: &Block<'s>,
         repetition: &Repetition<'s>,
         combinations: Vec<u32>,
@@ -131,9 +133,9 @@ impl<'s> Lowering<'s> {
         });
         let changing: Vec<_> = fields.collect();
         if combinations.is_empty() {
-            let told = self.problems.len();
-            self.unbuilt_at_all(row, block, repetition);
-            if self.problems.len() == told {
+            let before = self.problems.len();
+            self.unbuilt_without_indices(row, block, repetition);
+            if self.problems.len() == before {
                 let span = repetition.span();
                 let written = shorten(self.sources.text(span));
                 let message = format!("`{written}` makes no objects");
@@ -145,7 +147,7 @@ impl<'s> Lowering<'s> {
         let mut lowered = None;
         let mut warnings = BTreeSet::new();
         for values in combinations.chunks_exact(repetition.indices.len().max(1)) {
-            let told = self.problems.len();
+            let before = self.problems.len();
             self.set_indices(repetition, values);
             self.is_odd = Some(values.iter().fold(0, |sum, value| sum ^ value) % 2 == 1);
             let lowered = match &mut lowered {
@@ -160,16 +162,16 @@ impl<'s> Lowering<'s> {
                 }
             };
             let is_built = self.is_wanted() && self.object(lowered, values);
-            if is_built && self.problems.len() > told {
-                // What one repetition was warned of is not said of the others.
-                for problem in self.problems.split_off(told) {
+            if is_built && self.problems.len() > before {
+                // A warning of one repetition is not repeated for the others.
+                for problem in self.problems.split_off(before) {
                     let place = problem.labels.first().map(|label| label.span);
                     if warnings.insert((problem.code.clone(), place)) {
                         self.problems.push(problem);
                     }
                 }
             }
-            self.say_where(told, block, repetition, values);
+            self.label_with_indices(before, block, repetition, values);
             if !is_built {
                 break;
             }
@@ -177,17 +179,17 @@ impl<'s> Lowering<'s> {
         self.is_odd = None;
     }
 
-    /// Reads the values of a block whose objects are none, or not known.
-    fn unbuilt(&mut self, row: &'static schema::Block, block: &Block<'s>) {
+    /// Evaluates the fields of a block without building any object.
+    fn unbuilt(&mut self, row: &'static BlockRow, block: &Block<'s>) {
         self.is_odd = Some(false);
         self.lowered(row, block);
         self.is_odd = None;
     }
 
-    /// What is wrong in a block is told, whatever its indices would be.
-    fn unbuilt_at_all(
+    /// Evaluates the fields of a block with unknown indices, to report its problems.
+    fn unbuilt_without_indices(
         &mut self,
-        row: &'static schema::Block,
+        row: &'static BlockRow,
         block: &Block<'s>,
         repetition: &Repetition<'s>,
     ) {
@@ -197,6 +199,7 @@ impl<'s> Lowering<'s> {
         self.unbuilt(row, block);
     }
 
+    /// Gives the indices their values.
     fn set_indices(&mut self, repetition: &Repetition<'s>, values: &[u32]) {
         for (index, &value) in repetition.indices.iter().zip(values) {
             let value = Value::Number(f64::from(value));
@@ -204,14 +207,14 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Whether an index is mentioned in a value.
+    /// Whether the text of a value mentions an index.
     fn depends(&self, value: Span, repetition: &Repetition<'_>) -> bool {
         let text = self.sources.text(value);
         let mut indices = repetition.indices.iter();
         indices.any(|index| has_name(text, index.name.text))
     }
 
-    /// Whether each count does without its own index and those behind it; reports it otherwise.
+    /// Whether no count uses its own index or a later one; reports it otherwise.
     fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
         for (at, index) in repetition.indices.iter().enumerate() {
             let mut later = repetition.indices.iter().skip(at);
@@ -219,15 +222,16 @@ impl<'s> Lowering<'s> {
             let Some((other, place)) = used else { continue };
             let name = other.name.text;
             let whole = self.sources.text(other.name.span.to(other.count.span));
-            let (message, help) = match other.name.span == index.name.span {
-                true => (
+            let (message, help) = if other.name.span == index.name.span {
+                (
                     format!("`{name}` is used in its own count"),
                     "write a number, or a `let` or an index before it".to_owned(),
-                ),
-                false => (
+                )
+            } else {
+                (
                     format!("`{name}` counts behind what it is used in"),
                     format!("write `{}` first", shorten(whole)),
-                ),
+                )
             };
             let problem = error("used_before_definition", message).at(place, "used here");
             self.problems
@@ -237,7 +241,7 @@ impl<'s> Lowering<'s> {
         true
     }
 
-    /// Whether an index can have its name; reports it otherwise.
+    /// Whether the name of an index is free; reports it otherwise.
     fn is_index(&mut self, name: Name<'s>) -> bool {
         let text = name.text;
         let problem = if let Some(what) = predefined(text) {
@@ -255,10 +259,11 @@ impl<'s> Lowering<'s> {
         false
     }
 
+    /// Warns of an index that the block does not use.
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // A name in other letters is reported where it is used.
+        // A use in other capitals is reported itself.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
@@ -276,10 +281,11 @@ impl<'s> Lowering<'s> {
             .push(problem.at(name.span, "no value depends on it").help(help));
     }
 
-    /// How many values an index has at those of the indices before it.
+    /// Returns the number of an index's values, given the values of the indices before it.
     fn count(&mut self, index: &Index<'s>) -> Option<usize> {
         let (tree, name) = (&index.count, index.name.text);
-        let value = self.trying(tree.span, |it| it.evaluate(tree, Some(Type::Number)))?;
+        let value =
+            self.with_tried_suggestions(tree.span, |it| it.evaluate(tree, Some(Type::Number)))?;
         let found = match value {
             Value::Number(number) if number >= 0.0 && number.fract() == 0.0 => {
                 return Some(number as usize);
@@ -323,15 +329,15 @@ impl<'s> Lowering<'s> {
             .push(problem.help("let the indices count less far, or take some of them away"));
     }
 
-    /// Says at which values of the indices the problems are that were found since so many.
-    fn say_where(
+    /// Adds the current values of the indices to the problems after the first `before`.
+    fn label_with_indices(
         &mut self,
-        told: usize,
+        before: usize,
         block: &Block<'s>,
         repetition: &Repetition<'s>,
         values: &[u32],
     ) {
-        if values.is_empty() || self.problems.len() == told {
+        if values.is_empty() || self.problems.len() == before {
             return;
         }
         let at = repetition.indices.iter().zip(values);
@@ -343,9 +349,9 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // What is wrong with the first one is often wrong with all.
+        // A problem of the first combination is often one of all.
         let is_first = values.iter().all(|&value| value == 0);
-        // A value that was made at one combination is none for a formula that differs by index.
+        // A value that fits one combination must not replace a formula that differs by index.
         let keeps = |edit: &Edit| {
             let mut indices = repetition.indices.iter();
             let written = self.sources.text(edit.span);
@@ -354,17 +360,17 @@ impl<'s> Lowering<'s> {
                 !has_name(written, name) || has_name(&edit.text, name)
             })
         };
-        for problem in self.problems.get_mut(told..).unwrap_or_default() {
+        for problem in self.problems.get_mut(before..).unwrap_or_default() {
             let count = problem.fixes.len();
             let help = problem.help.clone().unwrap_or_default();
             let mut edits = problem.fixes.iter().flat_map(|fix| &fix.edits);
-            let is_told = edits.any(|edit| !keeps(edit) && help.contains(&*edit.text));
+            let is_in_help = edits.any(|edit| !keeps(edit) && help.contains(&*edit.text));
             problem.fixes.retain(|fix| fix.edits.iter().all(keeps));
-            if problem.fixes.len() < count && is_told {
+            if problem.fixes.len() < count && is_in_help {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // Rows of triangles that meet in a point.
+            // Typical of rows of triangles that meet in a point.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {
@@ -380,8 +386,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports a repetition of what is no object.
-    pub(super) fn not_repeated(&mut self, row: &schema::Block, repetition: &Repetition<'s>) {
+    /// Reports a repetition of a block that is no object.
+    pub(super) fn not_repeated(&mut self, row: &BlockRow, repetition: &Repetition<'s>) {
         let (name, span) = (row.name, repetition.span());
         let help = format!("take this away; only objects are repeated: a scene has one `{name}`");
         let fix = Fix::remove("take this away", span, self.sources);
@@ -391,7 +397,7 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Where a name is used in a value.
+/// Returns the span of the first use of a name in a value.
 fn use_of(value: &tree::Value<'_>, name: Name<'_>) -> Option<Span> {
     match value.kind {
         ValueKind::Name(used) => (used == name.text).then_some(value.span),

@@ -1,15 +1,19 @@
-//! Suggestions that would be the next mistake are withdrawn.
+//! Withdraws suggestions that would lead to another error.
 //!
-//! In: how a value is evaluated. Out: the same reports, in which a name is suggested only if the
-//! value, evaluated with what that name stands for, has no error that it did not have: of a type, a
-//! number of arguments, or a condition of its field.
+//! In: a function that evaluates a value. Out: its reports, in which a name is suggested only if
+//! the value with that name has no further error: of a type, a number of arguments, or a condition
+//! of its field.
 
 use super::lowering::Lowering;
 use crate::{diagnostic::Diagnostic, scene::eval::Suggestion, source::Span};
 
 impl<'s> Lowering<'s> {
-    /// Evaluates a value in one way, and tries what is suggested there in place of its names.
-    pub(super) fn trying<T>(&mut self, value: Span, evaluate: impl Fn(&mut Self) -> T) -> T {
+    /// Evaluates a value, and then evaluates it again with each name that was suggested.
+    pub(super) fn with_tried_suggestions<T>(
+        &mut self,
+        value: Span,
+        evaluate: impl Fn(&mut Self) -> T,
+    ) -> T {
         let before = self.problems.len();
         let found = evaluate(self);
         let suggestions = self.names.suggestions.take();
@@ -33,6 +37,7 @@ impl<'s> Lowering<'s> {
         found
     }
 
+    /// Removes a suggestion from its report.
     fn withdraw(&mut self, suggestion: Suggestion<'s>) {
         self.names.withdraw(suggestion.name);
         let mut of_names = self.names.problems.borrow_mut();

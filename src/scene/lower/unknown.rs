@@ -1,51 +1,53 @@
-//! Fields that a block does not have: what was probably meant, and the field with its value as it
-//! should be.
+//! Reports fields that a block does not have, with what was probably meant.
 //!
-//! A field is renamed only where its value will do: in the block there is a place for it, and the
-//! value is of the type that it takes, or can be made to be.
+//! A fix renames a field only if the result has no error: the block may still be given that field,
+//! and the value is of its type or can be converted.
 
-use super::{
-    block::{Block, Given},
-    fixes::quoted,
-    lowering::Lowering,
-};
+use super::{fixes::quoted, lowering::Lowering};
 use crate::{
     color::Color,
     diagnostic::{Applicability, Diagnostic, Edit, Fix},
-    scene::{error::error, eval::literal, examples::example_beside, model::Image},
-    schema::{self, Field, Kind, Type, Value, css},
+    scene::{
+        error::error,
+        eval::literal,
+        examples::example_beside,
+        lowered_block::{Given, LoweredBlock},
+        model::Image,
+        shape::Shape,
+    },
+    schema::{self, BlockKind, BlockRow, FieldRow, Type, Value, css},
     source::{SourceId, Span},
     suggest,
     syntax::tree::{self, Name, ValueKind},
 };
 
-/// The largest picture.
+/// The largest possible picture.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
     background: Color::BLACK,
 };
 
-/// What a word that is no field of a block was to be.
+/// The fields that a word which is no field was probably meant to be.
 struct Meant {
     /// The fields.
     fields: Vec<&'static str>,
-    /// The same in words.
+    /// The fields in words.
     shown: String,
-    /// Writes them, where that will do.
+    /// Fixes that write the fields, if the result has no error.
     fixes: Vec<Fix>,
 }
 
 impl<'s> Lowering<'s> {
     /// Reports a field that the block does not have.
-    pub(super) fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut Block<'s>) {
+    pub(super) fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut LoweredBlock<'s>) {
         if field.value.span.source == SourceId::File {
             self.unknown.push(field.value.span);
         }
         if self.problems.is_full() {
             return;
         }
-        let meant = self.unknown(block, &field.name, &field.value);
+        let meant = self.report_unknown(block, &field.name, &field.value);
         for field in meant {
             if !block.meant.contains(&field) {
                 block.meant.push(field);
@@ -53,16 +55,16 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports words that stand for the parts of a field, or for all fields of a way, as `p1`, `p2`
-    /// and `p3` do, once for all; answers where they stand.
+    /// Reports words that stand for the parts of one field, or for all fields of a way, such as
+    /// `p1`, `p2` and `p3`, in one report. Returns the spans of the words.
     pub(super) fn parted(
         &mut self,
         fields: &[tree::Field<'s>],
-        block: &mut Block<'s>,
+        block: &mut LoweredBlock<'s>,
     ) -> Vec<Span> {
         let (row, mut taken) = (block.row, Vec::new());
         let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
-        // Most blocks have no such field.
+        // Most blocks have no unknown field.
         if !fields.iter().any(is_unknown) {
             return taken;
         }
@@ -87,7 +89,7 @@ impl<'s> Lowering<'s> {
                 if is_set || is_taken || fields.iter().any(is_given) {
                     continue;
                 }
-                self.part(row, names, first, &found, unknown.name);
+                self.report_parts(row, names, first, &found, unknown.name);
                 taken.extend(found.iter().map(|it| it.name.span));
                 block.meant.extend(names);
             }
@@ -95,9 +97,10 @@ impl<'s> Lowering<'s> {
         taken
     }
 
-    fn part(
+    /// Reports words that stand for the parts of one field, or for one of several fields each.
+    fn report_parts(
         &mut self,
-        row: &schema::Block,
+        row: &BlockRow,
         names: &[&str],
         first: &str,
         found: &[&tree::Field<'s>],
@@ -108,7 +111,7 @@ impl<'s> Lowering<'s> {
         let part = part.map_or(Type::Vector, |(part, _)| part);
         let (mut are_right, mut list) = (true, String::new());
         for it in found {
-            let value = self.tried(&it.value, Some(part));
+            let value = self.evaluate_quietly(&it.value, Some(part));
             are_right &= value.is_some_and(|value| value.kind() == part);
             list += if list.is_empty() { "" } else { ", " };
             list += self.sources.text(it.value.span);
@@ -122,11 +125,8 @@ impl<'s> Lowering<'s> {
                 (None, _) => Edit::remove(it.span, self.sources),
             });
         }
-        let shown = match only {
-            Some(_) => format!("`{written}`"),
-            None => quoted(names),
-        };
-        let is_safe = Applicability::safe_if(row.kind == Kind::Triangle);
+        let shown = only.map_or_else(|| quoted(names), |_| format!("`{written}`"));
+        let is_safe = Applicability::safe_if(row.kind == BlockKind::Triangle);
         let fix = Fix::new(format!("write {shown}"), edits).with_applicability(is_safe);
         let noun = row.noun;
         let message = format!("{noun} has no field `{}`", unknown.text);
@@ -135,16 +135,17 @@ impl<'s> Lowering<'s> {
         self.problems.push(problem.fixes(are_right.then_some(fix)));
     }
 
-    /// Reports it, also of a `--set` argument, and tells what was probably meant.
-    pub(super) fn unknown(
+    /// Reports an unknown field, also of a `--set` argument. Returns the fields that were probably
+    /// meant.
+    fn report_unknown(
         &mut self,
-        block: &Block<'s>,
+        block: &LoweredBlock<'s>,
         name: &Name<'s>,
         value: &tree::Value<'s>,
     ) -> Vec<&'static str> {
         let meant = self.meant(block, name, value);
         if meant.is_none() {
-            self.tried(value, None);
+            self.evaluate_quietly(value, None);
         }
         let noun = block.row.noun;
         let takes = format!("{noun} takes {}", suggest::list(block.row.field_names()));
@@ -168,9 +169,10 @@ impl<'s> Lowering<'s> {
         fields
     }
 
+    /// Returns what an unknown field was probably meant to be.
     fn meant(
         &mut self,
-        block: &Block<'s>,
+        block: &LoweredBlock<'s>,
         name: &Name<'s>,
         value: &tree::Value<'s>,
     ) -> Option<Meant> {
@@ -181,17 +183,15 @@ impl<'s> Lowering<'s> {
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
             let meant = self.renamed(block, field, name, value, whole);
-            // What means something elsewhere may belong there.
-            return Some(match schema::is_word(word) {
-                true => meant.unsure(),
-                false => meant,
-            });
+            // A field of another block may belong there.
+            let is_known = schema::is_word(word);
+            return Some(if is_known { meant.unsure() } else { meant });
         }
         if row.elsewhere(word).is_some() {
             return None;
         }
-        let mut perhaps: Vec<&Field> = row.fields_perhaps(word).collect();
-        // A vector of length 1 is a direction rather than a point.
+        let mut perhaps: Vec<&FieldRow> = row.fields_perhaps(word).collect();
+        // A vector of length 1 is more likely a direction than a point.
         let is_unit = |text: &str| match literal(text, Type::Vector) {
             Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
             _ => false,
@@ -226,7 +226,7 @@ impl<'s> Lowering<'s> {
                 written,
             ));
         }
-        // A field's value by itself.
+        // The word may be the value of a field whose name is missing.
         let takes = match value.kind {
             ValueKind::Missing if schema::method(word).is_some() => Some(Type::Method),
             ValueKind::Missing if css::color(word).is_some() => Some(Type::Color),
@@ -248,17 +248,14 @@ impl<'s> Lowering<'s> {
         let is_near = suggest::nearest(word, [near.name]).is_some()
             && suggest::is_only_near(word, near.name, row.field_names())
             && !schema::is_word(word);
-        Some(match is_near {
-            true => meant,
-            false => meant.unsure(),
-        })
+        Some(if is_near { meant } else { meant.unsure() })
     }
 
-    /// What was meant is this field. An argument keeps the sign between its name and its value.
+    /// Renames a field to the one that was meant. An argument keeps the `=` between name and value.
     fn renamed(
         &mut self,
-        block: &Block<'s>,
-        field: &'static Field,
+        block: &LoweredBlock<'s>,
+        field: &'static FieldRow,
         name: &Name<'s>,
         value: &tree::Value<'s>,
         whole: Span,
@@ -278,39 +275,39 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// What a value is. Of what is wrong with it only names are reported.
-    fn tried(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
+    /// Evaluates a value. Only problems of its names are reported.
+    fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
-            // It may be a word that only the unknown field knows.
+            // The name may be a word that only the unknown field accepts.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
                 return schema::method(name).map(Value::Method);
             }
         }
         let before = self.problems.len();
-        let found = self.trying(value.span, |it| it.evaluate(value, wanted));
+        let found = self.with_tried_suggestions(value.span, |it| it.evaluate(value, wanted));
         let problems = self.problems.split_off(before).into_iter();
         self.problems
             .extend(problems.filter(Diagnostic::is_of_name));
         found
     }
 
-    /// How a value has to be written for a field, if it will do or can be made to, and whether that
-    /// is sure.
+    /// Returns how a value has to be written for a field, and how sure that is; `None` if the block
+    /// cannot be given the field, or the value does not fit and cannot be converted.
     fn fitting(
         &mut self,
-        block: &Block<'s>,
-        row: &Field,
+        block: &LoweredBlock<'s>,
+        row: &FieldRow,
         value: &tree::Value<'s>,
     ) -> Option<(String, Applicability)> {
-        let found = self.tried(value, Some(row.takes));
+        let found = self.evaluate_quietly(value, Some(row.takes));
         if !block.has_place(row) || block.meant.contains(&row.name) {
             return None;
         }
         let text = self.sources.text(value.span);
         let (written, means) = match (found, &value.kind) {
             (None, ValueKind::Missing) => {
-                let example = || example_beside(row, &|other| block.given(other)?.value);
+                let example = || example_beside(row, &|other| block.given_by_name(other)?.value);
                 let is_of_file = value.span.source == SourceId::File;
                 return is_of_file.then(|| (example(), Applicability::Placeholder));
             }
@@ -334,36 +331,37 @@ impl<'s> Lowering<'s> {
         (self.errors_of(&with_it) <= self.errors_of(block)).then_some(written)
     }
 
-    /// The number of errors that a block's fields make together, none of which is reported here.
-    fn errors_of(&mut self, block: &Block<'s>) -> usize {
+    /// Returns the number of errors that the fields of a block make together, without a report.
+    fn errors_of(&mut self, block: &LoweredBlock<'s>) -> usize {
         let problems = std::mem::take(&mut self.problems);
         match block.row.kind {
-            Kind::Camera => {
+            BlockKind::Camera => {
                 self.camera(block);
             }
-            // A picture that may be larger is not known yet.
-            Kind::Sampler => {
+            // The size of the picture may not be known yet.
+            BlockKind::Sampler => {
                 self.sampler(block, Some(LARGEST));
             }
-            Kind::Image => {}
-            Kind::Sphere | Kind::Triangle | Kind::Box | Kind::Checkerboard => {
-                self.shape(block);
+            BlockKind::Image => {}
+            // Any other kind is an object.
+            _ => {
+                Shape::lower(block, &mut self.problems);
             }
         }
         let tried = std::mem::replace(&mut self.problems, problems);
         tried.iter().filter(|problem| problem.is_error()).count()
     }
 
-    /// Several fields with the parts of a value.
+    /// Writes several fields, each with a part of a value.
     fn spread(
         &mut self,
-        block: &Block<'s>,
+        block: &LoweredBlock<'s>,
         fields: &[&str],
         value: &tree::Value<'s>,
     ) -> Option<(String, Applicability)> {
         let parts = value.parts();
         if !matches!(value.kind, ValueKind::Tuple(_)) || parts.len() != fields.len() {
-            self.tried(value, None);
+            self.evaluate_quietly(value, None);
             return None;
         }
         let written = fields.iter().zip(parts).map(|(name, part)| {
@@ -373,7 +371,7 @@ impl<'s> Lowering<'s> {
         let written: Option<Vec<(String, Applicability)>> = written.collect();
         let (written, applicability): (Vec<String>, Vec<Applicability>) =
             written?.into_iter().unzip();
-        // Comments between the parts would go.
+        // Comments between the parts would be lost.
         let text = self.sources.text(value.span);
         let has_comment = text.contains("//") || text.contains("/*");
         let least = Applicability::safe_if(!has_comment);
@@ -398,7 +396,7 @@ impl Meant {
         }
     }
 
-    /// The same, where something else may be meant.
+    /// Marks the fixes as unsafe, because something else may be meant.
     fn unsure(mut self) -> Self {
         for fix in &mut self.fixes {
             fix.applicability = fix.applicability.max(Applicability::Unsafe);
@@ -406,7 +404,7 @@ impl Meant {
         self
     }
 
-    /// One or the other. A value that is of one type only tells which.
+    /// Joins two meanings. A value that fits only one of them leaves only that one's fix.
     fn or(mut self, other: Self) -> Self {
         self.shown += &format!(" or {}", other.shown);
         self.fields.extend(other.fields);

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use super::precise_cache::{ObjectCache, ObjectRef};
 use crate::{
     math::{Ball, Big, Double, Real, predicates::Plane},
-    scene::{self, Outline, Scene, Shape},
+    scene::{self, Scene, Shape, TriangleOutline},
     tracer::{
         camera::{Basis, Camera},
         crossing::SurfacePart,
@@ -124,8 +124,10 @@ impl Numbers {
         Some(match other.0 {
             Shape::Sphere(_) => return None,
             Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
-                Outline::Vertices(vertices) => Plane::through(vertices),
-                Outline::Centered(triangle) => Plane::across(triangle.normal, triangle.centroid),
+                TriangleOutline::Vertices(vertices) => Plane::through(vertices),
+                TriangleOutline::Centered(triangle) => {
+                    Plane::across(triangle.normal, triangle.centroid)
+                }
             },
             Shape::Box(scene::Cuboid { min, max, .. }) => {
                 let (axis, corner) = (usize::from(index / 2), [min, max][usize::from(index % 2)]);

@@ -5,9 +5,9 @@ use pinhole::{
     color::Color,
     diagnostic::{Fix, apply},
     editor::{
-        Analysis, Completion, Piece, Symbol, completions, definition, fixes, folds, formatting,
-        hints, hover, occurrences, presentations, renamable, rename, semantic_tokens, signature,
-        swatches, symbols,
+        Analysis, Completion, SnippetPart, Symbol, completions, definition, fixes, folds,
+        formatting, hints, hover, occurrences, presentations, renamable, rename, semantic_tokens,
+        signature, swatches, symbols,
         viewport::{Along, Drag, alone, drag},
     },
     source::{SourceId, Span},
@@ -41,8 +41,8 @@ fn offered(all: &[Completion]) -> String {
 /// Returns the text with a completion inserted, and its placeholders in `‹›`.
 pub fn inserted(text: &str, completion: &Completion) -> String {
     let insert = completion.insert.iter().map(|piece| match piece {
-        Piece::Text(text) => text.clone(),
-        Piece::Hole(value) => format!("‹{value}›"),
+        SnippetPart::Text(text) => text.clone(),
+        SnippetPart::Placeholder(value) => format!("‹{value}›"),
     });
     let mut text = text.to_owned();
     text.replace_range(completion.replaces.range(), &insert.collect::<String>());

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
-    editor::viewport::{Along, Drag, Shown, overlays},
+    editor::viewport::{Along, Drag, ShownObjects, overlays},
     inspect::{CameraFacts, inspect},
     probe::probe,
-    scene::{self, CenteredTriangle, Cuboid, Outline, Scene, Shape, View},
+    scene::{self, CenteredTriangle, Cuboid, Scene, Shape, TriangleOutline, View},
 };
 use proptest::{
     array::{uniform2, uniform3, uniform4},
@@ -53,7 +53,7 @@ fn point_of(scene: &Scene, (x, y): (f64, f64)) -> DVec2 {
 
 /// Returns the names of the first object's handles.
 fn handles(scene: &Scene) -> Vec<&'static str> {
-    let objects = overlays(scene, &Shown::First(None)).objects;
+    let objects = overlays(scene, &ShownObjects::First(None)).objects;
     objects[0].handles.iter().map(|(name, _)| *name).collect()
 }
 
@@ -75,7 +75,7 @@ fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
             at
         }
         (Shape::Triangle(triangle), _) => match (triangle.outline, handle) {
-            (Outline::Vertices(corners), "v0" | "v1" | "v2") => {
+            (TriangleOutline::Vertices(corners), "v0" | "v1" | "v2") => {
                 corners[usize::from(handle.as_bytes()[1] - b'0')]
             }
             (outline, _) => outline.centroid(),
@@ -136,7 +136,7 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
 /// the centroid to tell.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = project(scene, triangle.centroid);
-    let shown = overlays(scene, &Shown::First(None));
+    let shown = overlays(scene, &ShownObjects::First(None));
     let (_, apex) = shown.objects[0].handles[2];
     let (wanted, found) = (to - middle, apex.expect("it is seen") - middle);
     let across = wanted.perp_dot(found) / wanted.length();
@@ -197,7 +197,7 @@ proptest! {
                 prop_assert!(!is_near || !hits(to - inwards), "{}", message);
             }
             ("normal" | "spin", Shape::Triangle(triangle)) => {
-                let Outline::Centered(triangle) = triangle.outline else { unreachable!("it has a normal") };
+                let TriangleOutline::Centered(triangle) = triangle.outline else { unreachable!("it has a normal") };
                 let is_right = match handle {
                     "normal" => normal_points_to(&after, &triangle, to),
                     _ => apex_lies_towards(&after, &triangle, to),
@@ -252,7 +252,7 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
         [5.0, 3.0],
     ] {
         let scene = read(&text);
-        let all = overlays(&scene, &Shown::First(None)).objects;
+        let all = overlays(&scene, &ShownObjects::First(None)).objects;
         let (_, at) = all[0]
             .handles
             .iter()
@@ -327,8 +327,8 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
         );
         let edges = shapes.iter().map(|shape| match shape {
             Shape::Triangle(triangle) => match triangle.outline {
-                Outline::Vertices([a, b, c]) => [b - a, c - a],
-                Outline::Centered(_) => panic!("it has vertices"),
+                TriangleOutline::Vertices([a, b, c]) => [b - a, c - a],
+                TriangleOutline::Centered(_) => panic!("it has vertices"),
             },
             _ => panic!("a triangle"),
         });

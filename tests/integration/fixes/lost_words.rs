@@ -156,7 +156,7 @@ fn is_near(new: &str, old: &str) -> bool {
 
 /// Returns whether a word is the language's equivalent of another one.
 fn is_known_for(new: &str, old: &str) -> bool {
-    let is_tried = |block: &schema::Block| {
+    let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
         let mut several = block.several.iter();
         field.is_some_and(|field| field.name == new)

@@ -20,6 +20,16 @@ fn set<'a>(words: impl Iterator<Item = &'a str>) -> BTreeSet<String> {
 }
 
 #[test]
+fn the_page_adds_every_kind_of_object() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studio/page/src/index.html");
+    let text = fs::read_to_string(path).unwrap();
+    let buttons = text.split("data-kind=\"").skip(1);
+    let kinds = buttons.map(|rest| rest.split('"').next().unwrap());
+    let objects = BLOCKS.iter().filter(|it| it.is_object);
+    assert_eq!(set(kinds), set(objects.map(|it| it.name)));
+}
+
+#[test]
 fn the_page_highlights_exactly_the_words_of_the_language() {
     let file = "language.ts";
     let fields = || BLOCKS.iter().flat_map(|block| block.fields);

@@ -9,7 +9,7 @@ use pinhole::{
         oracle::{ALL_SIZES, Oracle},
         scenes,
     },
-    scene::{Camera, Count, Method, Outline, Scene, Shape, Triangle, View},
+    scene::{Camera, Count, Method, Scene, Shape, Triangle, TriangleOutline, View},
     tracer::World,
 };
 
@@ -27,7 +27,7 @@ pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
 /// Returns a triangle given by its vertices.
 pub fn by_vertices(vertices: [DVec3; 3]) -> Shape {
     Shape::Triangle(Triangle {
-        outline: Outline::Vertices(vertices),
+        outline: TriangleOutline::Vertices(vertices),
         color: Color::BLACK,
     })
 }

@@ -1,0 +1,241 @@
+//! What an object is: one of the kinds of shapes, with its colours.
+//!
+//! Each kind has a file, which says how the kind is lowered from its block, where it is and how far
+//! it reaches, what its fields are, and how it is described. Here is only the choice between them.
+//!
+//! A new kind begins with [`BlockKind`] and its row in the schema. From there the compiler leads to
+//! this room, the tracer and the comparisons with it, and the editor's viewport; tests lead to the
+//! reference of the language, the page of Studio and the random scenes of the tests. Nothing leads
+//! to values without names in `syntax::recovery::fields`, which may offer names for them.
+
+mod checkerboard;
+mod cuboid;
+mod sphere;
+mod triangle;
+
+pub use checkerboard::Checkerboard;
+pub use cuboid::Cuboid;
+pub use sphere::Sphere;
+pub use triangle::{CenteredTriangle, Triangle, TriangleOutline};
+
+use glam::DVec3;
+use serde_json::Value as Json;
+
+use super::{field_ref::FieldRef, lowered_block::LoweredBlock};
+use crate::{
+    color::Color,
+    diagnostic::Problems,
+    schema::{self, BlockKind, Value},
+};
+
+/// A shape with its colours. Lengths are in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// A sphere.
+    Sphere(Sphere),
+    /// A triangle.
+    Triangle(Triangle),
+    /// A box.
+    Box(Cuboid),
+    /// A checkerboard.
+    Checkerboard(Checkerboard),
+}
+
+/// Evaluates an expression for the contents of a shape, whichever kind it is.
+macro_rules! for_each_kind {
+    ($shape:expr, $own:ident => $result:expr) => {
+        match $shape {
+            Shape::Sphere($own) => $result,
+            Shape::Triangle($own) => $result,
+            Shape::Box($own) => $result,
+            Shape::Checkerboard($own) => $result,
+        }
+    };
+}
+
+impl Shape {
+    /// Makes an object's shape of its block. Returns `None` if a value is missing or wrong, which
+    /// is reported here only if the values contradict each other.
+    pub(super) fn lower(block: &LoweredBlock<'_>, problems: &mut Problems) -> Option<Self> {
+        Some(match block.row.kind {
+            BlockKind::Sphere => Self::Sphere(Sphere::lower(block)?),
+            BlockKind::Triangle => Self::Triangle(Triangle::lower(block, problems)?),
+            BlockKind::Box => Self::Box(Cuboid::lower(block, problems)?),
+            BlockKind::Checkerboard => Self::Checkerboard(Checkerboard::lower(block)?),
+            BlockKind::Image | BlockKind::Camera | BlockKind::Sampler => return None,
+        })
+    }
+
+    /// Returns the kind of the shape's block.
+    pub fn block_kind(&self) -> BlockKind {
+        match self {
+            Self::Sphere(_) => BlockKind::Sphere,
+            Self::Triangle(_) => BlockKind::Triangle,
+            Self::Box(_) => BlockKind::Box,
+            Self::Checkerboard(_) => BlockKind::Checkerboard,
+        }
+    }
+
+    /// Returns the keyword of the shape's block.
+    pub fn kind(&self) -> &'static str {
+        schema::of_kind(self.block_kind()).name
+    }
+
+    /// Returns the shape's colours: of a box those of the faces across x, y and z, of a
+    /// checkerboard those of the even and of the odd squares. The last one is repeated up to
+    /// three.
+    pub fn colors(&self) -> [Color; 3] {
+        for_each_kind!(self, own => own.colors())
+    }
+
+    /// Returns the contents of a checkerboard; `None` for any other shape.
+    pub fn checkerboard(&self) -> Option<&Checkerboard> {
+        match self {
+            Self::Checkerboard(board) => Some(board),
+            Self::Sphere(_) | Self::Triangle(_) | Self::Box(_) => None,
+        }
+    }
+
+    /// Returns the middle of the shape; `None` if it has no end.
+    pub fn center(&self) -> Option<DVec3> {
+        self.bounding_sphere().map(|(center, _)| center)
+    }
+
+    /// Returns the least and the greatest coordinates of the shape; `None` if it has no end. The
+    /// vertices of a triangle are computed by the caller's function.
+    pub fn bounding_box(
+        &self,
+        vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
+    ) -> Option<[DVec3; 2]> {
+        match self {
+            Self::Sphere(sphere) => Some(sphere.bounding_box()),
+            Self::Triangle(triangle) => {
+                let [a, b, c] = vertices(triangle);
+                Some([a.min(b).min(c), a.max(b).max(c)])
+            }
+            Self::Box(cuboid) => Some([cuboid.min, cuboid.max]),
+            Self::Checkerboard(_) => None,
+        }
+    }
+
+    /// Returns the centre and the radius of a sphere around the shape; `None` if the shape has no
+    /// end.
+    pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
+        for_each_kind!(self, own => own.bounding_sphere())
+    }
+
+    /// Returns the greatest of the shape's lengths and of its points' coordinates relative to a
+    /// point.
+    pub fn greatest_length(&self, from: DVec3) -> f64 {
+        for_each_kind!(self, own => own.greatest_length(from))
+    }
+
+    /// Returns the value of a field by its name; `None` if the shape is not written with it. A box
+    /// has all fields of both of its ways.
+    pub fn field(mut self, name: &str) -> Option<Value> {
+        if let Self::Box(cuboid) = &self
+            && let Some(value) = cuboid.center_or_size(name)
+        {
+            return Some(Value::Vector(value));
+        }
+        Some(self.field_mut(name)?.get())
+    }
+
+    /// Returns the shape with another value of a field that it is written with; `None` if there is
+    /// no such field, or the value is of another type. Conditions are not checked.
+    pub fn with_field(mut self, name: &str, value: Value) -> Option<Self> {
+        if let (Self::Box(cuboid), Value::Vector(to)) = (&mut self, value)
+            && cuboid.set_center_or_size(name, to)
+        {
+            return Some(self);
+        }
+        self.field_mut(name)?.set(value)?;
+        Some(self)
+    }
+
+    fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
+        for_each_kind!(self, own => own.field_mut(name))
+    }
+
+    /// Whether the language's conditions hold, as far as rounded numbers tell.
+    pub fn is_possible(&self) -> bool {
+        for_each_kind!(self, own => own.is_possible())
+    }
+
+    /// Describes the shape in one line. The vertices of a triangle are computed by the caller's
+    /// function.
+    pub fn summary(&self, vertices: impl FnOnce(&Triangle) -> [DVec3; 3]) -> String {
+        match self {
+            Self::Sphere(sphere) => sphere.summary(),
+            Self::Triangle(triangle) => triangle.summary(vertices(triangle)),
+            Self::Box(cuboid) => cuboid.summary(),
+            Self::Checkerboard(board) => board.summary(),
+        }
+    }
+
+    /// Returns the shape's members in the JSON of `inspect`. The vertices of a triangle are
+    /// computed by the caller's function.
+    pub fn facts(
+        &self,
+        vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
+    ) -> Vec<(&'static str, Json)> {
+        match self {
+            Self::Sphere(sphere) => sphere.facts(),
+            Self::Triangle(triangle) => triangle.facts(vertices(triangle)),
+            Self::Box(cuboid) => cuboid.facts(),
+            Self::Checkerboard(board) => board.facts(),
+        }
+    }
+}
+
+/// Returns colours as JSON.
+fn json_colors(colors: &[Color]) -> Json {
+    colors.iter().map(Color::to_string).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::iter;
+
+    use crate::{
+        scene::{analyze, eval::literal},
+        schema::{BLOCKS, BlockRow, FieldRow},
+        source::{Source, Sources},
+    };
+
+    /// For each way of the block's choices the fields that can be given together.
+    fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
+        let most = row.choices.iter().map(|choice| choice.ways.len()).max();
+        (0..most.unwrap_or(1)).map(move |way| {
+            let excluded = row.choices.iter().flat_map(move |choice| {
+                let taken = choice.ways[way.min(choice.ways.len() - 1)];
+                row.excludes(taken[0])
+            });
+            let excluded: Vec<&str> = excluded.collect();
+            let fields = row.fields.iter();
+            fields.filter(|it| !excluded.contains(&it.name)).collect()
+        })
+    }
+
+    #[test]
+    fn every_field_of_an_object_is_read_and_changed_by_its_name() {
+        let objects = BLOCKS.iter().filter(|row| row.is_object);
+        for (row, fields) in objects.flat_map(|row| iter::repeat(row).zip(ways(row))) {
+            let given = fields
+                .iter()
+                .map(|it| format!("{} {}", it.name, it.example));
+            let text = format!("{} {{ {} }}", row.name, given.collect::<Vec<_>>().join(" "));
+            let sources = Sources::new(Source::from_text("", text.clone()));
+            let objects = analyze(&sources).parts.objects;
+            let shape = objects.first().expect(&text).shape;
+            assert_eq!(shape.kind(), row.name);
+            for field in fields {
+                let value = literal(field.example, field.takes);
+                assert_eq!(shape.field(field.name), value, "{}: {text}", field.name);
+                let same = shape.with_field(field.name, value.unwrap());
+                assert_eq!(same, Some(shape), "{}: {text}", field.name);
+            }
+            assert!(shape.is_possible(), "{text}");
+        }
+    }
+}

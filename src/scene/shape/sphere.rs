@@ -1,0 +1,84 @@
+//! The sphere.
+
+use glam::DVec3;
+use serde_json::{Value as Json, json};
+
+use crate::{
+    color::Color,
+    numbers::{short, short_vector},
+    scene::{field_ref::FieldRef, lowered_block::LoweredBlock},
+    schema::{SPHERE, SphereFields},
+};
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// The centre.
+    pub center: DVec3,
+    /// The radius, > 0.
+    pub radius: f64,
+    /// The colour.
+    pub color: Color,
+}
+
+impl Sphere {
+    pub(super) fn lower(block: &LoweredBlock<'_>) -> Option<Self> {
+        let SphereFields {
+            center,
+            radius,
+            color,
+        } = SPHERE;
+        Some(Self {
+            center: block.value(center)?,
+            radius: block.value(radius)?,
+            color: block.value(color)?,
+        })
+    }
+
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
+        Some(match name {
+            _ if name == SPHERE.center.name => FieldRef::Vector(&mut self.center),
+            _ if name == SPHERE.radius.name => FieldRef::Number(&mut self.radius),
+            _ if name == SPHERE.color.name => FieldRef::Color(&mut self.color),
+            _ => return None,
+        })
+    }
+
+    pub(super) fn is_possible(&self) -> bool {
+        self.radius > 0.0 && self.radius.is_finite() && self.center.is_finite()
+    }
+
+    pub(super) fn colors(&self) -> [Color; 3] {
+        [self.color; 3]
+    }
+
+    pub(super) fn bounding_box(&self) -> [DVec3; 2] {
+        [self.center - self.radius, self.center + self.radius]
+    }
+
+    pub(super) fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
+        Some((self.center, self.radius))
+    }
+
+    pub(super) fn greatest_length(&self, from: DVec3) -> f64 {
+        (self.center - from).abs().max_element().max(self.radius)
+    }
+
+    pub(super) fn summary(&self) -> String {
+        let (center, radius) = (short_vector(self.center), short(self.radius));
+        format!("center {center}, radius {radius}, {}", self.color)
+    }
+
+    pub(super) fn facts(&self) -> Vec<(&'static str, Json)> {
+        let Self {
+            center,
+            radius,
+            color,
+        } = self;
+        vec![
+            ("center", json!(center.to_array())),
+            ("radius", json!(radius)),
+            ("color", json!(color.to_string())),
+        ]
+    }
+}
