@@ -48,8 +48,8 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Error bound that is asked for, in pixel areas. Truncation errors are limited to fractions of
-    /// it.
+    /// Error bound that is asked for, in pixel areas. Truncation errors are limited to fractions
+    /// of it.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,

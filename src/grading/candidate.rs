@@ -55,10 +55,10 @@ pub enum Shows {
 
 impl Mistake {
     /// Whether it is another one, but for its numbers.
-    fn is_alike(&self, other: &Self) -> bool {
+    pub fn is_alike(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Row(row, object), Self::Row(other, of)) => {
-                std::ptr::eq(*row, *other) && object == of
+                row.message == other.message && object == of
             }
             (Self::Numbers(one, _), Self::Numbers(other, _)) => one == other,
             (Self::ColorsExchanged(one, two), Self::ColorsExchanged(first, second)) => {
@@ -118,6 +118,12 @@ impl Candidate {
         }
     }
 
+    /// A program with these mistakes; none if they cannot be, or if one of them changes nothing.
+    pub fn of(scene: &Scene, mistakes: impl IntoIterator<Item = Mistake>) -> Option<Self> {
+        let mut mistakes = mistakes.into_iter();
+        mistakes.try_fold(Self::right(scene), |candidate, one| candidate.with(one))
+    }
+
     /// What a right program makes of what it draws of its scene.
     pub fn shown_rightly(&self) -> Self {
         Self {
@@ -136,16 +142,13 @@ impl Candidate {
                 let camera = Part::Camera(candidate.scene.camera);
                 let shape = object.map(|object| Part::Shape(candidate.scene.objects[object].shape));
                 let is_possible = camera.is_possible() && shape.is_none_or(|it| it.is_possible());
-                let is_same = candidate.traces_as(self)
-                    && candidate.behaviour == self.behaviour
-                    && candidate.curve == self.curve
-                    && candidate.layout == self.layout
-                    && candidate.looks.len() == self.looks.len();
+                let is_same = candidate.shows_as(self) && candidate.looks.len() == self.looks.len();
                 (is_possible && !is_same).then_some(())?;
             }
             Mistake::Numbers(parameter, numbers) => {
                 candidate.scene = parameter.put(&candidate.scene, numbers)?
             }
+            Mistake::Filter(width) if *width > 1.0 => candidate.looks.push(Look::Blur(*width)),
             Mistake::Filter(width) => candidate.behaviour.pixel = *width,
             Mistake::ColorsExchanged(one, other) => {
                 let shapes =
@@ -184,19 +187,6 @@ impl Candidate {
             .collect()
     }
 
-    /// The same, where a vector of which the direction alone counts has a length with which it is
-    /// short: its greatest number is 1.
-    pub fn leveled_numbers(&self) -> Vec<f64> {
-        let leveled = |(parameter, numbers): (&Parameter, &[f64])| -> Vec<f64> {
-            let greatest = match parameter.fields[..] {
-                ["normal" | "direction"] => numbers.iter().fold(0.0, |most, x| x.abs().max(most)),
-                _ => 1.0,
-            };
-            numbers.iter().map(|x| x / greatest).collect()
-        };
-        self.numeric().flat_map(leveled).collect()
-    }
-
     /// By how much each of these changes the picture by about so many pixels.
     pub fn steps(&self, pixels: f64) -> Vec<f64> {
         let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
@@ -213,21 +203,54 @@ impl Candidate {
                 numbers = rest;
             }
         }
-        let mut mistakes = mistakes.into_iter();
-        mistakes.try_fold(Self::right(scene), |candidate, one| candidate.with(one))
+        Self::of(scene, mistakes)
     }
 
-    /// Whether it does nothing to light but exchange channels.
+    /// Whether it does nothing to light but exchange channels, and mix it with that beside it.
     pub fn keeps_light(&self) -> bool {
         let mut looks = self.looks.iter();
-        self.curve == Curve::Right && looks.all(|look| matches!(look, Look::Channels(_)))
+        let keeps = |look: &Look| {
+            matches!(
+                look,
+                Look::Channels(_) | Look::Gray(_) | Look::Blur(_) | Look::Sharpened
+            )
+        };
+        self.curve == Curve::Right && looks.all(keeps)
     }
 
-    /// Whether it has the same mistakes as another one, but for their numbers.
+    /// Whether what is seen is moved by pixels or parts of them.
+    pub fn is_shifted(&self) -> bool {
+        self.behaviour.offset != [0.0; 2] || self.behaviour.spread != [1.0; 2]
+    }
+
+    /// Whether pixels are wider or narrower than they should be.
+    pub fn is_filtered(&self) -> bool {
+        let mut mistakes = self.mistakes.iter();
+        mistakes.any(|one| matches!(one, Mistake::Filter(_)))
+    }
+
+    /// Whether what it shows is known exactly.
+    pub fn is_exact(&self) -> bool {
+        self.behaviour.is_right() && !self.is_filtered()
+    }
+
+    /// Whether it has the same mistakes as another one, but for their numbers, or is the same
+    /// program.
     pub fn is_alike(&self, other: &Self) -> bool {
+        if self.looks.is_empty() && other.looks.is_empty() && self.shows_as(other) {
+            return true;
+        }
         let mut own = self.mistakes.iter();
         let has = |one: &Mistake| other.mistakes.iter().any(|it| it.is_alike(one));
         self.mistakes.len() == other.mistakes.len() && own.all(has)
+    }
+
+    /// Whether it is the same program as another one, but for what they do to light.
+    pub fn shows_as(&self, other: &Self) -> bool {
+        self.traces_as(other)
+            && self.behaviour == other.behaviour
+            && self.curve == other.curve
+            && self.layout == other.layout
     }
 
     /// Whether it traces what another one does, but for how they behave, and for what they do then.

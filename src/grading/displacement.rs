@@ -6,10 +6,24 @@
 //! variances that are known, and so the square of their length in these units, which has six
 //! degrees of freedom, is no greater than it may be by chance.
 
+use glam::DVec3;
+
 use super::{
     candidate::Candidate, judge::Judge, levenberg_marquardt::solve, objects::labels,
-    prediction::Prediction,
+    prediction::Prediction, strays::Strays, work,
 };
+
+/// Of so many pixels one may show something else than samples of a program that behaves otherwise,
+/// or than a JPEG.
+const MISSED: usize = 4000;
+
+/// Distance from an edge, in pixels, within which what lies two pixels off, or is seen through
+/// pixels up to five times as wide, shows another colour; and of so many pixels that do one may lie
+/// farther from it, as the wider the pixels, the less there is to see of another colour.
+const BESIDE: usize = 3;
+/// The same in a JPEG, which is coded in blocks of this side.
+const BLOCK: usize = 8;
+const INSIDE: usize = 10;
 
 /// Greatest square that is taken for chance: of normal sums one in 10^8 is greater.
 const CHANCE: f64 = 50.0;
@@ -108,8 +122,8 @@ impl Sums {
 }
 
 impl Prediction<'_> {
-    /// Whether what it shows of several colours is all noise: where most of it is exact, there is
-    /// none, and what is not exact is something else.
+    /// Whether what it shows of several colours, of what is known exactly, is all noise: where most
+    /// of it is exact, there is none, and what is not exact is something else.
     pub fn is_even(&self) -> bool {
         /// Share of a sample's variance that an error has in an exact picture, at most, and where
         /// something else is seen, at least; and the number of such pixels that is no chance.
@@ -119,11 +133,12 @@ impl Prediction<'_> {
         /// The variance from which rounding is little beside it.
         const LEAST: f64 = 1e-3;
         let share = |at: usize| {
-            let variance: f64 = self.moments.variance[at].iter().sum();
-            let is_told = variance > LEAST && !self.seen[at][0].is_nan();
+            let variance = self.moments.variance[at].element_sum();
+            let is_known = self.moments.doubt[at] == DVec3::ZERO;
+            let is_told = variance > LEAST && is_known && !self.seen[at].x.is_nan();
             let (difference, rounding) = (self.difference(at), self.error(at, 0.0));
-            let squares = (0..3).map(|i| difference[i] * difference[i] - rounding[i]);
-            is_told.then(|| squares.sum::<f64>() / variance)
+            let beyond = difference * difference - rounding;
+            is_told.then(|| beyond.element_sum() / variance)
         };
         let mut shares: Vec<f64> = (0..self.seen.len()).filter_map(share).collect();
         shares.sort_by(f64::total_cmp);
@@ -140,8 +155,8 @@ impl Prediction<'_> {
     fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.seen.len()).filter(|&at| !self.is_flat(at)) {
-            squares += self.difference(at).iter().map(|d| d * d).sum::<f64>();
-            variances += self.moments.variance[at].iter().sum::<f64>();
+            squares += self.difference(at).length_squared();
+            variances += self.moments.variance[at].element_sum();
         }
         f64::min(squares / f64::max(variances, 1e-12), 1.0)
     }
@@ -151,10 +166,9 @@ impl Prediction<'_> {
     ///
     /// To second order, a mean over a square of the width w differs from one over a pixel by
     /// (w² − 1)/24 times the sum of the second derivatives.
-    fn pixel_width(&self, share: f64, is_coded: bool) -> Option<f64> {
+    fn pixel_width(&self, deviations: &[f64], share: f64, is_coded: bool) -> Option<f64> {
         let (width, height) = (self.width, self.seen.len() / self.width);
         let mean = &self.moments.mean;
-        let deviations = self.deviations();
         let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
         for y in 1..height.max(2) - 1 {
             for at in y * width + 1..(y + 1) * width - 1 {
@@ -162,25 +176,20 @@ impl Prediction<'_> {
                 if around
                     .iter()
                     .chain([&at])
-                    .any(|&at| self.seen[at][0].is_nan())
+                    .any(|&at| self.seen[at].x.is_nan())
                 {
                     continue;
                 }
-                let bend = [0, 1, 2].map(|i| {
-                    let beside: f64 = around.iter().map(|&near| mean[near][i]).sum();
-                    beside - 4.0 * mean[at][i]
-                });
-                if bend == [0.0; 3] {
+                let beside: DVec3 = around.iter().map(|&near| mean[near]).sum();
+                let bend = beside - 4.0 * mean[at];
+                if bend == DVec3::ZERO {
                     continue;
                 }
-                let (difference, error) = (self.difference(at), self.error(at, share));
-                for i in 0..3 {
-                    let deviation = deviations[3 * at + i];
-                    let weighted = bend[i] / (deviation * deviation);
-                    seen += weighted * difference[i];
-                    all += weighted * bend[i];
-                    variance += weighted * weighted * error[i];
-                }
+                let deviation = DVec3::from_slice(&deviations[3 * at..]);
+                let weighted = bend / (deviation * deviation);
+                seen += weighted.dot(self.difference(at));
+                all += weighted.dot(bend);
+                variance += (weighted * weighted).dot(self.error(at, share));
             }
         }
         let square = 1.0 + 24.0 * seen / all.max(1e-300);
@@ -197,12 +206,16 @@ impl Prediction<'_> {
 
     /// How far each of some groups of pixels lies from where it should, if that is no chance where
     /// an error has this share of a sample's variance.
-    fn displacements(&self, share: f64, groups: &[usize]) -> Vec<Option<Displacement>> {
+    fn displacements(
+        &self,
+        deviations: &[f64],
+        share: f64,
+        groups: &[usize],
+    ) -> Vec<Option<Displacement>> {
         let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
         let (width, count) = (self.width, self.seen.len());
         let height = count / width;
         let mean = &self.moments.mean;
-        let deviations = self.deviations();
         let all = groups.iter().max().map_or(0, |most| most + 1);
         // The middle and the reach of each group.
         let mut boxes = vec![[f64::INFINITY, -f64::INFINITY, f64::INFINITY, -f64::INFINITY]; all];
@@ -220,7 +233,7 @@ impl Prediction<'_> {
         for (at, group) in groups.iter().enumerate() {
             let (x, y) = (at % width, at / width);
             let is_inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
-            if !is_inside || self.seen[at][0].is_nan() {
+            if !is_inside || self.seen[at].x.is_nan() {
                 continue;
             }
             let difference = self.difference(at);
@@ -258,50 +271,116 @@ impl Prediction<'_> {
 impl Judge<'_> {
     /// Whether a candidate explains the picture: no pixel of one colour shows another, and what
     /// edges show lies where it should, and is as sharp.
+    ///
+    /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its
+    /// cells is so in a pixel, if what the cells show is exact. Then pixels of one colour are, and
+    /// edges last.
     pub fn explains(&self, candidate: &Candidate) -> bool {
-        self.explains_all(candidate)
-            && Edges::of(self, candidate).are_right()
-            && self.is_even(candidate)
+        let is_possible = !self.is_exact(candidate)
+            || self
+                .predicted(candidate, &self.middle)
+                .is_some_and(|shown| shown.strays().are_no_more(0));
+        let is_explained = || {
+            let shown = self.predicted(candidate, &self.fine)?;
+            let strays = shown.strays();
+            let are_areas_right = strays.are_no_more(self.missed(candidate));
+            Some(are_areas_right && Left::of(self, candidate, &shown, &strays).is_noise())
+        };
+        is_possible && is_explained() == Some(true)
+    }
+
+    /// How many pixels of one colour may show another: samples miss corners of a square here and
+    /// there, and a JPEG is coded otherwise.
+    fn missed(&self, candidate: &Candidate) -> usize {
+        if self.is_exact(candidate) {
+            0
+        } else {
+            self.fine.grid.count().div_ceil(MISSED)
+        }
+    }
+
+    /// Whether it is known exactly what a candidate shows: what samples make, or a JPEG, is not.
+    fn is_exact(&self, candidate: &Candidate) -> bool {
+        candidate.is_exact() && self.fine.jpeg.is_none()
     }
 }
 
-/// What is wrong with a picture's edges.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Edges {
-    /// Where they are.
+/// What a candidate leaves on the pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Left {
+    /// How many pixels of one colour show another.
+    pub strays: usize,
+    /// Whether these are no more than are missed, and what edges show may be noise.
+    pub are_areas_right: bool,
+    /// Whether these lie beside edges.
+    pub is_at_edges: bool,
+    /// Whether what pixels of several colours show is all noise.
+    pub is_even: bool,
+    /// Where edges are, if not where they should; this and the next are asked only if strays lie
+    /// at edges.
     pub off: Option<Displacement>,
-    /// How wide the pixels are that they are seen through.
+    /// How wide the pixels are that edges are seen through, if not as they should.
     pub width: Option<f64>,
 }
 
-impl Edges {
-    /// What a candidate leaves wrong.
-    pub fn of(judge: &Judge, candidate: &Candidate) -> Self {
-        edges(judge, candidate).unwrap_or_default()
+impl Left {
+    /// What a candidate leaves; none if that is not known.
+    pub fn by(judge: &Judge, candidate: &Candidate) -> Option<Self> {
+        let shown = judge.predicted(candidate, &judge.fine)?;
+        Some(Self::of(judge, candidate, &shown, &shown.strays()))
     }
 
-    /// Whether nothing is.
-    pub fn are_right(&self) -> bool {
-        self.off.is_none() && self.width.is_none()
+    /// What a candidate leaves that shows this, and so many strays.
+    fn of(judge: &Judge, candidate: &Candidate, shown: &Prediction, strays: &Strays) -> Self {
+        let level = &judge.fine;
+        judge.work.spend(work::LEFT * level.grid.count() as f64);
+        let missed = judge.missed(candidate);
+        let beside = level.jpeg.map_or(BESIDE, |_| BLOCK);
+        let is_inside = |at: &&usize| level.grid.around(**at, beside).all(|at| shown.is_flat(at));
+        let inside = strays.pixels.iter().filter(is_inside).count();
+        let is_at_edges = inside <= missed + strays.pixels.len() / INSIDE;
+        let (off, width) = match is_at_edges {
+            true => edges(judge, candidate, shown),
+            false => (None, None),
+        };
+        Self {
+            strays: strays.pixels.len(),
+            are_areas_right: strays.are_no_more(missed),
+            is_at_edges,
+            is_even: candidate.is_filtered() || shown.is_even(),
+            off,
+            width,
+        }
+    }
+
+    /// Whether it is no more than sampling noise.
+    pub fn is_noise(&self) -> bool {
+        self.are_areas_right && self.off.is_none() && self.width.is_none() && self.is_even
     }
 }
 
 /// How far the picture, or an object, lies from where a candidate shows it, if that is no chance
-/// and not due to where few samples lie; and how much less sharp it is.
-fn edges(judge: &Judge, candidate: &Candidate) -> Option<Edges> {
+/// and not due to where few samples lie; and how wide pixels are, if not as they should.
+fn edges(
+    judge: &Judge,
+    candidate: &Candidate,
+    shown: &Prediction,
+) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
-    let judged = judge.judged(candidate, level)?;
     let labels = labels(judge, candidate, candidate.layout, &level.grid);
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
-    let prediction = level.predict(&judged.rendering);
     let share = match level.jpeg {
         // What it does to an edge would be taken for all that few samples do.
-        Some(_) => prediction.share(),
-        None => judged.score.samples.map_or(judged.score.share, |n| 1.0 / n),
+        Some(_) => shown.share(),
+        None => {
+            let score = shown.score();
+            score.samples.map_or(score.share, |n| 1.0 / n)
+        }
     };
+    let deviations = shown.deviations();
     let beyond = |groups: &[usize], is_beyond: &dyn Fn(&Displacement) -> bool| {
-        let all = prediction.displacements(share, groups).into_iter();
+        let all = shown.displacements(&deviations, share, groups).into_iter();
         let all = all.flatten().filter(is_beyond);
         all.max_by(|one, other| one.far.total_cmp(&other.far))
     };
@@ -316,11 +395,12 @@ fn edges(judge: &Judge, candidate: &Candidate) -> Option<Edges> {
     let [none, of_one, of_coded] = NONE_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    Some(Edges {
-        off: off.or_else(|| beyond(&groups, &|one| one.far > of_object)),
-        // A width is told once; and what is done to light is no mean of light.
-        width: (candidate.behaviour.pixel == 1.0 && candidate.keeps_light())
-            .then(|| prediction.pixel_width(share, level.jpeg.is_some()))
-            .flatten(),
-    })
+    // A width is told once; and what is done to light is no mean of light.
+    let is_width_told = candidate.is_filtered() || !candidate.keeps_light();
+    let width =
+        (!is_width_told).then(|| shown.pixel_width(&deviations, share, level.jpeg.is_some()));
+    (
+        off.or_else(|| beyond(&groups, &|one| one.far > of_object)),
+        width.flatten(),
+    )
 }

@@ -5,6 +5,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::{
     light::{Curve, is_near},
     moments::Moments,
@@ -23,8 +25,8 @@ use crate::film::Film;
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
-    let may_be_empty = |at: usize| !is_near(moments.mean[at], empty);
-    let is_flat = |at: usize| moments.variance[at].iter().all(|one| *one < FLAT);
+    let may_be_empty = |at: usize| !is_near(moments.mean[at].into(), empty);
+    let is_flat = |at: usize| moments.variance[at].max_element() < FLAT;
     // Of those that tell, whether they are empty.
     let told: Vec<Option<bool>> = (0..moments.mean.len())
         .map(|at| (is_flat(at) && may_be_empty(at)).then(|| is_empty(at)))
@@ -56,13 +58,8 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
             *pixel = [f64::NAN; 3];
         }
     }
-    let prediction = Prediction {
-        seen: without.pixels(),
-        width,
-        moments: Arc::clone(moments),
-        curve: Curve::Right,
-        is_cut_off: false,
-    };
+    let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
+    let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Right);
     // The noise is that of as many samples as one over the mean of 1/n over the pixels that have
     // some, which is less than one more than n.
     let samples = prediction.score().samples?;

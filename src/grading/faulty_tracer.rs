@@ -34,34 +34,40 @@ pub enum Visible {
     NearestBothWays,
 }
 
-/// Which squares of a checkerboard have the first colour.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Squares {
+/// Which squares of a checkerboard have the first colour: that in which a point lies, told in
+/// squares.
+#[derive(Clone, Copy, Debug)]
+pub struct Squares(pub fn(f64, f64) -> bool);
+
+impl Default for Squares {
     /// As it should be: those where floor(x) + floor(z) is even.
-    #[default]
-    Floored,
-    /// Those where trunc(x) + trunc(z) is even.
-    Truncated,
-    /// Those where the remainder of floor(x) + floor(z), which may be −1, is not 1.
-    SignedSum,
-    /// Those where the remainders of floor(x) and floor(z), which may be −1, are equal.
-    SignedParts,
-    /// Those where round(x) + round(z) is even.
-    Rounded,
-    /// Those where trunc(x) + floor(z) is even.
-    TruncatedX,
-    /// Those where floor(x) + trunc(z) is even.
-    TruncatedZ,
-    /// Those where floor(x + z) is even.
-    Sum,
-    /// Those where floor(x) is even.
-    StripesX,
-    /// Those where floor(z) is even.
-    StripesZ,
-    /// Those where floor(x) and floor(z) are both even.
-    BothEven,
-    /// Those where sin(x) sin(z) is not less than 0.
-    Sines,
+    fn default() -> Self {
+        Self(|x, z| is_even(floor(x), floor(z)))
+    }
+}
+
+impl PartialEq for Squares {
+    /// Two are the same if they tell the same of points all around the origin. A function may have
+    /// several addresses, so these alone do not tell functions apart.
+    fn eq(&self, other: &Self) -> bool {
+        let coordinates = || (-6..6).map(|i| 0.25 + 0.5 * f64::from(i));
+        std::ptr::fn_addr_eq(self.0, other.0)
+            || coordinates().all(|x| coordinates().all(|z| self.0(x, z) == other.0(x, z)))
+    }
+}
+
+/// The whole number that is not greater.
+///
+/// `f64::floor` is a call where a processor need not have an instruction for it, and each ray that
+/// meets a board asks. Beyond what an i64 holds no square is told from another.
+pub fn floor(x: f64) -> i64 {
+    let towards_zero = x as i64;
+    towards_zero.wrapping_sub(i64::from(towards_zero as f64 > x))
+}
+
+/// Whether a sum is even.
+pub fn is_even(x: i64, z: i64) -> bool {
+    x.wrapping_add(z) & 1 == 0
 }
 
 /// How rays are made.
@@ -81,6 +87,18 @@ pub enum Rays {
     Parallel(f64),
     /// Their angle with the view direction grows as the distance from the picture's middle does.
     Fisheye,
+}
+
+/// How spheres are hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Spheres {
+    /// As they should be.
+    #[default]
+    Right,
+    /// By the formula for rays of length 1, with the view plane at this distance.
+    UnitRays(f64),
+    /// In the nearer of two points alone.
+    LesserRoot,
 }
 
 /// What is wrong with how a shape is hit.
@@ -127,8 +145,8 @@ pub struct Behaviour {
     pub rays: Rays,
     /// Whether near and far are distances from the eye, not depths.
     pub clips_distances: bool,
-    /// The distance of the view plane, if spheres are hit by the formula for rays of length 1.
-    pub unit_rays: Option<f64>,
+    /// How spheres are hit.
+    pub spheres: Spheres,
     /// An object that is hit wrongly.
     pub hit: Option<(usize, Hit)>,
 }
@@ -144,7 +162,7 @@ impl Default for Behaviour {
             pixel: 1.0,
             rays: Rays::default(),
             clips_distances: false,
-            unit_rays: None,
+            spheres: Spheres::default(),
             hit: None,
         }
     }
@@ -161,7 +179,7 @@ impl Behaviour {
         let is_shifted = self.offset != [0.0; 2] || self.spread != [1.0; 2];
         !is_shifted
             && self.pixel == 1.0
-            && self.unit_rays.is_none()
+            && !matches!(self.spheres, Spheres::UnitRays(_))
             && !self.sees_behind()
             && self.aspect == 1.0
             && self.rays == Rays::Right
@@ -174,30 +192,6 @@ impl Behaviour {
     }
 }
 
-impl Squares {
-    /// Whether the square that a point lies in has the first colour.
-    fn is_first(self, x: f64, z: f64) -> bool {
-        // `f64::floor` is a call where a processor need not have an instruction for it, and each
-        // ray that meets a board asks. Beyond what an i64 holds no square is told from another.
-        let trunc = |x: f64| x as i64;
-        let floor = |x: f64| trunc(x).wrapping_sub(i64::from(trunc(x) as f64 > x));
-        match self {
-            Self::Floored => floor(x).wrapping_add(floor(z)) & 1 == 0,
-            Self::Truncated => trunc(x).wrapping_add(trunc(z)) & 1 == 0,
-            Self::SignedSum => floor(x).wrapping_add(floor(z)) % 2 != 1,
-            Self::SignedParts => floor(x) % 2 == floor(z) % 2,
-            Self::Rounded => floor(x + 0.5).wrapping_add(floor(z + 0.5)) & 1 == 0,
-            Self::TruncatedX => trunc(x).wrapping_add(floor(z)) & 1 == 0,
-            Self::TruncatedZ => floor(x).wrapping_add(trunc(z)) & 1 == 0,
-            Self::Sum => floor(x + z) & 1 == 0,
-            Self::StripesX => floor(x) & 1 == 0,
-            Self::StripesZ => floor(z) & 1 == 0,
-            Self::BothEven => (floor(x) | floor(z)) & 1 == 0,
-            Self::Sines => libm::sin(x) * libm::sin(z) >= 0.0,
-        }
-    }
-}
-
 /// An object prepared.
 struct Traced {
     shape: Shape,
@@ -206,7 +200,7 @@ struct Traced {
     /// The rectangle of the picture that it lies in, or all of it.
     bounds: [DVec2; 2],
     /// What is averaged of its first and its second colour.
-    colors: [[f64; 3]; 3],
+    colors: [DVec3; 3],
 }
 
 /// A scene prepared.
@@ -217,7 +211,7 @@ pub struct FaultyTracer {
     far: f64,
     objects: Vec<Traced>,
     /// What is averaged of the background.
-    background: [f64; 3],
+    background: DVec3,
 }
 
 impl FaultyTracer {
@@ -228,7 +222,7 @@ impl FaultyTracer {
         let right_projection = projection;
         let is_in_place = matches!(behaviour.rays, Rays::Right)
             && behaviour.aspect == 1.0
-            && behaviour.unit_rays.is_none();
+            && !matches!(behaviour.spheres, Spheres::UnitRays(_));
         let angle = radians(scene.camera.roll);
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let unrolled = cos * projection.right + sin * projection.top;
@@ -243,7 +237,8 @@ impl FaultyTracer {
             }
             Rays::NewRight => projection.top = sin * projection.right + cos * top,
         }
-        let averaged = |color: Color| color.to_linear().map(|light| averaged.light(light));
+        let averaged =
+            |color: Color| DVec3::from(color.to_linear()).map(|light| averaged.light(light));
         let objects = scene.objects.iter().enumerate().map(|(at, object)| {
             let mut shape = by_vertices(object.shape);
             let hit = behaviour
@@ -276,15 +271,8 @@ impl FaultyTracer {
 
     /// What the pixels of a part of the picture show, with so many samples in each.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        // Around the pixel's middle: in a narrow square, or spread by the logistic distribution of
-        // the variance of a wide one, which is near what filters, blurs and enlarged pictures do.
-        let width = self.behaviour.pixel;
-        let logit = |at: f64| libm::log(at / (1.0 - at));
-        let spread = |at: f64| width * logit(at) / std::f64::consts::TAU;
-        let of_pixel = |place: DVec2| match width > 1.0 {
-            true => 0.5 + DVec2::new(spread(place.x), spread(place.y)),
-            false => 0.5 + (place - 0.5) * width,
-        };
+        // Around the pixel's middle.
+        let of_pixel = |place: DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
@@ -303,26 +291,24 @@ impl FaultyTracer {
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
                 is_flat[column] = true;
-                return (first, [0.0; 3]);
+                return (first, DVec3::ZERO);
             }
-            let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
+            let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
             for &place in &places[1..] {
-                let color = self.color(corner + place);
-                for i in 0..3 {
-                    let more = color[i] - first[i];
-                    sums[i] += more;
-                    squares[i] += more * more;
-                }
+                let more = self.color(corner + place) - first;
+                (sum, squares) = (sum + more, squares + more * more);
             }
-            let more = sums.map(|sum| sum / count);
-            is_flat[column] = squares == [0.0; 3];
-            let variance = [0, 1, 2].map(|i| (squares[i] / count - more[i] * more[i]).max(0.0));
-            ([0, 1, 2].map(|i| first[i] + more[i]), variance)
+            let more = sum / count;
+            is_flat[column] = squares == DVec3::ZERO;
+            (
+                first + more,
+                (squares / count - more * more).max(DVec3::ZERO),
+            )
         };
         Moments::exact(part.iter().map(pixel))
     }
 
-    fn color(&self, place: DVec2) -> [f64; 3] {
+    fn color(&self, place: DVec2) -> DVec3 {
         let [spread, offset] = [self.behaviour.spread, self.behaviour.offset].map(DVec2::from);
         let place = place * spread + offset;
         let middle = self.projection.size.x / 2.0;
@@ -335,7 +321,7 @@ impl FaultyTracer {
     }
 
     /// The colour of the object that is seen at a place.
-    fn seen(&self, place: DVec2) -> Option<[f64; 3]> {
+    fn seen(&self, place: DVec2) -> Option<DVec3> {
         let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
         if let Rays::Parallel(distance) = self.behaviour.rays {
             let ahead = self.projection.ahead;
@@ -360,9 +346,13 @@ impl FaultyTracer {
                 continue;
             }
             let crossings = match (object.hit, &object.shape) {
-                (_, Shape::Sphere(sphere)) if let Some(distance) = self.behaviour.unit_rays => {
-                    with_unit_rays(sphere, distance, eye, ray)
-                }
+                (_, Shape::Sphere(sphere)) => match self.behaviour.spheres {
+                    Spheres::UnitRays(distance) => with_unit_rays(sphere, distance, eye, ray),
+                    Spheres::LesserRoot => {
+                        crossings(&object.shape, eye, ray, 0.0).map(|[lesser, _]| [lesser; 2])
+                    }
+                    Spheres::Right => crossings(&object.shape, eye, ray, 0.0),
+                },
                 (Some(hit), Shape::Triangle(triangle)) => {
                     on_plane(&vertices(&triangle.outline), hit, eye, ray)
                 }
@@ -387,7 +377,7 @@ impl FaultyTracer {
         let color = match object.shape {
             Shape::Checkerboard(Checkerboard { square, .. }) => {
                 let [x, z] = [point.x, point.z].map(|at| at / square);
-                usize::from(!self.behaviour.squares.is_first(x, z))
+                usize::from(!(self.behaviour.squares.0)(x, z))
             }
             Shape::Box(Cuboid { min, max, .. }) => {
                 // That of the nearest face.

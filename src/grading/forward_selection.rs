@@ -1,318 +1,239 @@
-//! Forward selection: the mistake that explains most, then the table once more on what is left, at
-//! most four times; and where that leads nowhere, the next best in its place.
+//! Forward selection with a beam: the table is tried on what each of the few best sets of mistakes
+//! leaves, one mistake more at a time, until one of them explains the picture.
 //!
-//! A coarse grid tells which mistakes are worth a look, and a tiny one before it which numbers are;
-//! a middle one fits numbers and judges all of them. What shows only where colours meet is judged
-//! on the pixels.
+//! A tiny grid tells which sets are worth a look. These have their numbers fitted to a coarse grid,
+//! and those that leave little to a middle one, which judges them. What shows only where colours
+//! meet is judged on the pixels.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::collections::BTreeSet;
 
 use super::{
-    candidate::{Candidate, Mistake, Row, Shows},
-    displacement::Edges,
+    candidate::{Candidate, Mistake, Shows},
+    displacement::Left,
+    edge_rows::{ROUNDS, explained_with, refitted, rows_in_areas},
     joint,
-    judge::{CELL_STEP, Judge, Judged},
-    levenberg_marquardt::absolute,
-    mistakes::{OBJECT_ROWS, ROWS},
+    judge::{Judge, Judged, least},
+    level::Level,
     numeric_mistakes::numeric_mistakes,
     objects::labels,
     patch::patch,
-    plain_numbers::{plain, shortened},
+    plain_numbers::plain,
 };
 use crate::cancel::{self, Cancelled};
 
-/// So many mistakes are named at most.
-const MOST_MISTAKES: usize = 4;
+/// Maximum number of mistakes that are looked for, beside those that show at edges.
+const MOST_MISTAKES: usize = 3;
 
-/// So many are fitted and judged at a time, of those that leave least on the coarse grid.
-const FINALISTS: usize = 4;
+/// Number of sets of mistakes that are looked at, and from which it goes on, of each size.
+const BEAM: usize = 6;
 
-/// So many programs that behave otherwise are looked at on the coarse grid.
-const BEHAVING: usize = 12;
+/// Factors by which a set of mistakes has to leave less on the tiny grid, for each of them and for
+/// each number that tells it, to be as good as one without.
+const MISTAKE: f64 = 1.05;
+const NUMBER: f64 = 1.03;
 
-/// Rows that turn the picture or mirror it.
-const TURNS: [&str; 4] = ["mirrored", "upside_down", "turned_180", "up_negated"];
+/// Number of rows that are looked at in an exact picture, those that leave least on the tiny grid:
+/// to look at all of them there took as long as to find a single mistake otherwise takes.
+const EXACT_ROWS: usize = 24;
 
-/// Rounds of fitting numbers to the middle grid, new ones from a fit to a coarser one, and earlier
-/// ones from this.
-const ROUNDS: usize = 4;
+/// Maximum number of sets of rows that were made together that are told of.
+const TOGETHER: usize = 2;
+
+/// A set of mistakes is looked at at once if it leaves less than this part of what the set that it
+/// is made from leaves.
+const LESS: f64 = 0.5;
+
+/// Share of what is wrong for certain with a right program's picture, in squares, below which a
+/// candidate is near the picture.
+const NEAR_SQUARES: f64 = 0.1;
 
 /// So many objects are looked at, those in and beside which most is wrong.
 const SUSPECTS: usize = 12;
 
-/// A row about edges is told if the part that is seen of what it changes is that of one, to within
-/// this, and so many standard deviations from none; in a JPEG, if it leaves less than such a part
-/// of the squared difference.
-const PART: f64 = 0.3;
-const SURE: f64 = 7.0;
-const LEFT_IN_CODED: f64 = 0.25;
-
-/// Ids of the rows that move what is seen by pixels or parts of them.
-const PIXELS: [&str; 2] = ["half_pixel", "window_one_less"];
-
-/// Id of the only row about edges that can be told from a JPEG.
-const IN_CODED: &str = "averaged_encoded";
-
-/// Factors of the width that edges tell, of which the likeliest is taken.
-const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
-/// Least width of a pixel that is called wide.
-const LEAST_WIDE: f64 = 1.1;
-/// Widths of narrow pixels, of which the likeliest is taken: edges tell them less well.
-const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
-
-/// A picture is a little wrong if at most one of so many pixels is.
-const LITTLE: usize = 20;
-
-/// Half a pixel is looked for where the picture lies no farther than this from it, in pixels.
-const NEAR: f64 = 0.5;
-
-/// Maximum number of rows that move what is seen and are looked at, those nearest to what edges
-/// tell.
-const SHIFTS: usize = 4;
-
-/// Of rows that show in areas, a tiny grid has to show so many standard deviations and such a part
-/// for them to be looked at where a picture is explained without.
-const HINTED: f64 = 3.0;
-const HINTED_PART: f64 = 0.3;
+/// An object is not looked at if less than this part of what is wrong at another is wrong at it:
+/// what is left of noise there is no more.
+const LITTLE: f64 = 0.03;
 
 /// The mistakes that explain a picture best, from what a program without mistakes would have made,
 /// and whether they explain it.
 pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
-    let right = Candidate::right(judge.scene);
-    let Some(best) = judge.judged(&right, &judge.middle) else {
-        return Ok(None);
+    let mut search = Search {
+        judge,
+        known: Vec::new(),
+        nearest: None,
+        explained: None,
     };
-    // Candidates not looked at yet, each with its detours: how many places behind the best its
-    // mistakes stood when they were chosen, in sum.
-    let mut open = vec![(0, best)];
-    let mut nearest: Option<Judged> = None;
-    let mut seen: Vec<Candidate> = Vec::new();
-    let mut explained = None;
-    // The fewest detours first, and of these the candidate that was made last, which goes on where
-    // the one before ended.
-    while let Some(at) = (0..open.len()).min_by_key(|&at| open[at].0) {
-        let (detours, mut from) = open.remove(at);
-        explained = explained_with(judge, from.candidate());
-        // Numbers that are not the right ones leave a little, which others would seem to explain.
-        if explained.is_none() && !from.candidate().numbers().is_empty() {
-            let plain = plain(judge, from.candidate());
-            explained = explained_with(judge, &plain);
-            from = judge.judged(&plain, &judge.middle).unwrap_or(from);
-        }
-        if explained.is_some() || !judge.work.may_go_on() {
-            nearest = nearer(nearest, from);
-            break;
-        }
-        if from.candidate().mistakes.len() < MOST_MISTAKES {
-            let next = step(judge, &from).into_iter();
-            let next = next.filter(|next| !seen.iter().any(|one| one.is_alike(next.candidate())));
-            let next: Vec<Judged> = next.collect();
-            seen.extend(next.iter().map(|next| next.candidate().clone()));
-            let next = (detours..).zip(next).collect::<Vec<_>>();
-            open.splice(0..0, next);
-        }
-        nearest = nearer(nearest, from);
+    search.run();
+    // The last set may have been found when nothing was left to fit its numbers.
+    if search.explained.is_none() && judge.work.is_cut() {
+        let nearest = search.nearest.clone();
+        judge
+            .work
+            .without_limit(|| nearest.and_then(|(_, nearest)| search.look_at(&nearest)));
     }
-    let Some(best) = nearest else {
+    let Some((_, nearest)) = search.nearest else {
         return Ok(None);
     };
-    let is_explained = explained.is_some();
-    let last = match explained {
-        None => best.candidate().clone(),
+    let is_explained = search.explained.is_some();
+    let last = match search.explained.map(|(_, explained)| explained) {
+        None => nearest,
         Some(right) if right.mistakes.is_empty() => right,
         Some(explained) => {
-            let fewest = judge.work.without_limit(|| fewest(judge, &explained));
-            let plainest = plain(judge, &fewest);
-            match judge.explains(&plainest) {
-                true => plainest,
-                false => fewest,
-            }
+            // What explains the picture is told as plainly as can be, however much work that is.
+            judge.work.without_limit(|| {
+                let fewest = fewest(judge, &explained);
+                let plainest = plain(judge, &fewest);
+                match judge.explains(&plainest) {
+                    true => plainest,
+                    false => fewest,
+                }
+            })
         }
     };
     let found = judge
         .work
-        .without_limit(|| judge.judged(&last, &judge.edges));
+        .without_limit(|| judge.judged(&last, judge.edges()));
     let found = found.map(|found| (found, is_explained));
     cancel::unless_set(judge.cancel, found)
 }
 
-/// The candidate of less cost.
-fn nearer(one: Option<Judged>, other: Judged) -> Option<Judged> {
-    match one {
-        Some(one) if one.cost <= other.cost => Some(one),
-        _ => Some(other),
-    }
+/// A search for mistakes.
+struct Search<'a> {
+    judge: &'a Judge<'a>,
+    /// The candidates that were looked at.
+    known: Vec<Candidate>,
+    /// The candidate of least cost, and that.
+    nearest: Option<(f64, Candidate)>,
+    /// The candidate of fewest numbers, and of these of least cost, that explains the picture, and
+    /// that cost.
+    explained: Option<(f64, Candidate)>,
 }
 
-/// The same with what explains a picture beside it: nothing, or a row that shows where colours
-/// meet; none if it is not explained so.
-fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
-    // What is found so far is judged, however much work that is.
-    let (are_areas_right, wrong, null) = judge.work.without_limit(|| {
-        let are_areas_right = judge.explains_all(candidate);
-        let wrong = Edges::of(judge, candidate);
-        (
-            are_areas_right,
-            wrong,
-            judge.judged(candidate, &judge.edges),
-        )
-    });
-    let null = null?;
-    // Cut off bytes and another curve show in whole areas.
-    let strays = judge.predicted(candidate, &judge.fine)?.strays();
-    let is_much_wrong = strays.pixels.len() * 50 > judge.fine.grid.count();
-    let is_little_wrong = strays.pixels.len() * LITTLE <= judge.fine.grid.count();
-    let predicted = judge.edges.predict(&null.rendering);
-    judge.edges.compare_with(Arc::clone(&null.rendering));
-    // What is done to light, and what a JPEG does, makes other noise at edges.
-    let is_coded = judge.fine.jpeg.is_some();
-    let may = candidate.keeps_light() && !is_coded;
-    let is_shifted =
-        candidate.behaviour.offset != [0.0; 2] || candidate.behaviour.spread != [1.0; 2];
-    let may_shift = !is_shifted && is_little_wrong;
-    let by = wrong.off.filter(|_| may_shift).map(|off| off.by);
-    let rows = ROWS.iter().filter(|row| match row.shows {
-        Shows::InAreas => false,
-        Shows::AtEdges if PIXELS.contains(&row.id) => false,
-        // What the faulty tracer makes is not known well enough at edges.
-        Shows::AtEdges => {
-            let may = may || candidate.keeps_light() && row.id == IN_CODED;
-            may && are_areas_right && candidate.behaviour.is_right()
-        }
-        Shows::Everywhere => may && is_much_wrong,
-    });
-    let rows = rows.map(|row| Mistake::Row(row, None));
-    let rows = rows.chain(by.into_iter().flat_map(|by| shifts(candidate, by)));
-    let is_explained = are_areas_right && wrong.are_right() && judge.is_even(candidate);
-    let hinted = match is_explained && may && candidate.mistakes.is_empty() {
-        true => hinted(judge, candidate),
-        false => Vec::new(),
-    };
-    let told = |mistake: Mistake| {
-        judge.work.may_go_on().then_some(())?;
-        let with = candidate.with(mistake.clone())?;
-        let rendering = judge.edges.render(&with, &judge.work)?;
-        let [part, deviations] = predicted.part_seen(&null.score, &judge.edges.predict(&rendering));
-        let is_told = match is_coded {
-            false => (part - 1.0).abs() < PART && deviations > SURE,
-            // The coding blurs and weakens it.
-            true => {
-                let with = judge.judged(&with, &judge.edges)?;
-                with.score.squares < LEFT_IN_CODED * null.score.squares
+impl Search<'_> {
+    fn run(&mut self) {
+        let judge = self.judge;
+        let mut beam = Vec::from_iter(self.look_at(&Candidate::right(judge.scene)));
+        for _ in 0..MOST_MISTAKES {
+            let mut looked_at: Vec<Judged> = Vec::new();
+            let mut next: Vec<(f64, Candidate)> = Vec::new();
+            for step in beam.iter().map_while(|from| Step::from(judge, from)) {
+                let enough = LESS * weighed(step.left, step.from.candidate());
+                for way in Step::WAYS {
+                    if self.explained.is_some() || !judge.work.may_go_on() {
+                        break;
+                    }
+                    for (less, one) in step.more(way) {
+                        let is_known = |other: &Candidate| other.is_alike(&one);
+                        if self.known.iter().any(is_known) {
+                            continue;
+                        }
+                        match next.iter_mut().find(|(_, other)| is_known(other)) {
+                            Some(other) if other.0 <= less => {}
+                            Some(other) => *other = (less, one),
+                            None if less < enough && looked_at.len() < BEAM => {
+                                looked_at.extend(self.look_at(&one));
+                            }
+                            None => next.push((less, one)),
+                        }
+                    }
+                }
             }
-        };
-        let is_told =
-            is_told || matches!(mistake, Mistake::Row(row, _) if row.shows == Shows::Everywhere);
-        is_told.then_some((deviations, with))
-    };
-    let mut told: Vec<_> = rows.chain(hinted).filter_map(told).collect();
-    told.sort_by(|one, other| other.0.total_cmp(&one.0));
-    let best = told
-        .iter()
-        .find(|(_, with)| judge.explains(with))
-        .or(told.first());
-    let best = best.and_then(|(_, with)| fitted_with(judge, with.clone()));
-    let filtered = || {
-        let width = wrong.width.filter(|_| is_little_wrong)?;
-        let widths = match width < 1.0 {
-            true => NARROW_WIDTHS.to_vec(),
-            false => WIDTHS.map(|by| (width * by).max(LEAST_WIDE)).to_vec(),
-        };
-        let widths = widths.into_iter().filter_map(|width| {
-            let with = candidate.with(Mistake::Filter(width))?;
-            Some((judge.judged(&with, &judge.edges)?.cost, with))
-        });
-        let (_, with) = widths.min_by(|one, other| one.0.total_cmp(&other.0))?;
-        fitted_with(judge, with)
-    };
-    best.or_else(filtered)
-        .or_else(|| is_explained.then(|| candidate.clone()))
-}
-
-/// The rows that move what is seen by about so much, the nearest first.
-fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
-    let rows = ROWS.iter().filter(|row| PIXELS.contains(&row.id));
-    let by = candidate.layout.source_direction(by);
-    let off = |row: &'static Row| {
-        let mistake = Mistake::Row(row, None);
-        let shift = candidate.with(mistake.clone())?.behaviour.offset;
-        let off = |i: usize| (by[i] - shift[i]).abs() / shift[i].abs().max(1.0);
-        Some((off(0).max(off(1)), mistake))
-    };
-    let mut near: Vec<_> = rows.filter_map(off).filter(|one| one.0 <= NEAR).collect();
-    near.sort_by(|one, other| one.0.total_cmp(&other.0));
-    near.truncate(SHIFTS);
-    near.into_iter().map(|(_, mistake)| mistake).collect()
-}
-
-/// A candidate if it explains the picture, or does with numbers that are fitted anew, as those
-/// were before its last mistake.
-fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
-    if judge.explains(&with) {
-        return Some(with);
+            for (_, one) in least(next.into_iter(), BEAM - looked_at.len()) {
+                looked_at.extend(self.look_at(&one));
+            }
+            // Something too many would explain anything: it is thought of where nothing else
+            // beside the mistakes of a set does.
+            for from in beam {
+                if self.explained.is_none() {
+                    let patched = patched(judge, &from);
+                    self.explained = patched.map(|patched| (from.cost, patched));
+                }
+            }
+            if self.explained.is_some() {
+                return;
+            }
+            looked_at.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+            beam = looked_at;
+        }
     }
-    let free = with.numbers().len();
-    (free > 0).then_some(())?;
-    let (fitted, _) = judge.fit(&with, free, &judge.middle, CELL_STEP, [0, ROUNDS])?;
-    let short = shortened(judge, &fitted);
-    judge.explains(&short).then_some(short)
+
+    /// Whether a candidate has more numbers than one that explains the picture.
+    fn has_more(&self, candidate: &Candidate) -> bool {
+        let explained = self.explained.as_ref();
+        explained.is_some_and(|(_, explained)| explained.fitted() < candidate.fitted())
+    }
+
+    /// Whether one that explains the picture as well does so with fewer numbers, or at less cost.
+    fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
+        let explained = self.explained.as_ref();
+        explained.is_some_and(|(least, explained)| {
+            (explained.fitted(), *least) <= (candidate.fitted(), cost)
+        })
+    }
+
+    /// A candidate with its numbers fitted, judged on the middle grid; it is kept if it is the
+    /// nearest so far, or explains the picture.
+    fn look_at(&mut self, candidate: &Candidate) -> Option<Judged> {
+        let judge = self.judge;
+        if self.has_more(candidate) {
+            return None;
+        }
+        self.known.push(candidate.clone());
+        let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
+        let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
+        // Of what is far from the picture nothing else is known.
+        if is_near(judge, judged.candidate()) {
+            let level = judge.fitting(judged.candidate());
+            let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
+            if let Some(fitted) = fitted {
+                judged = judge.judged(&fitted, &judge.middle)?;
+            }
+            // Numbers that are not the right ones leave a little at edges, which others would seem
+            // to explain.
+            let left = Left::by(judge, judged.candidate());
+            if left.is_some_and(|left| left.is_at_edges) {
+                let plain = plain(judge, judged.candidate());
+                judged = judge.judged(&plain, &judge.middle).unwrap_or(judged);
+            }
+            let explained = explained_with(judge, judged.candidate());
+            if let Some(explained) =
+                explained.filter(|explained| !self.has_better(explained, judged.cost))
+            {
+                self.explained = Some((judged.cost, explained));
+            }
+        }
+        if self.nearest.as_ref().is_none_or(|one| judged.cost < one.0) {
+            self.nearest = Some((judged.cost, judged.candidate().clone()));
+        }
+        Some(judged)
+    }
 }
 
-/// Rows that change so little that a candidate explains a picture without them, and of which a tiny
-/// grid shows a part: where all that is seen is a mixture, what is wrong may pass for noise.
-fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
-    let hinted = || {
-        let tiny = judge.tiny(candidate)?;
-        let null = judge.judged(candidate, &tiny)?;
-        let predicted = tiny.predict(&null.rendering);
-        let is_hinted = |mistake: &Mistake| {
-            let with = candidate.with(mistake.clone())?;
-            let rendering = tiny.render(&with, &judge.work)?;
-            let [part, deviations] = predicted.part_seen(&null.score, &tiny.predict(&rendering));
-            (part > HINTED_PART && deviations > HINTED).then_some(())
-        };
-        let all: Vec<usize> = (0..judge.scene.objects.len()).collect();
-        let rows = rows_in_areas(&all);
-        Some(rows.filter(|row| is_hinted(row).is_some()).collect())
+/// A candidate with something too many beside it, if it explains the picture so.
+fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
+    is_near(judge, from.candidate()).then_some(())?;
+    let patched = from.candidate().with(patch(judge, from)?)?;
+    explained_with(judge, &patched)
+}
+
+/// Whether a candidate leaves little of what is wrong for certain with a right program's picture.
+fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
+    let square = |candidate: &Candidate| {
+        let predicted = judge.predicted(candidate, &judge.middle);
+        predicted.map(|predicted| predicted.strays().square())
     };
-    hinted().unwrap_or_default()
-}
-
-/// The rows of the table that show in areas, those about an object of each of some objects.
-fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
-    let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
-    let of_objects = objects.iter().flat_map(|&object| {
-        let rows = OBJECT_ROWS.iter();
-        rows.map(move |row| Mistake::Row(row, Some(object)))
-    });
-    let pairs = objects.iter().enumerate();
-    let pairs =
-        pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
-    let exchanged =
-        pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
-    rows.map(|row| Mistake::Row(row, None))
-        .chain(of_objects)
-        .chain(exchanged)
+    let squares = square(candidate).zip(square(&Candidate::right(judge.scene)));
+    candidate.mistakes.is_empty() || squares.is_some_and(|(own, all)| own <= NEAR_SQUARES * all)
 }
 
 /// The same with as few mistakes as explain the picture.
 fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
-    let of = |mistakes: &[&Mistake]| {
-        let mut mistakes = mistakes.iter();
-        let right = Candidate::right(judge.scene);
-        mistakes.try_fold(right, |candidate, one| candidate.with((*one).clone()))
+    let without = |candidate: &Candidate, at: usize| {
+        let mut mistakes = candidate.mistakes.clone();
+        mistakes.remove(at);
+        Candidate::of(judge.scene, mistakes)
     };
     let mut fewest = all.clone();
-    // Of several that turn the picture one may do.
-    let is_turn = |mistake: &Mistake| TURNS.contains(&mistake.id());
-    let (turns, others): (Vec<_>, Vec<_>) = all.mistakes.iter().partition(|one| is_turn(one));
-    if turns.len() > 1 {
-        let rows = ROWS.iter().filter(|row| TURNS.contains(&row.id));
-        let rows: Vec<_> = rows.map(|row| Mistake::Row(row, None)).collect();
-        let with = |row: &Mistake| of(&[&[row], &others[..]].concat());
-        let mut simpler = of(&others).into_iter().chain(rows.iter().filter_map(with));
-        fewest = simpler.find(|it| judge.explains(it)).unwrap_or(fewest);
-    }
     for left_out in (0..fewest.mistakes.len()).rev() {
         // What shows at edges was not told without being sure of it, and neither was what a picture
         // hints at that a right program would explain.
@@ -320,21 +241,18 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
         if is_sole || fewest.mistakes.get(left_out).is_none_or(shows_at_edges) {
             continue;
         }
-        let mistakes = fewest.mistakes.iter().enumerate();
-        let mistakes = mistakes.filter(|(at, _)| *at != left_out);
-        let mistakes: Vec<_> = mistakes.map(|(_, mistake)| mistake).collect();
-        let Some(fewer) = of(&mistakes) else {
+        let Some(fewer) = without(&fewest, left_out) else {
             continue;
         };
         // What is left out may have made up for what numbers are off, or for a row that shows at
         // edges.
         let fitted = || {
-            let free = fewer.numbers().len();
-            (free > 0).then_some(())?;
-            let (fitted, _) = judge.fit(&fewer, free, &judge.middle, CELL_STEP, [0, ROUNDS])?;
+            let fitted = refitted(judge, &fewer, judge.fitting(&fewer), [0, ROUNDS])?;
+            is_near(judge, &fitted).then_some(())?;
             explained_with(judge, &plain(judge, &fitted))
         };
-        let fewer = explained_with(judge, &fewer).or_else(fitted);
+        let fewer = is_near(judge, &fewer).then(|| explained_with(judge, &fewer));
+        let fewer = fewer.flatten().or_else(fitted);
         if let Some(fewer) = fewer.filter(|fewer| fewer.fitted() < fewest.fitted()) {
             fewest = fewer;
         }
@@ -350,116 +268,96 @@ fn shows_at_edges(mistake: &Mistake) -> bool {
     }
 }
 
-/// Candidates with one more mistake that are better, the best first.
-fn step(judge: &Judge, from: &Judged) -> Vec<Judged> {
-    judge.compare_with(from.candidate());
-    let suspects = suspects(judge, from);
-    let mut tried = rows(judge, from, &suspects);
-    // A row says more than numbers that make the same picture: where it explains all, they need not
-    // be looked for.
-    let explaining = |tried: &[(f64, Candidate)]| {
-        let row = tried.iter().min_by(|one, other| one.0.total_cmp(&other.0));
-        let found = likelier(judge, from, &row?.1)?;
-        (found.cost < from.cost && judge.explains(found.candidate())).then_some(found)
-    };
-    if let Some(found) = explaining(&tried) {
-        return vec![found];
-    }
-    if from.candidate().mistakes.is_empty() {
-        let together = joint::rows_together(judge, from.candidate());
-        if let Some(found) = explaining(&together) {
-            return vec![found];
-        }
-        tried.extend(together.into_iter().take(1));
-    }
-    // Half of the work that is left is left for judging those that were tried.
-    let are_all_numbers_tried = judge.work.within(0.5, || {
-        tried.extend(numeric_mistakes(judge, from, &suspects));
-        judge.work.may_go_on()
-    });
-    tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-    tried.truncate(FINALISTS);
-    let unfitted = tried.iter().filter_map(|one| likelier(judge, from, &one.1));
-    let mut unfitted: Vec<Judged> = unfitted.collect();
-    unfitted.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-    let mut judged: Vec<Judged> = Vec::new();
-    // What explains all is taken to be beaten only by what has fewer numbers: more of them come
-    // nearer before all are fitted to the end.
-    let mut fewest = usize::MAX;
-    for found in unfitted {
-        if found.candidate().fitted() < fewest
-            && let Some(found) = refined(judge, found)
-        {
-            if judge.explains(found.candidate()) {
-                fewest = found.candidate().fitted();
-            }
-            judged.push(found);
-        }
-    }
-    judged.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-    // Where not all were tried, the best of them need not be the best of all; what explains all is.
-    let are_all_tried = judge.work.may_go_on() && are_all_numbers_tried;
-    let is_better = |best: &Judged| {
-        best.cost < from.cost && (are_all_tried || judge.explains(best.candidate()))
-    };
-    // The few that were judged are looked at in all pixels, however much work that is.
-    judge.work.without_limit(|| judged.retain(is_better));
-    // Something too many would explain anything; it is thought of where nothing else explains more
-    // than before.
-    let patched = || {
-        are_all_tried.then_some(())?;
-        let patched = from.candidate().with(patch(judge, from)?)?;
-        let found = judge.judged(&patched, &judge.middle)?;
-        (found.cost < from.cost).then_some(found)
-    };
-    if judged.is_empty() {
-        judged.extend(patched());
-    }
-    judged
+/// Candidates, each with how much it leaves.
+type Found = Vec<(f64, Candidate)>;
+
+/// Where a set of mistakes may be told more of.
+struct Step<'a> {
+    judge: &'a Judge<'a>,
+    from: &'a Judged,
+    tiny: Level<'a>,
+    suspects: Vec<usize>,
+    /// How much it leaves on the tiny grid.
+    left: f64,
 }
 
-/// A candidate judged; none if it is no likelier than what it is made from.
-fn likelier(judge: &Judge, from: &Judged, candidate: &Candidate) -> Option<Judged> {
-    let found = judge.judged(candidate, &judge.middle)?;
-    (found.score.likelihood > from.score.likelihood).then_some(found)
-}
+impl<'a> Step<'a> {
+    /// Ways to find more mistakes, those first that take less work: each makes candidates, and says
+    /// how much they leave on the tiny grid.
+    const WAYS: [fn(&Self) -> Found; 3] = [Self::rows, Self::numbers, Self::together];
 
-/// A candidate that was judged, with its numbers fitted to the middle grid, and judged again.
-fn refined(judge: &Judge, found: Judged) -> Option<Judged> {
-    let candidate = found.candidate();
-    let free = candidate.numbers().len();
-    if free == 0 {
-        return Some(found);
-    }
-    let middle = &judge.middle;
-    let (fitted, _) = judge.fit(candidate, free, middle, CELL_STEP, [0, ROUNDS])?;
-    judge.judged(&fitted, middle)
-}
-
-/// The rows of the table, and how much each leaves on the coarse grid.
-fn rows(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
-    let candidates = rows_in_areas(suspects);
-    let candidates = candidates.filter_map(|mistake| from.candidate().with(mistake));
-    // What the faulty tracer makes takes most of the work: of that the tiny grid chooses.
-    let behaviour = from.candidate().behaviour;
-    let (mut all, behaving): (Vec<_>, Vec<_>) =
-        candidates.partition(|candidate| candidate.behaviour == behaviour);
-    if let Some(tiny) = judge.tiny(from.candidate()) {
-        let left = |candidate: Candidate| {
-            let differences = judge.differences(&candidate, &tiny)?;
-            Some((absolute(&differences), candidate))
-        };
-        let mut ranked: Vec<_> = behaving.into_iter().filter_map(left).collect();
-        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
-        ranked.truncate(BEHAVING);
-        all.extend(ranked.into_iter().map(|(_, candidate)| candidate));
-    }
-    all.into_iter()
-        .filter_map(|candidate| {
-            let differences = judge.differences(&candidate, &judge.coarse)?;
-            Some((absolute(&differences), candidate))
+    /// None if there was too much work before.
+    fn from(judge: &'a Judge, from: &'a Judged) -> Option<Self> {
+        judge.compare_with(from.candidate());
+        let tiny = judge.tiny(from.candidate())?;
+        let (left, _) = judge.left(from.candidate().clone(), &tiny)?;
+        Some(Self {
+            judge,
+            from,
+            suspects: suspects(judge, from),
+            left,
+            tiny,
         })
-        .collect()
+    }
+
+    /// Candidates that leave less than the set, those first that leave least, each with how much
+    /// that is for the mistakes and the numbers that tell it.
+    fn more(&self, way: fn(&Self) -> Found) -> Found {
+        let less = way(self).into_iter().filter(|one| one.0 < self.left);
+        least(
+            less.map(|(left, one)| (weighed(left, &one), one)),
+            usize::MAX,
+        )
+    }
+
+    fn rows(&self) -> Found {
+        let (judge, candidate) = (self.judge, self.from.candidate());
+        let rows = rows(judge, candidate, &self.suspects, &self.tiny);
+        if !candidate.mistakes.is_empty() {
+            return rows;
+        }
+        // Few samples do not tell how far squares are seen: one mistake alone is looked for in an
+        // exact picture, and what it leaves is told in parts of what is left without it.
+        let Some((exactly, _)) = judge.left(candidate.clone(), &judge.coarse) else {
+            return rows;
+        };
+        let scale = self.left / exactly.max(1e-12);
+        let best = least(rows.into_iter(), EXACT_ROWS).into_iter();
+        let best = best.filter_map(|(_, one)| judge.left(one, &judge.coarse));
+        best.map(|(left, one)| (scale * left, one)).collect()
+    }
+
+    fn numbers(&self) -> Found {
+        numeric_mistakes(self.judge, self.from, &self.suspects, &self.tiny)
+    }
+
+    fn together(&self) -> Found {
+        let candidate = self.from.candidate();
+        if !candidate.mistakes.is_empty() {
+            return Vec::new();
+        }
+        let mut together = joint::rows_together(self.judge, candidate, &self.tiny);
+        together.truncate(TOGETHER);
+        together
+    }
+}
+
+/// How much a candidate leaves, for the mistakes and the numbers that tell it.
+fn weighed(left: f64, candidate: &Candidate) -> f64 {
+    let [mistakes, numbers] =
+        [candidate.mistakes.len(), candidate.fitted()].map(|count| count as f64);
+    left * libm::pow(MISTAKE, mistakes) * libm::pow(NUMBER, numbers)
+}
+
+/// A candidate with each row of the table that shows in areas, and how much that leaves on a level.
+fn rows(
+    judge: &Judge,
+    from: &Candidate,
+    suspects: &[usize],
+    level: &Level,
+) -> Vec<(f64, Candidate)> {
+    let rows = rows_in_areas(suspects).filter_map(|mistake| from.with(mistake));
+    rows.filter_map(|one| judge.left(one, level)).collect()
 }
 
 /// The objects that may be wrong, those first in and beside which most is.
@@ -473,10 +371,8 @@ fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
         near.into_iter()
             .for_each(|object| wrong[object] += libm::log1p(*off));
     }
-    let mut suspects: Vec<_> = (0..wrong.len())
-        .filter(|&object| wrong[object] > 0.0)
-        .collect();
-    suspects.sort_by(|&one, &other| wrong[other].total_cmp(&wrong[one]));
-    suspects.truncate(SUSPECTS);
-    suspects
+    let most = wrong.iter().copied().fold(0.0, f64::max);
+    let wrong = (0..).zip(wrong).filter(|(_, wrong)| *wrong > LITTLE * most);
+    let suspects = least(wrong.map(|(object, wrong)| (-wrong, object)), SUSPECTS);
+    suspects.into_iter().map(|(_, object)| object).collect()
 }

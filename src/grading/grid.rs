@@ -4,7 +4,7 @@
 //! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever
 //! makes pictures makes that of the cells.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::{
     area::Area,
@@ -111,7 +111,7 @@ impl Grid {
 
     /// The means of the part's pixels, told by column and row in it, but for those without a
     /// number.
-    pub fn reduce(&self, pixel: impl Fn(u32, u32) -> [f64; 3]) -> Vec<[f64; 3]> {
+    pub fn reduce(&self, pixel: impl Fn(u32, u32) -> DVec3) -> Vec<DVec3> {
         let factor = f64::from(self.factor);
         // The pixels that a cell has a share of, in columns or in rows, and how much of each.
         let shares = |cell: u32, margin: f64, corner: f64| {
@@ -123,19 +123,18 @@ impl Grid {
         let cell = |(x, y): (u32, u32)| {
             // From the first on, so that what is one everywhere is not rounded.
             let mut first = None;
-            let (mut sum, mut total) = ([0.0; 3], 0.0);
+            let (mut sum, mut total) = (DVec3::ZERO, 0.0);
             for (row, height) in shares(y, self.margin.y, self.corner.y) {
                 for (column, width) in shares(x, self.margin.x, self.corner.x) {
                     let pixel = pixel(column, row);
-                    if !pixel[0].is_nan() {
-                        let first = first.get_or_insert(pixel);
-                        sum = [0, 1, 2].map(|i| sum[i] + width * height * (pixel[i] - first[i]));
+                    if !pixel.x.is_nan() {
+                        let first = *first.get_or_insert(pixel);
+                        sum += width * height * (pixel - first);
                         total += width * height;
                     }
                 }
             }
-            let first = first.unwrap_or([f64::NAN; 3]);
-            [0, 1, 2].map(|i| first[i] + sum[i] / total)
+            first.unwrap_or(DVec3::NAN) + sum / total
         };
         self.cells.iter().map(cell).collect()
     }

@@ -7,14 +7,14 @@
 
 use super::{
     candidate::{Candidate, Mistake, Shows},
-    judge::Judge,
+    judge::{Judge, least},
+    level::Level,
     levenberg_marquardt::absolute,
     mistakes::ROWS,
     prediction::Prediction,
 };
 
-/// So many that leave least are tried with what changes light otherwise, and are looked at on the
-/// coarse grid.
+/// So many that leave least are tried with what changes light otherwise.
 const BEST: usize = 8;
 
 /// So many ways to see the scene and to lay it out are tried with what changes light, those of
@@ -24,34 +24,12 @@ const ALIKE: usize = 32;
 /// Another row has to leave less than this part of what is left without it.
 const WORTH: f64 = 0.95;
 
-/// What a row changes.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Changes {
-    Layout,
-    Seen,
-    Channels,
-    Light,
-}
-
-fn changes(right: &Candidate, changed: &Candidate) -> Changes {
-    if changed.layout != right.layout {
-        return Changes::Layout;
-    }
-    match &changed.mistakes[..] {
-        [.., Mistake::Row(row, _)] if matches!(row.id, "channels" | "gray") => Changes::Channels,
-        _ if changed.curve != right.curve || changed.looks.len() != right.looks.len() => {
-            Changes::Light
-        }
-        _ => Changes::Seen,
-    }
-}
-
 /// How much what is seen and what is expected vary together, whatever was done to light: the
 /// correlation of the sums of their channels, or what that is if light and dark are exchanged.
 fn alike(shown: &Prediction) -> f64 {
     let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
     for (seen, mean) in shown.seen.iter().zip(&shown.moments.mean) {
-        let [a, b] = [seen, mean].map(|light| light.iter().sum::<f64>());
+        let [a, b] = [seen, mean].map(|light| light.element_sum());
         if !a.is_nan() {
             count += 1.0;
             sums = [sums[0] + a, sums[1] + b];
@@ -67,80 +45,58 @@ fn alike(shown: &Prediction) -> f64 {
     ab.abs() / (aa * bb).sqrt().max(1e-12)
 }
 
-/// Several rows that together leave little, and how much each leaves on the coarse grid.
-pub fn rows_together(judge: &Judge, right: &Candidate) -> Vec<(f64, Candidate)> {
-    let Some(tiny) = judge.tiny(right) else {
-        return Vec::new();
-    };
+/// Several rows that together leave little, and how much each leaves on the tiny grid.
+pub fn rows_together(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter();
     // What is little is not told from what a JPEG does.
     let is_coded = judge.fine.jpeg.is_some();
     let rows = rows.filter(|row| match row.shows {
         Shows::InAreas => true,
         Shows::AtEdges => false,
-        Shows::Everywhere => !is_coded && row.id != "cut_off",
+        Shows::Everywhere => !is_coded && row.id == "gamma_22",
     });
-    let rows: Vec<(Changes, Mistake)> = rows
-        .filter_map(|row| {
-            let mistake = Mistake::Row(row, None);
-            let changed = right.with(mistake.clone())?;
-            Some((changes(right, &changed), mistake))
-        })
-        .collect();
-    let of = |kind: Changes| {
-        let rows = rows.iter().filter(move |(own, _)| *own == kind);
-        rows.map(|(_, mistake)| mistake)
-    };
+    let rows = rows.filter_map(|row| {
+        let mistake = Mistake::Row(row, None);
+        Some((right.with(mistake.clone())?, mistake))
+    });
+    let (light, others): (Vec<_>, Vec<_>) =
+        rows.partition(|(one, _)| one.curve != right.curve || !one.looks.is_empty());
+    let (layout, seen): (Vec<_>, Vec<_>) = others
+        .into_iter()
+        .partition(|(one, _)| one.layout != right.layout);
     // The same without and with each.
-    let with = |candidate: &Candidate, kinds: &[Changes]| {
-        let mistakes = kinds.iter().flat_map(|kind| of(*kind));
-        let changed = mistakes.filter_map(|mistake| candidate.with(mistake.clone()));
-        let mut all = vec![candidate.clone()];
-        all.extend(changed);
+    let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
+        let changed = rows
+            .iter()
+            .filter_map(|(_, mistake)| candidate.with(mistake.clone()));
+        let all: Vec<Candidate> = std::iter::once(candidate.clone()).chain(changed).collect();
         all
     };
     let left = |candidate: Candidate| {
         judge.work.may_go_on().then_some(())?;
-        let shown = judge.predicted(&candidate, &tiny)?;
+        let shown = judge.predicted(&candidate, tiny)?;
         // A picture of one colour was told before.
         let mean = &shown.moments.mean;
         mean.iter().any(|one| *one != mean[0]).then_some(())?;
         let left = absolute(&shown.differences());
-        let count = i32::try_from(candidate.mistakes.len()).unwrap_or(i32::MAX);
-        Some((left / libm::pow(WORTH, f64::from(count)), candidate))
-    };
-    let least_first = |mut tried: Vec<(f64, Candidate)>| {
-        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-        tried.truncate(BEST);
-        tried
+        Some((
+            left / libm::pow(WORTH, candidate.mistakes.len() as f64),
+            candidate,
+        ))
     };
     // What is seen first: the same is made only once.
-    let seen = with(right, &[Changes::Seen]).into_iter();
-    let laid_out = seen.flat_map(|candidate| with(&candidate, &[Changes::Layout]));
+    let seen = with(right, &seen).into_iter();
+    let laid_out = seen.flat_map(|candidate| with(&candidate, &layout));
     let alike = laid_out.filter_map(|candidate| {
         judge.work.may_go_on().then_some(())?;
-        Some((alike(&judge.predicted(&candidate, &tiny)?), candidate))
+        Some((-alike(&judge.predicted(&candidate, tiny)?), candidate))
     });
-    let mut alike: Vec<(f64, Candidate)> = alike.collect();
-    alike.sort_by(|one, other| other.0.total_cmp(&one.0));
-    alike.truncate(ALIKE);
-    let alike = alike.into_iter().map(|(_, candidate)| candidate);
-    let lit = alike.flat_map(|candidate| with(&candidate, &[Changes::Channels, Changes::Light]));
-    let best = least_first(lit.filter_map(left).collect());
-    let both = best.iter().flat_map(|(_, candidate)| {
-        let has = |kind: Changes| {
-            let mut own = candidate.mistakes.iter();
-            own.any(|own| matches!(own, Mistake::Row(row, _) if of(kind).any(|other| matches!(other, Mistake::Row(other, _) if std::ptr::eq(*row, *other)))))
-        };
-        let other = if has(Changes::Light) { Changes::Channels } else { Changes::Light };
-        with(candidate, &[other])
-    });
-    let best = least_first(both.filter_map(left).collect());
-    best.into_iter()
-        .filter(|(_, candidate)| candidate.mistakes.len() > 1)
-        .filter_map(|(_, candidate)| {
-            let differences = judge.differences(&candidate, &judge.coarse)?;
-            Some((absolute(&differences), candidate))
-        })
+    let alike = least(alike, ALIKE).into_iter();
+    let lit = alike.flat_map(|(_, candidate)| with(&candidate, &light));
+    let best = least(lit.filter_map(left), BEST).into_iter();
+    let both = best.flat_map(|(_, candidate)| with(&candidate, &light));
+    let best = least(both.filter_map(left), BEST).into_iter();
+    best.filter(|(_, candidate)| candidate.mistakes.len() > 1)
+        .filter_map(|(_, candidate)| judge.left(candidate, tiny))
         .collect()
 }

@@ -11,6 +11,8 @@
 //! second column and row alone, as it is in most files, so that noise mixes with that up to two
 //! pixels away.
 
+use glam::DVec3;
+
 use super::{
     light::{Curve, STEP},
     moments::range,
@@ -19,7 +21,7 @@ use super::{
 };
 use crate::{
     area::Area,
-    color::{linear_to_srgb, srgb_to_linear},
+    color::srgb_to_linear,
     film::{Jpeg, JpegTable},
 };
 
@@ -31,20 +33,20 @@ const MIXED: usize = 2;
 
 /// What pixels show that should show something else, if that is coded as a file is; none if it
 /// cannot be.
-pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<[f64; 3]>> {
+pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVec3>> {
     let byte = |light: f64| {
-        let encoded = linear_to_srgb(prediction.curve.seen(light));
+        let encoded = prediction.encoded(light);
         (255.0 * encoded).round().clamp(0.0, 255.0) as u8
     };
     let light: Vec<f64> = (0..=255).map(light_of(prediction.curve)).collect();
     let mean = prediction.moments.mean.iter();
-    let bytes: Vec<u8> = mean.flat_map(|pixel| pixel.map(byte)).collect();
+    let bytes: Vec<u8> = mean.flat_map(|pixel| pixel.to_array().map(byte)).collect();
     let coded = jpeg.coded(&bytes, [part.width, part.height])?;
     let (pixels, _) = coded.as_chunks::<3>();
     Some(
         pixels
             .iter()
-            .map(|pixel| pixel.map(|byte| light[usize::from(byte)]))
+            .map(|pixel| DVec3::from(pixel.map(|byte| light[usize::from(byte)])))
             .collect(),
     )
 }
@@ -56,7 +58,7 @@ fn light_of(curve: Curve) -> impl Fn(u8) -> f64 {
 
 /// The variances that a file's coding gives to the cells of so many pixels each way of a picture
 /// that should show something.
-pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f64; 3]> {
+pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVec3> {
     let (mean, width) = (&prediction.moments.mean, prediction.width);
     let height = mean.len() / width;
     // How much of blue-yellow and red-green difference is in a channel.
@@ -82,8 +84,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f6
         };
         // Of the block beside it, too.
         let [least, most] = range(mean, width, at, reach);
-        let mixed = [0, 1, 2].map(|i| most[i] - least[i]);
-        [0, 1, 2].map(|i| {
+        let mixed = most - least;
+        DVec3::from([0, 1, 2].map(|i| {
             // Before the transform and after it numbers are rounded, or cut off, which makes four
             // times the square.
             let share = SHARES[i] * SHARES[i];
@@ -92,13 +94,13 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<[f6
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {
-                let encoded = linear_to_srgb(prediction.curve.seen(own[0]));
+                let encoded = prediction.encoded(own[0]);
                 let most = prediction.curve.light(srgb_to_linear(encoded + by));
                 known[i] = (own, (most - own[0]) / DEVIATIONS);
             }
             let light = known[i].1;
             light * light + mixed[i] * mixed[i] / (4.0 * count)
-        })
+        }))
     };
     (0..mean.len()).map(pixel).collect()
 }

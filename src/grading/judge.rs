@@ -7,7 +7,8 @@ use super::{
     candidate::Candidate,
     grid::Grid,
     level::Level,
-    levenberg_marquardt::{Fitted, fit},
+    levenberg_marquardt::{Fitted, absolute, fit},
+    light::Look,
     likelihood::Score,
     prediction::Prediction,
     rendering::Rendering,
@@ -30,10 +31,6 @@ pub const CELL_STEP: f64 = 0.25;
 /// The samples in a cell of the tiny grid, on which starts are looked for.
 const SAMPLES: usize = 5;
 
-/// Of so many pixels one may show something else than samples of a program that behaves otherwise,
-/// or than a JPEG.
-const MISSED: usize = 4000;
-
 /// Of so many pixels in the middle of a picture, those tell of edges.
 const PIXELS_OF_EDGES: u64 = 20_000;
 
@@ -44,8 +41,8 @@ pub struct Judge<'a> {
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
-    /// The pixels in the middle of the picture.
-    pub edges: Level<'a>,
+    /// The pixels in the middle of the picture, if these are not all.
+    central: Option<Level<'a>>,
     pub work: Work<'a>,
     pub cancel: &'a AtomicBool,
 }
@@ -55,8 +52,8 @@ pub struct Judged {
     /// What it makes on the level that it was judged on.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Half a logarithm of the number of pixels for each number that was fitted, less the logarithm
-    /// of the likelihood.
+    /// Half a logarithm of the number of pixels for each number that was fitted, less the
+    /// logarithm of the likelihood.
     pub cost: f64,
 }
 
@@ -87,14 +84,30 @@ impl<'a> Judge<'a> {
             coarse: level(part, COARSE, None),
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
-            edges: level(central(part), u32::MAX, None),
+            central: central(part).map(|part| level(part, u32::MAX, None)),
             work: Work::new(part.pixels(), reference.work, reference.effort, cancel),
             cancel,
         };
-        for level in [&judge.coarse, &judge.middle, &judge.fine, &judge.edges] {
+        let levels = [&judge.coarse, &judge.middle, &judge.fine];
+        for level in levels.into_iter().chain(&judge.central) {
             level.compare_with(level.reduced(&reference.right));
         }
         judge
+    }
+
+    /// The level on which numbers are fitted: the middle one, but for a program that changes light
+    /// by a curve, which does not make of the mean of pixels the mean of what it makes of them.
+    pub fn fitting(&self, candidate: &Candidate) -> &Level<'a> {
+        let is_curve = |look: &Look| matches!(look, Look::Curve(_) | Look::CutOff);
+        match candidate.looks.iter().any(is_curve) {
+            true => self.edges(),
+            false => &self.middle,
+        }
+    }
+
+    /// The pixels that tell of edges.
+    pub fn edges(&self) -> &Level<'a> {
+        self.central.as_ref().unwrap_or(&self.fine)
     }
 
     /// Others will be compared with this candidate.
@@ -113,9 +126,11 @@ impl<'a> Judge<'a> {
         let sampled = level.render(candidate, &self.work)?;
         level.compare_with(Arc::clone(&sampled));
         let mut exact = Arc::clone(&sampled);
-        let fine = self.fine.render(candidate, &self.work)?;
-        if candidate.behaviour.is_right() && fine.part == self.fine.grid.cells {
-            exact = level.reduced(&fine);
+        if candidate.behaviour.is_right() {
+            let fine = self.fine.render(candidate, &self.work)?;
+            if fine.part == self.fine.grid.cells {
+                exact = level.reduced(&fine);
+            }
         }
         Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }
@@ -123,6 +138,7 @@ impl<'a> Judge<'a> {
     /// What a level should show if a candidate is right; none if that is not known.
     pub fn predicted<'b>(&self, candidate: &Candidate, level: &'b Level) -> Option<Prediction<'b>> {
         let rendering = level.render(candidate, &self.work)?;
+        self.work.spend(work::PREDICTED * level.grid.count() as f64);
         Some(level.predict(&rendering))
     }
 
@@ -131,6 +147,12 @@ impl<'a> Judge<'a> {
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.may_go_on().then_some(())?;
         Some(self.predicted(candidate, level)?.differences())
+    }
+
+    /// A candidate with the sum of the absolute differences that it leaves on a level.
+    pub fn left(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
+        let differences = self.differences(&candidate, level)?;
+        Some((absolute(&differences), candidate))
     }
 
     /// Judges a candidate on a level.
@@ -145,59 +167,9 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Whether what a candidate does not explain is noise wherever it is seen.
-    pub fn is_even(&self, candidate: &Candidate) -> bool {
-        // What samples make, or a JPEG, is never exact.
-        let is_exact = candidate.behaviour.is_right() && self.fine.jpeg.is_none();
-        let predicted = self.predicted(candidate, &self.fine);
-        !is_exact || predicted.is_some_and(|predicted| predicted.is_even())
-    }
-
-    /// Whether it is known that nothing shows something else than a candidate for certain.
-    ///
-    /// The middle grid is asked first, as it costs less: what is wrong for certain in one of its
-    /// cells is so in a pixel, if what the cells show is exact.
-    pub fn explains_all(&self, candidate: &Candidate) -> bool {
-        let is_exact = candidate.behaviour.is_right() && self.fine.jpeg.is_none();
-        let has_none = |level: &Level| {
-            self.work.spend(work::of_exact(0, 0, level.grid.count()));
-            let predicted = self.predicted(candidate, level);
-            let count = level.grid.count();
-            // Samples miss corners of a square here and there, and a JPEG is coded otherwise.
-            let missed = if is_exact { 0 } else { count / MISSED };
-            predicted.is_some_and(|predicted| predicted.strays().are_no_more(missed))
-        };
-        (!is_exact || has_none(&self.middle)) && has_none(&self.fine)
-    }
-
-    /// The last numbers of a candidate, so many, fitted on a level; each is varied so as to change
-    /// the picture by about so much of a cell.
+    /// The numbers of a candidate at these places, fitted on a level; each is varied so as to
+    /// change the picture by about so much of a cell.
     pub fn fit(
-        &self,
-        candidate: &Candidate,
-        free: usize,
-        level: &Level,
-        cells: f64,
-        rounds: [usize; 2],
-    ) -> Option<(Candidate, Fitted)> {
-        let count = candidate.numbers().len();
-        let free: Vec<usize> = (count - free..count).collect();
-        self.fit_numbers(candidate, &free, level, cells, rounds)
-    }
-
-    /// The numbers of a candidate at these places, fitted on the middle grid.
-    pub fn fit_some(
-        &self,
-        candidate: &Candidate,
-        free: &[usize],
-        cells: f64,
-        rounds: usize,
-    ) -> Option<Candidate> {
-        let fitted = self.fit_numbers(candidate, free, &self.middle, cells, [0, rounds]);
-        fitted.map(|(candidate, _)| candidate)
-    }
-
-    fn fit_numbers(
         &self,
         candidate: &Candidate,
         free: &[usize],
@@ -230,19 +202,27 @@ pub fn price(level: &Level, fitted: usize) -> f64 {
     0.5 * fitted as f64 * libm::log(width * height)
 }
 
-/// The middle of a part of a picture, of its proportions and of so many pixels at most.
-fn central(part: Area) -> Area {
-    let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64)
-        .sqrt()
-        .min(1.0);
+/// So many of those of which least is left, these first.
+pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
+    let mut all: Vec<_> = all.collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    all.truncate(most);
+    all
+}
+
+/// The middle of a part of a picture, of its proportions and of so many pixels; none if it has no
+/// more.
+fn central(part: Area) -> Option<Area> {
+    (part.pixels() > PIXELS_OF_EDGES).then_some(())?;
+    let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64).sqrt();
     let [width, height] =
         [part.width, part.height].map(|length| ((f64::from(length) * by) as u32).max(1));
     // A JPEG is coded in blocks of so many pixels, at most.
     let aligned = |left: u32| left / 2 / 16 * 16;
-    Area {
+    Some(Area {
         x: part.x + aligned(part.width - width),
         y: part.y + aligned(part.height - height),
         width,
         height,
-    }
+    })
 }

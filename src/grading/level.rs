@@ -7,6 +7,8 @@ use std::{
     sync::Arc,
 };
 
+use glam::DVec3;
+
 use super::{
     candidate::Candidate,
     grid::Grid,
@@ -25,8 +27,9 @@ pub struct Level<'a> {
     film: &'a Film,
     /// The part's corner in the film.
     corner: [u32; 2],
-    /// What it shows in the cells, as light that was encoded in each way, where that was asked for.
-    seen: [OnceCell<Vec<[f64; 3]>>; Curve::COUNT],
+    /// What it shows in the cells, as light that was encoded in each way, where that was asked
+    /// for.
+    seen: [OnceCell<Vec<DVec3>>; Curve::COUNT],
     /// How many samples a cell has; none if it is computed exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
@@ -63,10 +66,11 @@ impl<'a> Level<'a> {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
         level.base = self.base.clone();
         let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
-        let seen = sampled.seen.iter().zip(means);
-        let seen =
-            seen.map(|(seen, (sampled, exact))| [0, 1, 2].map(|i| seen[i] + sampled[i] - exact[i]));
-        level.seen[sampled.curve as usize].get_or_init(|| seen.collect());
+        let errors: Vec<DVec3> = means.map(|(sampled, exact)| sampled - exact).collect();
+        for (at, curve) in Curve::ALL.into_iter().enumerate() {
+            let seen = self.seen(curve).iter().zip(&errors);
+            level.seen[at].get_or_init(|| seen.map(|(seen, error)| seen + error).collect());
+        }
         level
     }
 
@@ -94,10 +98,10 @@ impl<'a> Level<'a> {
     }
 
     /// What the picture shows in the cells, as light that was encoded in a way.
-    pub fn seen(&self, curve: Curve) -> &[[f64; 3]] {
+    pub fn seen(&self, curve: Curve) -> &[DVec3] {
         self.seen[curve as usize].get_or_init(|| {
             let [left, top] = self.corner;
-            let pixel = |x, y| self.film.pixel(left + x, top + y);
+            let pixel = |x, y| DVec3::from(self.film.pixel(left + x, top + y));
             if curve == Curve::Right {
                 return self.grid.reduce(pixel);
             }
@@ -123,12 +127,11 @@ impl<'a> Level<'a> {
         let mean = self.grid.reduce(|x, y| pixels.mean[index(x, y)]);
         let squares = self.grid.reduce(|x, y| {
             let (mean, variance) = (pixels.mean[index(x, y)], pixels.variance[index(x, y)]);
-            [0, 1, 2].map(|i| mean[i] * mean[i] + variance[i])
+            mean * mean + variance
         });
-        let moments = Moments::exact(mean.into_iter().zip(squares).map(|(mean, squares)| {
-            let variance = [0, 1, 2].map(|i| (squares[i] - mean[i] * mean[i]).max(0.0));
-            (mean, variance)
-        }));
+        let variance =
+            |(mean, square): (DVec3, DVec3)| (mean, (square - mean * mean).max(DVec3::ZERO));
+        let moments = Moments::exact(mean.into_iter().zip(squares).map(variance));
         let candidate = rendering.candidate.clone();
         Arc::new(Rendering::new(
             candidate,
@@ -140,13 +143,8 @@ impl<'a> Level<'a> {
     /// What it should show if a candidate is right.
     pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
         let candidate = &rendering.candidate;
-        let mut prediction = Prediction {
-            seen: self.seen(candidate.curve),
-            width: self.grid.width(),
-            moments: rendering.laid_out(&self.grid),
-            curve: candidate.curve,
-            is_cut_off: false,
-        };
+        let (seen, moments) = (self.seen(candidate.curve), rendering.laid_out(&self.grid));
+        let mut prediction = Prediction::new(seen, self.grid.width(), moments, candidate.curve);
         prediction.look(&candidate.looks, &self.grid);
         if let Some(jpeg) = self.jpeg {
             let factor = self.grid.factor as usize;

@@ -19,8 +19,6 @@ pub struct Fitted {
     pub left: f64,
     /// How far each may be off: a standard deviation, if an error is that of rounding.
     pub errors: Vec<f64>,
-    /// The squares of these, and how much each two are off together.
-    pub covariances: Vec<Vec<f64>>,
 }
 
 /// The sum of absolute differences.
@@ -138,23 +136,16 @@ pub fn fit(
             }
         }
     }
-    let column = |i: usize| {
+    let error = |i: usize| {
         let mut unit = vec![0.0; count];
         unit[i] = 1.0;
-        let column = solve(normal.clone(), unit).unwrap_or_else(|| vec![0.0; count]);
-        (0..count)
-            .map(|j| column[j] * steps[i] * steps[j])
-            .collect()
+        let column = solve(normal.clone(), unit);
+        column.map_or(0.0, |column| column[i].max(0.0).sqrt() * steps[i].abs())
     };
-    let covariances: Vec<Vec<f64>> = (0..count).map(column).collect();
-    let errors = (0..count)
-        .map(|i| covariances[i][i].max(0.0).sqrt())
-        .collect();
     Some(Fitted {
         left: absolute(&now),
         numbers,
-        errors,
-        covariances,
+        errors: (0..count).map(error).collect(),
     })
 }
 

@@ -1,8 +1,14 @@
 //! What a program may do to light: encode it otherwise, mix its channels.
 
-use std::sync::OnceLock;
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, OnceLock},
+};
 
-use crate::color::{linear_to_srgb, srgb_to_linear};
+use crate::{
+    color::{linear_to_srgb, srgb_to_linear},
+    lock::lock,
+};
 
 /// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
 pub const STEP: f64 = 1.0 / 255.0;
@@ -23,8 +29,16 @@ pub enum Curve {
 }
 
 impl Curve {
+    /// All of them, in order.
+    pub const ALL: [Self; 5] = [
+        Self::Right,
+        Self::Missing,
+        Self::Twice,
+        Self::Power22,
+        Self::Root,
+    ];
     /// How many there are.
-    pub const COUNT: usize = Self::Root as usize + 1;
+    pub const COUNT: usize = Self::ALL.len();
 
     /// The light that was encoded, where other light is seen.
     pub fn light(self, seen: f64) -> f64 {
@@ -59,10 +73,8 @@ impl Curve {
 
     /// Interpolates `seen` in a table: fast, and to within a thousandth of the light of white.
     pub fn seen_quickly(self, light: f64) -> f64 {
-        let place = light.clamp(0.0, 1.0) * LIGHTS as f64;
-        let at = (place as usize).min(LIGHTS - 1);
-        let [low, high] = [at, at + 1].map(|at| self.table()[at][1]);
-        low + (place - at as f64) * (high - low)
+        let table = self.table();
+        interpolated(light, |at| table[at][1])
     }
 
     /// The step of each of `LIGHTS` + 1 lights from 0 to 1, and what is seen in its place.
@@ -83,6 +95,41 @@ impl Curve {
 /// Intervals between the lights of a table.
 const LIGHTS: usize = 4096;
 
+/// Interpolates a table of `LIGHTS` + 1 values, which belong to lights from 0 to 1.
+fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
+    let place = light.clamp(0.0, 1.0) * LIGHTS as f64;
+    let at = (place as usize).min(LIGHTS - 1);
+    let [low, high] = [at, at + 1].map(&value);
+    low + (place - at as f64) * (high - low)
+}
+
+/// Encodes light from 0 to 1 as sRGB from 0 to 1, to within a hundredth of a step.
+pub fn encoded_quickly(light: f64) -> f64 {
+    // Light that was encoded twice is seen as the encoding of light.
+    Curve::Twice.seen_quickly(light)
+}
+
+/// A function of light, and its values in a table.
+pub struct Tabulated(Arc<[f64]>);
+
+impl Tabulated {
+    /// Tabulates a function; the table is made once.
+    pub fn new(curve: fn(f64) -> f64) -> Self {
+        static TABLES: Mutex<BTreeMap<usize, Arc<[f64]>>> = Mutex::new(BTreeMap::new());
+        let mut tables = lock(&TABLES);
+        let table = tables.entry(curve as usize).or_insert_with(|| {
+            let lights = (0..=LIGHTS).map(|at| at as f64 / LIGHTS as f64);
+            lights.map(curve).collect()
+        });
+        Self(Arc::clone(table))
+    }
+
+    /// Interpolates the function at a light from 0 to 1.
+    pub fn at(&self, light: f64) -> f64 {
+        interpolated(light, |at| self.0[at])
+    }
+}
+
 /// What is done to a picture's light.
 #[derive(Clone, Copy, Debug)]
 pub enum Look {
@@ -94,6 +141,10 @@ pub enum Look {
     Curve(fn(f64) -> f64),
     /// Its bytes are cut off instead of rounded.
     CutOff,
+    /// What a pixel has more than the mean of the 3 × 3 around it is added once more.
+    Sharpened,
+    /// Each pixel is a mean over a neighbourhood: as if seen through a pixel so many times as wide.
+    Blur(f64),
     /// Pixels between two places that have a colour are no part of the scene.
     Patch {
         /// The colour in linear light.
@@ -115,20 +166,20 @@ mod tests {
 
     #[test]
     fn what_is_seen_quickly_is_near_what_is_seen() {
-        let curves = [
-            Curve::Right,
-            Curve::Missing,
-            Curve::Twice,
-            Curve::Power22,
-            Curve::Root,
-        ];
-        assert_eq!(curves.len(), Curve::COUNT);
-        for curve in curves {
+        for curve in Curve::ALL {
             // Ends and inner points of the table's intervals.
             for light in (0..=16 * LIGHTS).map(|at| at as f64 / (16 * LIGHTS) as f64) {
                 let off = (curve.seen_quickly(light) - curve.seen(light)).abs();
                 assert!(off < 1e-3, "{curve:?} of {light}: {off}");
             }
+        }
+    }
+
+    #[test]
+    fn light_is_encoded_quickly_to_within_a_hundredth_of_a_step() {
+        for light in (0..=16 * LIGHTS).map(|at| at as f64 / (16 * LIGHTS) as f64) {
+            let off = (encoded_quickly(light) - linear_to_srgb(light)).abs();
+            assert!(off < 0.01 * STEP, "{light}: {off}");
         }
     }
 }

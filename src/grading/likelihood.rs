@@ -9,6 +9,8 @@
 //! the number of pixels for each number that was fitted: Schwarz, Estimating the dimension of a
 //! model, 1978.
 
+use glam::DVec3;
+
 use super::{
     light::Curve,
     prediction::{FLAT, Prediction},
@@ -41,16 +43,16 @@ pub struct Score {
 /// The error of a pixel, the variance of a sample in it, and that of rounding and of what is
 /// expected itself.
 struct Error {
-    difference: [f64; 3],
-    variance: [f64; 3],
-    rounding: [f64; 3],
+    difference: DVec3,
+    variance: DVec3,
+    rounding: DVec3,
 }
 
 impl Error {
     fn of(prediction: &Prediction, at: usize) -> Self {
         let variance = prediction.moments.variance[at];
         // Nothing is known of a pixel that is empty.
-        let is_empty = prediction.seen[at][0].is_nan();
+        let is_empty = prediction.seen[at].x.is_nan();
         Self {
             difference: prediction.difference(at),
             variance: variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one }),
@@ -58,28 +60,28 @@ impl Error {
         }
     }
 
+    /// Its variance, if it has this share of a sample's.
+    fn total(&self, share: f64) -> DVec3 {
+        self.variance * share + self.rounding
+    }
+
     /// The sum of the squares in standard deviations, if an error has this share of a sample's
     /// variance.
     fn off(&self, share: f64) -> f64 {
-        let channel = |i: usize| {
-            self.difference[i] * self.difference[i] / (self.variance[i] * share + self.rounding[i])
-        };
-        (0..3).map(channel).sum()
+        (self.difference * self.difference / self.total(share)).element_sum()
     }
 
     /// The logarithm of the density, but for a number that all have.
     fn density(&self, share: f64) -> f64 {
-        let volume: f64 = (0..3)
-            .map(|i| self.variance[i] * share + self.rounding[i])
-            .product();
+        let volume = self.total(share).element_product();
         -0.5 * libm::log(volume) - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.off(share) / FREEDOM)
     }
 }
 
 /// The variances of rounding and of what is expected itself.
-fn rounding(prediction: &Prediction, at: usize) -> [f64; 3] {
-    let (steps, doubt) = (prediction.steps(at), prediction.moments.doubt[at]);
-    [0, 1, 2].map(|i| steps[i] * steps[i] / 12.0 + doubt[i])
+fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
+    let steps = prediction.steps(at);
+    steps * steps / 12.0 + prediction.moments.doubt[at]
 }
 
 impl Prediction<'_> {
@@ -93,12 +95,10 @@ impl Prediction<'_> {
             let (mut above, mut below) = (0.0, 0.0);
             for one in &errors {
                 let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(share));
-                for i in 0..3 {
-                    let total = one.variance[i] * share + one.rounding[i];
-                    let part = one.variance[i] / (total * total);
-                    above += part * (weight * one.difference[i] * one.difference[i] - total);
-                    below += part * one.variance[i];
-                }
+                let total = one.total(share);
+                let part = one.variance / (total * total);
+                above += part.dot(weight * one.difference * one.difference - total);
+                below += part.dot(one.variance);
             }
             if below > 0.0 {
                 share = (share + above / below).clamp(1e-6, 1.0);
@@ -111,7 +111,12 @@ impl Prediction<'_> {
         };
         let mut likelihood = match self.curve {
             Curve::Right => 0.0,
-            _ => -self.seen.iter().flatten().map(stretch).sum::<f64>(),
+            _ => -self
+                .seen
+                .iter()
+                .flat_map(DVec3::as_ref)
+                .map(stretch)
+                .sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
         // Of pixels of several colours: the variances of a sample, and the squared differences
@@ -119,15 +124,12 @@ impl Prediction<'_> {
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);
-            for i in 0..3 {
-                let square = one.difference[i] * one.difference[i];
-                squares += square;
-                expected += one.variance[i] * share + one.rounding[i];
-                if one.variance[i] > 0.0 {
-                    of_samples += one.variance[i];
-                    beyond += square - one.rounding[i];
-                }
-            }
+            let square = one.difference * one.difference;
+            squares += square.element_sum();
+            expected += one.total(share).element_sum();
+            of_samples += one.variance.element_sum();
+            let has_several = one.variance.cmpgt(DVec3::ZERO);
+            beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
         // What is left of less than a sample in a hundred thousand is rounding.
         let is_known = beyond > 1e-5 * of_samples;
@@ -157,30 +159,27 @@ impl Prediction<'_> {
             let before = self.difference(at);
             let after = match other.curve {
                 curve if is_alike || curve == Curve::Right => other.difference(at),
-                curve => [0, 1, 2].map(|i| light[i] - curve.seen(other.moments.mean[at][i])),
+                curve => light - other.moments.mean[at].map(|mean| curve.seen(mean)),
             };
-            if before == after || light[0].is_nan() {
+            if before == after || light.x.is_nan() {
                 continue;
             }
             let mut error = self.error(at, score.share);
             if is_alike {
-                let other = other.error(at, score.share);
-                error = [0, 1, 2].map(|i| error[i].max(other[i]));
+                error = error.max(other.error(at, score.share));
             }
-            for i in 0..3 {
-                let (change, deviation) = (before[i] - after[i], deviations[3 * at + i]);
-                let weighted = change / (deviation * deviation);
-                seen += weighted * before[i];
-                all += weighted * change;
-                variance += weighted * weighted * error[i];
-            }
+            let change = before - after;
+            let deviation = DVec3::from_slice(&deviations[3 * at..]);
+            let weighted = change / (deviation * deviation);
+            seen += weighted.dot(before);
+            all += weighted.dot(change);
+            variance += (weighted * weighted).dot(error);
         }
         [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
     }
 
     /// The variances of the errors of a pixel that have this share of a sample's.
-    pub fn error(&self, at: usize, share: f64) -> [f64; 3] {
-        let error = Error::of(self, at);
-        [0, 1, 2].map(|i| error.variance[i] * share + error.rounding[i])
+    pub fn error(&self, at: usize, share: f64) -> DVec3 {
+        Error::of(self, at).total(share)
     }
 }

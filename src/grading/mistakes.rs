@@ -1,8 +1,6 @@
 //! The table of mistakes that a class makes: a word for programs, what it is, the way out, and what
 //! it changes in a candidate.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::{
@@ -10,13 +8,18 @@ use super::{
         Candidate, Row,
         Shows::{self, AtEdges, Everywhere, InAreas},
     },
-    faulty_tracer::{Hit, Rays, Squares, Visible},
+    changes::{
+        anchor, average, distance, encode, exchange_colors, exchange_faces, exchange_sides,
+        gray_of_encoded, hit, hit_spheres, is_square, lengthen, look, look_back, see, shapes,
+        shift, show, sides, stretch, tell_squares, widen, zoom,
+    },
+    faulty_tracer::{Hit, Rays, Spheres, Visible, floor, is_even},
     light::{Curve, Look},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
     math::Angle,
-    scene::{Cuboid, Lens, Shape, View},
+    scene::{Lens, Shape, View},
 };
 
 const ENCODE: &str = "encode each channel once, before it is written: 12.92 c up to 0.0031308, else 1.055 c^(1/2.4) − 0.055";
@@ -38,6 +41,7 @@ const EDGES: &str =
 const SLABS: &str =
     "a ray hits a box if it enters the slabs of all three axes before it leaves one of them";
 const BOX: &str = "a box reaches from center − size/2 to center + size/2";
+const CENTROID: &str = "the centroid is the mean of the three vertices";
 const FACES: &str = "the first of the colors is that of the faces across x, the second across y, the third across z";
 
 const fn row(
@@ -148,6 +152,10 @@ pub const ROWS: &[Row] = &[
         |c, _| encode(c, Curve::Root)),
     row("not_decoded", InAreas, "a scene's sRGB numbers are taken for light, and their square root is written: the colours are too bright",
         AVERAGE, |c, _| look(c, |light| srgb_to_linear(linear_to_srgb(light).sqrt()))),
+    row("decoded_twice", InAreas, "the colours are much too dark: light was decoded from sRGB once more instead of encoded", ENCODE,
+        |c, _| look(c, |light| srgb_to_linear(srgb_to_linear(light)))),
+    row("six_levels", InAreas, "each channel has one of six levels, those of a palette of 216 colours", CHANNELS,
+        |c, _| look(c, |light| srgb_to_linear((5.0 * linear_to_srgb(light)).round() / 5.0))),
     row("gamma_18", InAreas, "the colours were encoded with the power 1/1.8, not as sRGB", ENCODE,
         |c, _| look(c, |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 1.8)))),
     row("video_range", InAreas, "the colours lie between 16 and 235, as video has them, not between 0 and 255", CHANNELS,
@@ -166,6 +174,8 @@ pub const ROWS: &[Row] = &[
         |c, _| look(c, |light| 0.5 * light)),
     row("not_divided", InAreas, "the light is a quarter of what it should be: the sum of samples is divided by their number once more", DIVIDE,
         |c, _| look(c, |light| 0.25 * light)),
+    row("sharpened", Everywhere, "the picture is sharpened: edges overshoot", "a pixel is the mean of light over its own square, and nothing is done to the picture then",
+        |c, _| if c.looks.is_empty() { c.looks.push(Look::Sharpened) }),
     row("averaged_encoded", AtEdges,
         "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark", AVERAGE,
         |c, _| average(c, Curve::Missing)),
@@ -190,28 +200,32 @@ pub const ROWS: &[Row] = &[
         |c, _| see(c, Visible::NearestBothWays)),
     row("board_truncated", InAreas,
         "coordinates on the checkerboard are truncated towards 0, so the squares on both sides of an axis are one", SQUARES,
-        |c, _| tell_squares(c, Squares::Truncated)),
+        |c, _| tell_squares(c, |x, z| is_even(x as i64, z as i64))),
     row("board_truncated", InAreas, "the coordinate x on the checkerboard is truncated towards 0", SQUARES,
-        |c, _| tell_squares(c, Squares::TruncatedX)),
+        |c, _| tell_squares(c, |x, z| is_even(x as i64, floor(z)))),
     row("board_truncated", InAreas, "the coordinate z on the checkerboard is truncated towards 0", SQUARES,
-        |c, _| tell_squares(c, Squares::TruncatedZ)),
+        |c, _| tell_squares(c, |x, z| is_even(floor(x), z as i64))),
     row("board_rounded", InAreas, "coordinates on the checkerboard are rounded to the nearest whole number, not down", SQUARES,
-        |c, _| tell_squares(c, Squares::Rounded)),
+        |c, _| tell_squares(c, |x, z| is_even(floor(x + 0.5), floor(z + 0.5)))),
     row("board_both", InAreas, "a square of the checkerboard has the first colour only where its row and its column are both even", SQUARES,
-        |c, _| tell_squares(c, Squares::BothEven)),
+        |c, _| tell_squares(c, |x, z| (floor(x) | floor(z)) & 1 == 0)),
     row("board_sum", InAreas, "the checkerboard's coordinates are added before they are rounded down: its squares are diagonal stripes", SQUARES,
-        |c, _| tell_squares(c, Squares::Sum)),
+        |c, _| tell_squares(c, |x, z| floor(x + z) & 1 == 0)),
     row("board_stripes", InAreas, "the checkerboard has stripes: of its coordinates x alone counts (or y in the place of z)", SQUARES,
-        |c, _| tell_squares(c, Squares::StripesX)),
+        |c, _| tell_squares(c, |x, _| floor(x) & 1 == 0)),
     row("board_stripes", InAreas, "the checkerboard has stripes: of its coordinates z alone counts (or y in the place of x)", SQUARES,
-        |c, _| tell_squares(c, Squares::StripesZ)),
+        |c, _| tell_squares(c, |_, z| floor(z) & 1 == 0)),
+    row("board_moved", InAreas, "the checkerboard is moved by half a square along x", SQUARES,
+        |c, _| tell_squares(c, |x, z| is_even(floor(x + 0.5), floor(z)))),
+    row("board_moved", InAreas, "the checkerboard is moved by half a square along z", SQUARES,
+        |c, _| tell_squares(c, |x, z| is_even(floor(x), floor(z + 0.5)))),
     row("board_sines", InAreas, "the checkerboard's squares are told by sin x · sin z, and have a side of π squares", SQUARES,
-        |c, _| tell_squares(c, Squares::Sines)),
+        |c, _| tell_squares(c, |x, z| libm::sin(x) * libm::sin(z) >= 0.0)),
     row("board_remainder", InAreas, "a negative odd sum of a checkerboard's coordinates is taken for an even one", SQUARES,
-        |c, _| tell_squares(c, Squares::SignedSum)),
+        |c, _| tell_squares(c, |x, z| floor(x).wrapping_add(floor(z)) % 2 != 1)),
     row("board_remainder", InAreas,
         "a checkerboard's coordinates, one of them negative, are compared by their remainders", SQUARES,
-        |c, _| tell_squares(c, Squares::SignedParts)),
+        |c, _| tell_squares(c, |x, z| floor(x) % 2 == floor(z) % 2)),
     row("board_swapped", InAreas, "the checkerboard's colours are exchanged", SQUARES, |c, _| exchange_colors(c)),
     row("roll_sign", InAreas, "the roll has the wrong sign",
         "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the right side",
@@ -244,11 +258,11 @@ pub const ROWS: &[Row] = &[
         "rays leave from the eye, along x u + y v − d w", |c, _| c.behaviour.rays = Rays::Fisheye),
     row("sphere_unit_rays", InAreas, "spheres are hit by −b ± √(b² − c), which is for rays of length 1, and rays are not: their direction is not divided by its length",
         "a t² + b t + c = 0 has the roots (−b ± √(b² − 4 a c))/(2 a), a being the square of the ray's length",
-        |c, _| if c.scene.objects.iter().any(|object| matches!(object.shape, Shape::Sphere(_))) { c.behaviour.unit_rays = Some(distance(c)) }),
+        |c, _| hit_spheres(c, Spheres::UnitRays(distance(c)))),
+    row("sphere_near_root", InAreas, "of a sphere's two roots only the lesser is tried: where the near plane or the eye is within it, nothing of it is seen",
+        "if the lesser root does not count, the greater may", |c, _| hit_spheres(c, Spheres::LesserRoot)),
     row("sphere_radius_root", InAreas, "the radius of spheres is not squared: each has its square root", "c = |eye − center|² − radius²",
-        |c, _| for object in Arc::make_mut(&mut c.scene.objects) {
-            if let Shape::Sphere(sphere) = &mut object.shape { sphere.radius = sphere.radius.sqrt() }
-        }),
+        |c, _| for shape in shapes(c) { if let Shape::Sphere(sphere) = shape { sphere.radius = sphere.radius.sqrt() } }),
     row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|",
         |c, _| if let View::Lookat(point) = c.scene.camera.view {
             c.scene.camera.view = View::Lookat(c.scene.camera.eye);
@@ -268,27 +282,17 @@ pub const ROWS: &[Row] = &[
     row("fov_doubled", InAreas, "the field of view is taken for half of it", HALVES, |c, _| zoom(c, 0.5)),
     row("looks_back", InAreas, "the camera looks the other way: w has the wrong sign",
         "w = −f/|f|, f being lookat − eye, and rays leave along −d w",
-        |c, _| c.scene.camera.view = match c.scene.camera.view {
-            View::Lookat(point) => View::Lookat(2.0 * c.scene.camera.eye - point),
-            View::Direction(direction) => View::Direction(-direction),
-        }),
+        |c, _| look_back(c)),
     row("looks_back", InAreas, "the camera looks the other way, mirrored: rays leave along d w", "w = −f/|f|, f being lookat − eye, and rays leave along x u + y v − d w",
         |c, _| {
-            c.scene.camera.view = match c.scene.camera.view {
-                View::Lookat(point) => View::Lookat(2.0 * c.scene.camera.eye - point),
-                View::Direction(direction) => View::Direction(-direction),
-            };
+            look_back(c);
             c.scene.camera.roll = -c.scene.camera.roll;
             c.layout.is_mirrored ^= true;
         }),
     row("fov_unit", InAreas, "the field of view's degrees are taken for radians", "tan takes radians: 180 degrees are π",
-        |c, _| if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = c.scene.camera.lens {
+        |c, _| if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = &mut c.scene.camera.lens {
             let half = libm::atan(libm::tan(angle.in_degrees() / 2.0).abs());
-            let wrong = Angle::from_degrees((2.0 * half).to_degrees());
-            c.scene.camera.lens = match c.scene.camera.lens {
-                Lens::Fov(_) => Lens::Fov(wrong),
-                _ => Lens::HorizontalFov(wrong),
-            };
+            *angle = Angle::from_degrees((2.0 * half).to_degrees());
         }),
     row("near_ignored", InAreas, "the near plane is ignored", CLIPPED, |c, _| c.scene.camera.near = 0.0),
     row("far_ignored", InAreas, "the far plane is ignored", CLIPPED, |c, _| c.scene.camera.far = None),
@@ -315,6 +319,10 @@ pub const OBJECT_ROWS: &[Row] = &[
         |c, object| exchange_faces(c, object, [1, 0, 2])),
     row("faces_exchanged", InAreas, "has the colours of its faces across y and z exchanged", FACES,
         |c, object| exchange_faces(c, object, [0, 2, 1])),
+    row("triangle_anchor", InAreas, "is placed by its first vertex: its centroid is taken for that", CENTROID,
+        |c, object| anchor(c, object, |[left, ..]| left)),
+    row("triangle_anchor", InAreas, "is placed by the middle of its base: its centroid is taken for that", CENTROID,
+        |c, object| anchor(c, object, |[left, right, _]| left.midpoint(right))),
     row("triangle_parallelogram", InAreas, "is a parallelogram: that its two coordinates add to no more than 1 is not asked", EDGES,
         |c, object| hit(c, object, Hit::Parallelogram)),
     row("triangle_edge", InAreas, "has no edge against its second vertex", EDGES, |c, object| hit(c, object, Hit::WithoutEdge(0))),
@@ -324,170 +332,3 @@ pub const OBJECT_ROWS: &[Row] = &[
     row("box_axis", InAreas, "has no sides across y", SLABS, |c, object| hit(c, object, Hit::WithoutAxis(1))),
     row("box_axis", InAreas, "has no sides across z", SLABS, |c, object| hit(c, object, Hit::WithoutAxis(2))),
 ];
-
-/// Gray by a mean of encoded values.
-fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
-    c.looks.extend([
-        Look::Curve(linear_to_srgb),
-        Look::Gray(weights),
-        Look::Curve(srgb_to_linear),
-    ]);
-}
-
-/// Each channel's light becomes another one, once.
-fn look(c: &mut Candidate, curve: fn(f64) -> f64) {
-    if c.looks.is_empty() {
-        c.looks.push(Look::Curve(curve));
-    }
-}
-
-/// Samples lie elsewhere, by so many pixels to the right and down.
-fn shift(c: &mut Candidate, by: [f64; 2]) {
-    c.behaviour.offset = by;
-}
-
-fn is_square(c: &Candidate) -> bool {
-    c.scene.image.width == c.scene.image.height
-}
-
-/// How far the view plane is from the eye.
-fn distance(c: &Candidate) -> f64 {
-    let height = c.scene.camera.view_height;
-    let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
-    let [width, tall] = sides(c);
-    match c.scene.camera.lens {
-        Lens::Distance(d) => d,
-        Lens::Fov(angle) => height / (2.0 * half(angle)),
-        Lens::HorizontalFov(angle) => height * width / tall / (2.0 * half(angle)),
-    }
-}
-
-fn sides(c: &Candidate) -> [f64; 2] {
-    [c.scene.image.width, c.scene.image.height].map(f64::from)
-}
-
-/// The window has other proportions than the picture.
-fn widen(c: &mut Candidate, aspect: f64) {
-    let [width, height] = sides(c);
-    let by = aspect * height / width;
-    if c.behaviour.aspect == 1.0 && (by - 1.0).abs() > 1e-3 {
-        c.behaviour.aspect = by;
-    }
-}
-
-/// An object is hit wrongly.
-fn hit(c: &mut Candidate, object: usize, hit: Hit) {
-    let is_about = match (hit, c.scene.objects[object].shape) {
-        (Hit::WithoutAxis(_), Shape::Box(_)) => true,
-        (Hit::WithoutAxis(_), _) => false,
-        (_, shape) => matches!(shape, Shape::Triangle(_)),
-    };
-    if is_about && c.behaviour.hit.is_none() {
-        c.behaviour.hit = Some((object, hit));
-    }
-}
-
-/// Light is encoded otherwise, once.
-fn encode(c: &mut Candidate, curve: Curve) {
-    if c.curve == Curve::Right {
-        c.curve = curve;
-    }
-}
-
-/// Colours are decoded by a curve, averaged, and encoded by it.
-fn average(c: &mut Candidate, curve: Curve) {
-    if c.curve == Curve::Right {
-        (c.averaged, c.curve) = (curve, curve);
-    }
-}
-
-fn show(c: &mut Candidate, visible: Visible) {
-    if c.scene.objects.len() > 1 {
-        see(c, visible);
-    }
-}
-
-/// Another surface is seen than the nearest: one mistake of this kind leaves no room for another.
-fn see(c: &mut Candidate, visible: Visible) {
-    if c.behaviour.visible == Visible::Nearest {
-        c.behaviour.visible = visible;
-    }
-}
-
-fn has_board(c: &Candidate) -> bool {
-    let mut objects = c.scene.objects.iter();
-    objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)))
-}
-
-fn tell_squares(c: &mut Candidate, squares: Squares) {
-    if has_board(c) {
-        c.behaviour.squares = squares;
-    }
-}
-
-fn exchange_colors(c: &mut Candidate) {
-    if has_board(c) {
-        for object in Arc::make_mut(&mut c.scene.objects) {
-            if let Shape::Checkerboard(board) = &mut object.shape {
-                board.colors.reverse();
-            }
-        }
-    }
-}
-
-fn exchange_sides(c: &mut Candidate) {
-    let [width, height] = sides(c);
-    if width != height {
-        c.scene.camera.lens = match c.scene.camera.lens {
-            Lens::Distance(d) => Lens::Distance(d * width / height),
-            Lens::Fov(angle) => Lens::Fov(widened(angle, height / width)),
-            Lens::HorizontalFov(angle) => Lens::HorizontalFov(widened(angle, width / height)),
-        };
-    }
-}
-
-/// The view plane is so many times as far; a field of view is one of an angle that makes it so.
-fn lengthen(c: &mut Candidate, by: f64) {
-    c.scene.camera.lens = match c.scene.camera.lens {
-        Lens::Distance(d) => Lens::Distance(d * by),
-        Lens::Fov(angle) => Lens::Fov(widened(angle, 1.0 / by)),
-        Lens::HorizontalFov(angle) => Lens::HorizontalFov(widened(angle, 1.0 / by)),
-    };
-}
-
-/// An angle whose half has a tangent so many times as large.
-fn widened(angle: Angle, by: f64) -> Angle {
-    let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
-    Angle::from_degrees((2.0 * half).to_degrees())
-}
-
-/// The distance of the view plane is so many times as large, or the angle as small.
-fn zoom(c: &mut Candidate, by: f64) {
-    let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
-    c.scene.camera.lens = match c.scene.camera.lens {
-        Lens::Distance(d) => Lens::Distance(d * by),
-        Lens::Fov(angle) if is_less(angle / by) => Lens::Fov(angle / by),
-        Lens::HorizontalFov(angle) if is_less(angle / by) => Lens::HorizontalFov(angle / by),
-        lens => lens,
-    };
-}
-
-fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
-    if let Shape::Box(cuboid) = c.scene.objects[object].shape
-        && let Some(colors) = cuboid.faces
-    {
-        let faces = Some(order.map(|axis| colors[axis]));
-        let shape = Shape::Box(Cuboid { faces, ..cuboid });
-        Arc::make_mut(&mut c.scene.objects)[object].shape = shape;
-    }
-}
-
-/// A box's corners are moved, each by so many times its size.
-fn stretch(c: &mut Candidate, object: usize, by: [DVec3; 2]) {
-    if let Shape::Box(mut cuboid) = c.scene.objects[object].shape {
-        let size = cuboid.max - cuboid.min;
-        cuboid.min += by[0] * size;
-        cuboid.max += by[1] * size;
-        Arc::make_mut(&mut c.scene.objects)[object].shape = Shape::Box(cuboid);
-    }
-}

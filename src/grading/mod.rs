@@ -16,14 +16,16 @@
 //! 4. A prediction says how likely what is seen is (`likelihood`), what no sampling explains
 //!    (`strays`), and whether it lies elsewhere (`displacement`).
 //! 5. The `judge` of a picture has a level for each grid, and asks these of candidates; `work` is
-//!    what it may spend. `levenberg_marquardt` fits numbers, `numeric_mistakes` says which, and
-//!    `forward_selection` takes one mistake after the other while that pays, and goes back where it
-//!    led nowhere.
+//!    what it may spend. `levenberg_marquardt` fits numbers, `numeric_mistakes` says which, `joint`
+//!    which rows were made together. `forward_selection` looks at the few best sets of mistakes, of
+//!    one more each time, and `edge_rows` at what explains the picture beside them.
 //! 6. A `verdict` says what was found, in the words of `wording`, and what it leaves of the
 //!    `objects`.
 
 mod candidate;
+mod changes;
 mod displacement;
+mod edge_rows;
 mod empty_pixels;
 mod faulty_tracer;
 mod forward_selection;
@@ -71,7 +73,7 @@ use crate::{
 };
 
 use self::{
-    candidate::{Candidate, Mistake},
+    candidate::{Candidate, Mistake, Shows},
     empty_pixels::without_empty,
     judge::{Judge, Judged},
     light::Curve,
@@ -267,8 +269,9 @@ impl<'a> Reference<'a> {
 fn told(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::right(scene);
-    // What is told takes work, too.
-    let is_cut = judge.work.is_cut();
+    // What is told takes work, too. What explains a picture ends the search, not the bound.
+    let is_explained = matches!(found, Some((_, true)));
+    let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
         Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
             wrong(judge, &found, is_explained, is_cut)
@@ -319,9 +322,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let (scene, last) = (judge.scene, found.candidate());
     // The squared difference on the same grid for all, less what noise leaves of it in the end. Of
     // half a pixel only pixels tell.
-    let is_shifted = last.behaviour.offset != [0.0; 2] || last.behaviour.pixel != 1.0;
-    let level = match is_shifted || last.behaviour.spread != [1.0; 2] {
-        true => &judge.edges,
+    let level = match last.is_shifted() || last.is_filtered() {
+        true => judge.edges(),
         false => &judge.middle,
     };
     let judged = |candidate: &Candidate| judge.judged(candidate, level);
@@ -354,6 +356,16 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
                 .zip(changed.value(&after.scene))
         {
             message = format!("{message}: {is} instead of {should}");
+        }
+        for other in is_explained
+            .then(|| equals(judge, last, mistake))
+            .into_iter()
+            .flatten()
+        {
+            message = format!(
+                "{message}; or, in a picture like this, {}",
+                other.message(scene)
+            );
         }
         mistakes.push(NamedMistake {
             id: mistake.id(),
@@ -391,6 +403,30 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         is_cut,
         ..Verdict::of(kind, scene)
     }
+}
+
+/// Rows of the same word that explain the picture as well in the place of one: nobody knows which
+/// of them it is.
+fn equals(judge: &Judge, candidate: &Candidate, told: &Mistake) -> Vec<Mistake> {
+    let Mistake::Row(row, object) = told else {
+        return Vec::new();
+    };
+    let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
+    let others = rows.filter(|other| other.id == row.id && other.message != row.message);
+    let others = others.filter(|other| other.shows == Shows::InAreas);
+    let others = others.map(|other| Mistake::Row(other, *object));
+    let explains = |other: &Mistake| {
+        let replaced = candidate
+            .mistakes
+            .iter()
+            .map(|one| match one.is_alike(told) {
+                true => other.clone(),
+                false => one.clone(),
+            });
+        let replaced = Candidate::of(judge.scene, replaced);
+        replaced.is_some_and(|replaced| judge.explains(&replaced))
+    };
+    others.filter(explains).collect()
 }
 
 /// The words for programs of all mistakes that the table has.

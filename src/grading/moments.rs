@@ -1,5 +1,7 @@
 //! Means and variances of what pixels show.
 
+use glam::DVec3;
+
 use super::light::Curve;
 use crate::{area::Area, color::Color, exact::ExactPixel};
 
@@ -7,11 +9,11 @@ use crate::{area::Area, color::Color, exact::ExactPixel};
 #[derive(Clone, Debug, Default)]
 pub struct Moments {
     /// The mean of each, in linear light.
-    pub mean: Vec<[f64; 3]>,
+    pub mean: Vec<DVec3>,
     /// The variance of one sample in it.
-    pub variance: Vec<[f64; 3]>,
+    pub variance: Vec<DVec3>,
     /// The variance of that mean itself: how far off it may be.
-    pub doubt: Vec<[f64; 3]>,
+    pub doubt: Vec<DVec3>,
 }
 
 impl Moments {
@@ -21,9 +23,9 @@ impl Moments {
     }
 
     /// Those of exact pixels.
-    pub fn exact(pixels: impl Iterator<Item = ([f64; 3], [f64; 3])>) -> Self {
+    pub fn exact(pixels: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
         let (mean, variance): (Vec<_>, Vec<_>) = pixels.unzip();
-        let doubt = vec![[0.0; 3]; mean.len()];
+        let doubt = vec![DVec3::ZERO; mean.len()];
         Self {
             mean,
             variance,
@@ -42,7 +44,7 @@ impl Moments {
 
     /// The same of the cells of these indices.
     pub fn select(&self, indices: &[usize]) -> Self {
-        let select = |all: &[[f64; 3]]| indices.iter().map(|&at| all[at]).collect();
+        let select = |all: &[DVec3]| indices.iter().map(|&at| all[at]).collect();
         Self {
             mean: select(&self.mean),
             variance: select(&self.variance),
@@ -51,24 +53,23 @@ impl Moments {
     }
 
     /// Makes the means less certain.
-    pub fn add_doubt(&mut self, more: &[[f64; 3]]) {
-        for (doubt, more) in self.doubt.iter_mut().zip(more) {
-            *doubt = [0, 1, 2].map(|i| doubt[i] + more[i]);
-        }
+    pub fn add_doubt(&mut self, more: &[DVec3]) {
+        self.doubt
+            .iter_mut()
+            .zip(more)
+            .for_each(|(doubt, more)| *doubt += more);
     }
 }
 
 /// The least and the greatest of a cell and those so far around it, channel by channel, in rows of
 /// a width.
-pub fn range(values: &[[f64; 3]], width: usize, at: usize, around: usize) -> [[f64; 3]; 2] {
+pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3; 2] {
     let (x, y) = (at % width, at / width);
-    let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for y in y.saturating_sub(around)..(y + around + 1).min(values.len() / width) {
         let row = &values[y * width..][..width];
         for one in &row[x.saturating_sub(around)..(x + around + 1).min(width)] {
-            for i in 0..3 {
-                (least[i], most[i]) = (least[i].min(one[i]), most[i].max(one[i]));
-            }
+            (least, most) = (least.min(*one), most.max(*one));
         }
     }
     [least, most]
@@ -84,10 +85,8 @@ pub fn numbers(averaged: Curve) -> impl Fn(Color) -> [f64; 6] {
 }
 
 /// The mean and the variance of an exact pixel.
-pub fn moments(pixel: &ExactPixel<6>) -> ([f64; 3], [f64; 3]) {
-    let [r, g, b, rr, gg, bb] = pixel.mean;
-    let doubt = pixel.bound * pixel.bound;
-    let variance = |mean: f64, square: f64| (square - mean * mean).max(0.0) + doubt;
-    let variances = [variance(r, rr), variance(g, gg), variance(b, bb)];
-    ([r, g, b], variances)
+pub fn moments(pixel: &ExactPixel<6>) -> (DVec3, DVec3) {
+    let [mean, square] = [0, 3].map(|at| DVec3::from_slice(&pixel.mean[at..]));
+    let variance = (square - mean * mean).max(DVec3::ZERO) + pixel.bound * pixel.bound;
+    (mean, variance)
 }

@@ -1,12 +1,13 @@
 //! Finds which numbers of a scene, changed, explain a picture best.
 //!
-//! A start on the tiny grid leads to a fit there, and that to one on the coarse grid.
+//! The tiny grid tells where to start, and is fitted to.
+
+use glam::DVec3;
 
 use super::{
     candidate::{Candidate, Mistake},
-    judge::{Judge, Judged},
+    judge::{Judge, Judged, least},
     level::Level,
-    levenberg_marquardt::absolute,
     parameters::{self, Owner, Parameter},
     prediction::Prediction,
 };
@@ -19,26 +20,25 @@ use crate::{
 const STARTS: usize = 2;
 
 /// So many parameters are fitted there, those that start best.
-const STARTED: usize = 20;
+const STARTED: usize = 12;
 
-/// What leaves so many times as much as the best on the tiny grid is not fitted on the coarse one.
-const FAR: f64 = 2.0;
-
-/// So many parameters of objects and so many others are fitted on the coarse grid.
-const FITTED: usize = 4;
-
-/// Some numbers of the scene, each with what comes nearest on the coarse grid: those that leave
-/// least on the tiny one.
-pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec<(f64, Candidate)> {
+/// Some numbers of the scene, each with what comes nearest on the tiny grid.
+pub fn numeric_mistakes(
+    judge: &Judge,
+    from: &Judged,
+    suspects: &[usize],
+    tiny: &Level,
+) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
-    let Some(tiny) = judge.tiny(candidate) else {
-        return Vec::new();
-    };
     let is_suspect = |parameter: &Parameter| match parameter.owner {
         Owner::Object(object) => suspects.iter().any(|&suspect| {
             let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
             object == suspect || own.is_beside(other)
         }),
+        // A camera that stands or looks elsewhere moves all objects.
+        Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => {
+            suspects.len() > 1 || candidate.scene.objects.len() == 1
+        }
         _ => true,
     };
     let all = parameters::fitted(&candidate.scene).into_iter();
@@ -60,49 +60,26 @@ pub fn numeric_mistakes(judge: &Judge, from: &Judged, suspects: &[usize]) -> Vec
         };
         let tried = starts.into_iter().filter_map(|start| {
             let started = candidate.with(Mistake::Numbers(parameter.clone(), start))?;
-            Some((absolute(&judge.differences(&started, &tiny)?), started))
+            judge.left(started, tiny)
         });
-        let mut tried: Vec<_> = tried.collect();
-        tried.sort_by(|one, other| one.0.total_cmp(&other.0));
-        tried.truncate(STARTS);
+        let tried = least(tried, STARTS);
         Some((tried.first()?.0, (parameter, tried)))
     });
-    let fit = |parameter: &Parameter, start: &Candidate, level: &Level, rounds| {
-        // Colours are read, but where something is done to them.
-        let is_read = parameter.is_color() && candidate.looks.is_empty();
-        let free = parameter.numbers(&candidate.scene).len();
-        let rounds = if is_read { [0, 0] } else { rounds };
-        let (candidate, fitted) = judge.fit(start, free, level, 0.5, rounds)?;
-        Some((fitted.left, candidate))
-    };
-    // Those first that start best: work may end before all are fitted.
-    let on_tiny = least_first(started)
-        .take(STARTED)
-        .filter_map(|(parameter, tried)| {
-            let fitted = tried.iter();
-            let fitted = fitted.filter_map(|one| fit(&parameter, &one.1, &tiny, [4, 0]));
-            let (left, best) = fitted.min_by(|one, other| one.0.total_cmp(&other.0))?;
-            Some((left, (parameter, best)))
-        });
-    let (local, others): (Vec<_>, Vec<_>) =
-        on_tiny.partition(|(_, (parameter, _))| parameter.is_local(&candidate.scene));
-    let on_coarse = [local, others].into_iter().flat_map(|mut fitted| {
-        fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
-        fitted.truncate(FITTED);
-        let most = FAR * fitted.first().map_or(0.0, |best| best.0);
-        fitted.retain(|one| one.0 <= most);
-        fitted
+    let started = least(started, STARTED).into_iter();
+    let fitted = started.filter_map(|(_, (parameter, tried))| {
+        let fit = |(left, start): (f64, Candidate)| {
+            // Colours are read, but where something is done to them.
+            if parameter.is_color() && candidate.looks.is_empty() {
+                return Some((left, start));
+            }
+            let free = candidate.numbers().len()..start.numbers().len();
+            let (candidate, fitted) =
+                judge.fit(&start, &Vec::from_iter(free), tiny, 0.5, [4, 0])?;
+            Some((fitted.left, candidate))
+        };
+        least(tried.into_iter().filter_map(fit), 1).pop()
     });
-    least_first(on_coarse)
-        .filter_map(|(parameter, start)| fit(&parameter, &start, &judge.coarse, [2, 1]))
-        .collect()
-}
-
-/// Those first of which least is left.
-fn least_first<T>(all: impl Iterator<Item = (f64, T)>) -> impl Iterator<Item = T> {
-    let mut all: Vec<(f64, T)> = all.collect();
-    all.sort_by(|one, other| one.0.total_cmp(&other.0));
-    all.into_iter().map(|(_, one)| one)
+    fitted.collect()
 }
 
 /// The colours that a picture has where these colours alone should be seen: the medians of their
@@ -113,12 +90,14 @@ fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
             srgb: [own[0], own[1], own[2]],
         }
         .to_linear();
+        let light = DVec3::from(light);
         let moments = &shown.moments;
-        let is_alone = |at: &usize| moments.mean[*at] == light && moments.variance[*at] == [0.0; 3];
+        let is_alone =
+            |at: &usize| moments.mean[*at] == light && moments.variance[*at] == DVec3::ZERO;
         let seen = (0..shown.seen.len())
             .filter(is_alone)
             .map(|at| shown.seen[at]);
-        let mut seen: Vec<[f64; 3]> = seen.filter(|seen| !seen[0].is_nan()).collect();
+        let mut seen: Vec<DVec3> = seen.filter(|seen| !seen.x.is_nan()).collect();
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
@@ -171,11 +150,14 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
         (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
     }
     for i in 0..numbers.len() {
-        with(&|other| other[i] = -other[i]);
-        with(&|other| other[i] = 0.0);
-        with(&|other| other[i] *= 2.0);
-        with(&|other| other[i] *= 0.5);
-        with(&|other| other.swap(i, (i + 1) % numbers.len()));
+        // A slip is made in one field.
+        if parameter.fields.len() == 1 {
+            with(&|other| other[i] = -other[i]);
+            with(&|other| other[i] = 0.0);
+            with(&|other| other[i] *= 2.0);
+            with(&|other| other[i] *= 0.5);
+            with(&|other| other.swap(i, (i + 1) % numbers.len()));
+        }
         for by in 1..=far {
             with(&|other| other[i] += 3.0 * f64::from(by) * steps[i]);
             with(&|other| other[i] -= 3.0 * f64::from(by) * steps[i]);

@@ -345,12 +345,6 @@ impl Parameter {
         steps.map(|step| by * step).collect()
     }
 
-    /// Whether it moves one object that has bounds.
-    pub fn is_local(&self, scene: &Scene) -> bool {
-        let is_bounded = |index: usize| middle(&scene.objects[index].shape).is_some();
-        matches!(self.owner, Owner::Object(index) if is_bounded(index))
-    }
-
     /// Whether it is a colour, which moves nothing.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")

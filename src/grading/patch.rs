@@ -26,7 +26,9 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let shown = judge.predicted(from.candidate(), &judge.fine)?;
     let (seen, strays) = (shown.seen, shown.strays().pixels);
     let pairs = seen.iter().zip(&shown.moments.mean);
-    let mut is_left: Vec<bool> = pairs.map(|(seen, mean)| !is_near(*seen, *mean)).collect();
+    let mut is_left: Vec<bool> = pairs
+        .map(|(seen, mean)| !is_near((*seen).into(), (*mean).into()))
+        .collect();
     let mut largest: Vec<usize> = Vec::new();
     for start in strays {
         if !std::mem::replace(&mut is_left[start], false) {
@@ -37,7 +39,7 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         while at < piece.len() {
             for next in grid.around(piece[at], 1) {
                 let is_beside = [1, grid.width()].contains(&next.abs_diff(piece[at]));
-                if is_beside && is_left[next] && is_near(seen[next], seen[start]) {
+                if is_beside && is_left[next] && is_near(seen[next].into(), seen[start].into()) {
                     is_left[next] = false;
                     piece.push(next);
                 }
@@ -48,7 +50,7 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
             largest = piece;
         }
     }
-    let light = seen[*largest.first()?];
+    let light = seen[*largest.first()?].to_array();
     // What has a colour of the scene is rather something of it that is elsewhere.
     let scene = &from.candidate().scene;
     let objects = scene.objects.iter();

@@ -4,17 +4,14 @@
 use glam::DVec3;
 
 use super::{
-    candidate::Candidate,
-    faulty_tracer::{Behaviour, FaultyTracer},
+    candidate::{Candidate, Mistake, Row},
+    faulty_tracer::FaultyTracer,
     grid::Grid,
     light::{Curve, is_near},
+    mistakes::ROWS,
     verdict::NamedMistake,
 };
-use crate::{
-    area::Area,
-    film::Film,
-    scene::{Lens, Scene, View},
-};
+use crate::{area::Area, film::Film, scene::Scene};
 
 /// Neighbours in a picture that are noise differ by as much as pixels far from each other, and by
 /// less than this part of it in one of a scene.
@@ -22,6 +19,9 @@ const ALIKE: f64 = 0.8;
 
 /// The cells, along the longer side, in which it is looked at whether anything is seen.
 const CELLS: u32 = 32;
+
+/// Maximum number of causes that are told.
+const CAUSES: usize = 3;
 
 fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
     NamedMistake {
@@ -70,13 +70,10 @@ fn is_noise(film: &Film) -> bool {
     let width = film.width() as usize;
     let pixels = film.pixels();
     let count = pixels.len() as f64;
-    let mean = [0, 1, 2].map(|i| pixels.iter().map(|pixel| pixel[i]).sum::<f64>() / count);
-    let square = |one: &[f64; 3], other: &[f64; 3]| -> f64 {
-        (0..3)
-            .map(|i| (one[i] - other[i]) * (one[i] - other[i]))
-            .sum()
-    };
-    let far: f64 = pixels.iter().map(|pixel| square(pixel, &mean)).sum::<f64>() / count;
+    let pixels: Vec<DVec3> = pixels.iter().copied().map(DVec3::from).collect();
+    let mean = pixels.iter().sum::<DVec3>() / count;
+    let square = |one: &DVec3, other: &DVec3| one.distance_squared(*other);
+    let far = pixels.iter().map(|pixel| square(pixel, &mean)).sum::<f64>() / count;
     let pairs = pixels.iter().zip(&pixels[width.min(pixels.len())..]);
     let below = pairs.map(|(one, other)| square(one, other)).sum::<f64>() / count;
     let rows = pixels.chunks_exact(width).flat_map(|row| row.windows(2));
@@ -84,62 +81,22 @@ fn is_noise(film: &Film) -> bool {
     far > 0.0 && below.min(beside) > 2.0 * ALIKE * far
 }
 
-/// What usually has a camera see nothing, of that what would in this scene.
+/// The rows of the table by which a camera sees nothing of this scene.
 fn causes(scene: &Scene) -> String {
-    let camera = scene.camera;
-    let with = |change: &dyn Fn(&mut Scene)| {
-        let mut other = scene.clone();
-        change(&mut other);
-        other
+    let part = Area::whole(scene.image.width, scene.image.height);
+    let grid = Grid::new(&scene.image, part, CELLS);
+    let background = scene.image.background.to_linear();
+    let right = Candidate::right(scene);
+    let shows_nothing = |row: &&'static Row| {
+        let wrong = right.with(Mistake::Row(row, None));
+        wrong.is_some_and(|wrong| {
+            let tracer = FaultyTracer::new(&wrong.drawn(&grid), wrong.behaviour, Curve::Right);
+            let cells = tracer.moments(grid.cells, 1).mean;
+            cells.iter().all(|cell| cell.to_array() == background)
+        })
     };
-    let looking = |view: View| with(&|scene: &mut Scene| scene.camera.view = view);
-    let mut tried = vec![(
-        "the camera looks the other way (w = (eye − lookat)/|eye − lookat|, and rays leave along −d w)",
-        match camera.view {
-            View::Lookat(point) => looking(View::Lookat(2.0 * camera.eye - point)),
-            View::Direction(direction) => looking(View::Direction(-direction)),
-        },
-    )];
-    if let View::Lookat(point) = camera.view
-        && point != DVec3::ZERO
-    {
-        tried.push((
-            "lookat is taken for a direction (the eye has to be subtracted)",
-            looking(View::Direction(point)),
-        ));
-    }
-    if let Lens::Fov(angle) | Lens::HorizontalFov(angle) = camera.lens {
-        let distance = camera.view_height / (2.0 * libm::tan(angle.in_degrees() / 2.0));
-        let narrow = with(&|scene: &mut Scene| scene.camera.lens = Lens::Distance(distance.abs()));
-        let radians = match (distance > 0.0, camera.view) {
-            (true, _) => narrow,
-            (false, View::Lookat(point)) => {
-                let mut back = narrow;
-                back.camera.view = View::Lookat(2.0 * camera.eye - point);
-                back
-            }
-            (false, View::Direction(direction)) => {
-                let mut back = narrow;
-                back.camera.view = View::Direction(-direction);
-                back
-            }
-        };
-        tried.push(("fov is in degrees, and tan takes radians", radians));
-    }
-    let shows_nothing = |scene: &Scene| {
-        let part = Area::whole(scene.image.width, scene.image.height);
-        let grid = Grid::new(&scene.image, part, CELLS);
-        let drawn = Candidate::right(scene).drawn(&grid);
-        let background = scene.image.background.to_linear();
-        let tracer = FaultyTracer::new(&drawn, Behaviour::default(), Curve::Right);
-        let cells = tracer.moments(grid.cells, 1).mean;
-        cells.iter().all(|cell| *cell == background)
-    };
-    let found: Vec<&str> = tried
-        .iter()
-        .filter(|(_, scene)| shows_nothing(scene))
-        .map(|(cause, _)| *cause)
-        .collect();
+    let found = ROWS.iter().filter(shows_nothing).take(CAUSES);
+    let found: Vec<&str> = found.map(|row| row.message).collect();
     match &found[..] {
         [] => "print the direction of one ray, and ask one object for its hit by hand".to_owned(),
         found => format!("in this scene it would be so if {}", found.join(", or if ")),

@@ -8,7 +8,6 @@
 use super::{
     candidate::{Candidate, Mistake},
     judge::{CELL_STEP, Judge, price},
-    levenberg_marquardt::solve,
     parameters::Parameter,
 };
 use crate::{numbers::rounded, scene::Scene};
@@ -21,195 +20,142 @@ const QUARTERS: i32 = 5;
 /// A number is not rounded further than it may be off itself: so many standard deviations.
 const DEVIATIONS: f64 = 8.0;
 
-/// So many sets of numbers of each size are tried to be the scene's own.
-const LIKELIEST: usize = 2;
-
 /// Rounds of fitting the other numbers where one is the scene's own.
 const ROUNDS: usize = 8;
 
 /// A candidate whose numbers are as plain as they can be.
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
-    let found = judge.judged(candidate, &judge.middle);
+    let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
     shortened(judge, own.as_ref().unwrap_or(candidate))
 }
 
 /// The same with the scene's own numbers where it explains the picture as well with them.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
-    let (middle, scene) = (&judge.middle, judge.scene);
+    let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);
-    for at in 0..candidate.mistakes.len() {
-        let Mistake::Numbers(parameter, numbers) = &candidate.mistakes[at] else {
+    let mut first = 0;
+    for (at, mistake) in candidate.mistakes.iter().enumerate() {
+        let Mistake::Numbers(parameter, numbers) = mistake else {
             continue;
         };
-        if parameter.is_color() || parameter.fields[0] == "normal" {
-            continue;
-        }
-        let own = parameter.numbers(scene);
-        if own.len() < 2 {
-            continue;
-        }
-        let sets = likeliest_sets(judge, candidate, at, &own);
-        for fixed in sets {
+        for (parameter, numbers, free) in plainer(scene, parameter, numbers) {
             if !judge.work.may_go_on() {
                 return candidate.clone();
             }
-            let is_own = |i: &usize| numbers.get(*i) == own.get(*i);
-            // Each time there are more of them.
-            let are_more = fixed.len() > (0..own.len()).filter(is_own).count();
-            if numbers.len() != own.len() || !are_more {
-                continue;
-            }
-            let Some(other) = refitted(judge, candidate, at, parameter, &fixed) else {
-                continue;
-            };
-            let Some(judged) = judge.judged(&other, middle) else {
-                continue;
-            };
             // What is not fitted does not cost.
-            let free = price(middle, fixed.len());
-            if judged.cost - free <= cost || is_explained && judge.explains(&other) {
+            let gain = price(level, numbers.len() - free.len());
+            let free: Vec<usize> = free.into_iter().map(|i| first + i).collect();
+            let judged = || {
+                let mut mistakes = candidate.mistakes.clone();
+                mistakes[at] = Mistake::Numbers(parameter, numbers);
+                let start = Candidate::of(scene, mistakes)?;
+                let (fitted, _) = judge.fit(&start, &free, level, CELL_STEP, [0, ROUNDS])?;
+                judge.judged(&fitted, level)
+            };
+            let Some(judged) = judged() else {
+                continue;
+            };
+            let other = judged.candidate();
+            if judged.cost - gain <= cost || is_explained && judge.explains(other) {
                 // From better numbers those may be found that could not be before.
-                return with_own(judge, &narrowed(other, at, scene), cost.max(judged.cost));
+                return with_own(judge, other, cost.max(judged.cost));
             }
         }
+        first += numbers.len();
     }
     candidate.clone()
 }
 
-/// The sets of numbers of a mistake that may be the scene's own, those first that leave fewest
-/// free: all but one, all but two, and of an eye and what it looks at one of the two points. Of
-/// each size the likeliest, to second order: with the covariances of a set's numbers, C, a fit is
-/// worse by dᵀ C⁻¹ d where these change by d.
-fn likeliest_sets(judge: &Judge, candidate: &Candidate, at: usize, own: &[f64]) -> Vec<Vec<usize>> {
-    let count = own.len();
-    let sizes: Vec<Vec<Vec<usize>>> = match count {
-        6 => vec![vec![(3..6).collect(), (0..3).collect()]],
-        _ => vec![
-            (0..count)
-                .map(|i| (0..count).filter(|j| *j != i).collect())
-                .collect(),
-            (0..count).map(|i| vec![i]).collect(),
-        ],
-    };
-    let first = first_number(candidate, at);
-    let numbers = candidate.numbers();
-    let fitted = judge.fit(candidate, numbers.len(), &judge.middle, CELL_STEP, [0, 1]);
-    let Some((_, fitted)) = fitted else {
-        return Vec::new();
-    };
-    let worse = |set: &Vec<usize>| {
-        let row = |i: &usize| -> Vec<f64> {
-            let own = &fitted.covariances[first + i];
-            set.iter().map(|j| own[first + j]).collect()
-        };
-        let change: Vec<f64> = set.iter().map(|&i| own[i] - numbers[first + i]).collect();
-        let solved = solve(set.iter().map(row).collect(), change.clone());
-        solved.map_or(f64::INFINITY, |solved| {
-            change.iter().zip(solved).map(|(a, b)| a * b).sum()
-        })
-    };
-    let likeliest = |mut sets: Vec<Vec<usize>>| {
-        sets.sort_by(|one, other| worse(one).total_cmp(&worse(other)));
-        sets.truncate(LIKELIEST);
-        sets
-    };
-    sizes.into_iter().flat_map(likeliest).collect()
-}
-
-/// The place of the first number of a mistake among all of a candidate's.
-fn first_number(candidate: &Candidate, at: usize) -> usize {
-    let before = candidate.mistakes[..at].iter();
-    let counts = before.map(|mistake| match mistake {
-        Mistake::Numbers(_, numbers) => numbers.len(),
-        _ => 0,
-    });
-    counts.sum()
-}
-
-/// The same, where some numbers of a mistake are the scene's, and the others are fitted anew.
-fn refitted(
-    judge: &Judge,
-    candidate: &Candidate,
-    at: usize,
+/// Numbers of which more are the scene's own, and which of the others are free, those first that
+/// leave fewest free: all but one are the scene's own, or all but two, and of an eye and what it
+/// looks at one of the two points.
+fn plainer(
+    scene: &Scene,
     parameter: &Parameter,
-    fixed: &[usize],
-) -> Option<Candidate> {
-    let own = parameter.numbers(judge.scene);
-    let first = first_number(candidate, at);
-    let all = candidate.numbers();
-    let mut start = all.clone();
-    fixed.iter().for_each(|&i| start[first + i] = own[i]);
-    let free: Vec<usize> = (0..own.len())
-        .filter(|i| !fixed.contains(i))
-        .map(|i| first + i)
-        .collect();
-    judge.fit_some(
-        &candidate.with_numbers(judge.scene, &start)?,
-        &free,
-        CELL_STEP,
-        ROUNDS,
-    )
-}
-
-/// The same, where a mistake of two points is one of that which is not the scene's own.
-fn narrowed(candidate: Candidate, at: usize, scene: &Scene) -> Candidate {
-    let mut mistakes = candidate.mistakes.clone();
-    if let Mistake::Numbers(parameter, numbers) = &mut mistakes[at]
-        && let [one, other] = parameter.fields[..]
-    {
-        let own = parameter.numbers(scene);
-        let alone = |field| Parameter {
-            owner: parameter.owner,
-            fields: vec![field],
-        };
-        if numbers[3..] == own[3..] {
-            mistakes[at] = Mistake::Numbers(alone(one), numbers[..3].to_vec());
-        } else if numbers[..3] == own[..3] {
-            mistakes[at] = Mistake::Numbers(alone(other), numbers[3..].to_vec());
+    numbers: &[f64],
+) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
+    let own = parameter.numbers(scene);
+    match (&parameter.fields[..], own.len()) {
+        // Of a direction no picture tells the length: it is such that one number is the scene's.
+        (["normal" | "direction"], _) => {
+            let is_scaled = (0..3).any(|i| numbers[i].abs() == own[i].abs() && own[i] != 0.0);
+            let told = (0..3).filter(|&i| !is_scaled && numbers[i] * own[i] != 0.0);
+            let scaled = told.map(|i| {
+                let by = (own[i] / numbers[i]).abs();
+                let scaled = numbers.iter().map(|x| by * x).collect();
+                (
+                    parameter.clone(),
+                    scaled,
+                    (0..3).filter(|&j| j != i).collect(),
+                )
+            });
+            scaled.collect()
         }
+        ([_, _], _) => {
+            let fields = parameter.fields.iter().zip(numbers.chunks(3));
+            let alone = fields.map(|(field, own)| {
+                let (owner, fields) = (parameter.owner, vec![*field]);
+                (Parameter { owner, fields }, own.to_vec(), vec![0, 1, 2])
+            });
+            alone.collect()
+        }
+        (_, 3) if !parameter.is_color() => {
+            let are_own = (0..3).filter(|&i| numbers[i] == own[i]).count();
+            let free = [
+                vec![0],
+                vec![1],
+                vec![2],
+                vec![1, 2],
+                vec![0, 2],
+                vec![0, 1],
+            ];
+            let fewer = free.into_iter().filter(|free| 3 - free.len() > are_own);
+            let with = |free: Vec<usize>| {
+                let mut mixed = own.clone();
+                free.iter().for_each(|&i| mixed[i] = numbers[i]);
+                (parameter.clone(), mixed, free)
+            };
+            fewer.map(with).collect()
+        }
+        _ => Vec::new(),
     }
-    let with = |candidate: Candidate, mistake| candidate.with(mistake);
-    let narrow = mistakes.into_iter().try_fold(Candidate::right(scene), with);
-    narrow.unwrap_or(candidate)
 }
 
 /// A candidate whose numbers have as few digits as do.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
-    let middle = &judge.middle;
-    let free = candidate.numbers().len();
-    if free == 0 {
+    let level = judge.fitting(candidate);
+    let free: Vec<usize> = (0..candidate.numbers().len()).collect();
+    if free.is_empty() {
         return candidate.clone();
     }
-    let leveled = candidate.with_numbers(judge.scene, &candidate.leveled_numbers());
-    let Some(leveled) = leveled else {
+    let Some((_, fitted)) = judge.fit(candidate, &free, level, CELL_STEP, [0, 1]) else {
         return candidate.clone();
     };
-    let Some((_, fitted)) = judge.fit(&leveled, free, middle, CELL_STEP, [0, 1]) else {
-        return leveled;
-    };
-    let Some(long) = judge.judged(&leveled, middle) else {
-        return leveled;
+    let Some(long) = judge.judged(candidate, level) else {
+        return candidate.clone();
     };
     // A number that is short was not fitted: it may cost what that costs.
-    let most = long.cost + price(middle, free);
-    let steps = leveled.steps(1.0);
+    let most = long.cost + price(level, free.len());
+    let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
         // What a vector's length may be off is no matter, so that no error is more than a part of a
         // step.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));
-        let numbers = leveled.numbers().into_iter().zip(errors);
+        let numbers = candidate.numbers().into_iter().zip(errors);
         let numbers: Vec<f64> = numbers.map(|(x, error)| rounded(x, error)).collect();
-        leveled.with_numbers(judge.scene, &numbers)
+        candidate.with_numbers(judge.scene, &numbers)
     };
     let is_as_good = |short: &Candidate| {
-        let judged = judge.judged(short, middle);
+        let judged = judge.judged(short, level);
         // Noise that is no chance, as that of a regular grid, may be fitted by a long number.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =
         (0..QUARTERS).filter_map(|i| rounded_to(TENTH / libm::pow(4.0, f64::from(i))));
-    shorter.find(is_as_good).unwrap_or(leveled)
+    shorter
+        .find(is_as_good)
+        .unwrap_or_else(|| candidate.clone())
 }

@@ -225,7 +225,7 @@ fn replaced_where_they_differ(mut right: Moments, own: &Moments, other: &Moments
         let variance = other.variance[at];
         if own.mean[at] != other.mean[at] || own.variance[at] != variance {
             (right.mean[at], right.variance[at]) = (other.mean[at], variance);
-            right.doubt[at] = variance.map(|one| one / SAMPLES as f64 + MISSED * MISSED);
+            right.doubt[at] = variance / SAMPLES as f64 + MISSED * MISSED;
         }
     }
     right

@@ -1,5 +1,7 @@
 //! What is wrong in a picture for certain, however it was sampled.
 
+use glam::DVec3;
+
 use super::{moments::range, prediction::Prediction};
 
 /// How much a difference may be, in standard deviations, where that is known of what is random in
@@ -74,37 +76,33 @@ impl Prediction<'_> {
         let mut strays = Strays::default();
         for at in 0..self.seen.len() {
             let (difference, allowed) = (self.difference(at), self.allowed(at));
+            let squares = difference * difference;
             if self.is_flat(at) {
-                let beyond = |i: usize| difference[i].abs() - allowed[i];
-                if (0..3).any(|i| beyond(i) > 0.0) {
-                    let reach = self.reach(at);
-                    if (0..3).any(|i| beyond(i) > reach[i]) {
-                        strays.pixels.push(at);
-                        strays.square += difference.iter().map(|d| d * d).sum::<f64>();
-                    }
+                let beyond = difference.abs() - allowed;
+                if beyond.max_element() > 0.0 && beyond.cmpgt(self.reach(at)).any() {
+                    strays.pixels.push(at);
+                    strays.square += squares.element_sum();
                 }
             } else {
-                let square = |i: usize| difference[i] * difference[i] - allowed[i] * allowed[i];
-                let squares = (0..3).map(|i| square(i).max(0.0)).sum();
-                let expected = self.moments.variance[at].iter().sum();
-                strays.edges.push((at, squares, expected));
+                let beyond = (squares - allowed * allowed).max(DVec3::ZERO);
+                let expected = self.moments.variance[at].element_sum();
+                strays.edges.push((at, beyond.element_sum(), expected));
             }
         }
         strays
     }
 
     /// How much the light of a pixel may change if edges move by half a pixel: half of how much the
-    /// pixels around it differ, or the standard deviation of a sample in one of them, which half of
-    /// each of two colours make half of their difference.
-    fn reach(&self, at: usize) -> [f64; 3] {
+    /// pixels around it differ, or the standard deviation of a sample in one of them, which
+    /// half of each of two colours make half of their difference.
+    fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);
-        [0, 1, 2].map(|i| f64::max((most[i] - least[i]) / 2.0, variance[i].sqrt()))
+        ((most - least) / 2.0).max(variance.map(f64::sqrt))
     }
 
     /// What a pixel may differ by for its rounding and for what is not known of it.
-    fn allowed(&self, at: usize) -> [f64; 3] {
-        let (steps, doubt) = (self.steps(at), self.moments.doubt[at]);
-        [0, 1, 2].map(|i| WRONG * steps[i] + DEVIATIONS * doubt[i].sqrt())
+    fn allowed(&self, at: usize) -> DVec3 {
+        WRONG * self.steps(at) + DEVIATIONS * self.moments.doubt[at].map(f64::sqrt)
     }
 }

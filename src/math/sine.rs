@@ -21,7 +21,8 @@ const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// Constants of the series.
 struct Constants {
-    /// π/2 as the sum of three `f64`, with an error of at most half a unit of the last one, 2^−163.
+    /// π/2 as the sum of three `f64`, with an error of at most half a unit of the last one,
+    /// 2^−163.
     quarter_turn: [f64; 3],
     radians_per_degree: Ball<Double>,
     /// (−1)ⁿ/(2n)!.

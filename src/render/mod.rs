@@ -45,7 +45,8 @@ pub use self::{
 pub struct Control<'a> {
     /// Number of threads; `None` for one per processor.
     pub threads: Option<NonZero<usize>>,
-    /// Called, from any thread, with the number of further samples, or exact pixels, that are done.
+    /// Called, from any thread, with the number of further samples, or exact pixels, that are
+    /// done.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,

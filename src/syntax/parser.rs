@@ -160,8 +160,8 @@ pub struct TreeBuilder<'w, 's> {
     words: &'w Vocabulary<'s>,
     /// Start of the slice that pest reads; its offsets count from there.
     base: usize,
-    /// Whether the item follows the grammar, but has an unknown field or function, so that recovery
-    /// should try it.
+    /// Whether the item follows the grammar, but has an unknown field or function, so that
+    /// recovery should try it.
     doubtful: bool,
 }
 

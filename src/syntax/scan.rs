@@ -31,8 +31,8 @@ pub struct Scan {
     /// Places where a text without mistakes can be split: behind a `}` or before a `let`, at most
     /// one in [`SPLIT_SPACING_BYTES`] bytes.
     pub split_points: Vec<usize>,
-    /// Invisible characters that are not white space of the language, and carriage returns that end
-    /// no line.
+    /// Invisible characters that are not white space of the language, and carriage returns that
+    /// end no line.
     odd_spaces: Vec<Span>,
 }
 

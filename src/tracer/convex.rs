@@ -33,8 +33,8 @@ pub struct Convex<T: Real> {
     firsts: u8,
     /// Numbers of the faces' planes.
     planes: [u8; 6],
-    /// Whether the eye is inside, so that a ray first meets the nearest of the first faces' planes,
-    /// not the farthest.
+    /// Whether the eye is inside, so that a ray first meets the nearest of the first faces'
+    /// planes, not the farthest.
     is_inside: bool,
 }
 

@@ -212,9 +212,9 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the centre. In a view plane at
-        // 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance c and depth
-        // z has the area π r² √(c² − r²) / (z² − r²)^1.5.
+        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the centre. In a view plane
+        // at 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance
+        // c and depth z has the area π r² √(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {

@@ -83,8 +83,8 @@ impl EdgeSeries {
 
 /// The lines of one family that an edge crosses.
 pub(super) struct LineCrossings {
-    /// t at the first line, and its step from line to line, both in half turns and reduced by whole
-    /// turns.
+    /// t at the first line, and its step from line to line, both in half turns and reduced by
+    /// whole turns.
     pub reduced: [Double; 2],
     /// m at the first line.
     pub depth: f64,

@@ -27,8 +27,8 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 pub struct PowerLaw {
     /// The exponent b.
     pub slope: f64,
-    /// The standard error of b; `None` for fewer than four points, since one residual more than the
-    /// line has parameters means next to nothing.
+    /// The standard error of b; `None` for fewer than four points, since one residual more than
+    /// the line has parameters means next to nothing.
     pub slope_error: Option<f64>,
 }
 

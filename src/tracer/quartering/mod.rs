@@ -66,7 +66,8 @@ pub enum PicturePart<'a> {
         y: u32,
         /// The objects that may be seen there, in file order.
         candidates: &'a [VisibilityCandidate],
-        /// The squares that it shows of a board, if a board is all that is seen and they are known.
+        /// The squares that it shows of a board, if a board is all that is seen and they are
+        /// known.
         checks: Option<&'a CheckerPixel>,
     },
     /// An area with more candidates than it is worth to tell apart: its samples are traced one by

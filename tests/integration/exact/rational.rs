@@ -10,7 +10,8 @@ use super::{exact, pixel, read};
 /// Camera with rational axes above a board of squares of side 1 at height 0.
 struct RationalView {
     eye: [RBig; 3],
-    /// Right, up and back: the directions of the picture's columns, its rows, and against the view.
+    /// Right, up and back: the directions of the picture's columns, its rows, and against the
+    /// view.
     axes: [[RBig; 3]; 3],
     d: RBig,
 }

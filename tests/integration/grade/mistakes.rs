@@ -4,12 +4,14 @@
 use glam::{DVec3, dvec3};
 use image::imageops;
 
-use super::textbook::{Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible};
+use super::textbook::{
+    Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible, light, sharpened,
+};
 
 /// A mistake.
 pub struct Mistake {
-    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its message
-    /// behind it, or what it is to `--set`.
+    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its
+    /// message behind it, or what it is to `--set`.
     pub name: &'static str,
     /// Makes it.
     pub make: fn(&mut Program),
@@ -105,6 +107,7 @@ const OF_THE_BOARD: &[Mistake] = &[
     row("board_truncated", |p| p.squares = Squares::Truncated),
     row("board_rounded", |p| p.squares = Squares::Rounded),
     row("board_sum", |p| p.squares = Squares::Sum),
+    row("board_moved", |p| p.squares = Squares::Moved),
     row("board_stripes", |p| p.squares = Squares::Stripes),
     row("board_sines", |p| p.squares = Squares::Sines),
     row("Floor.square", |p| board(p, |_, square, _| *square *= 2.0)),
@@ -135,6 +138,12 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
         });
     }),
     row("depth_ignored", |p| p.visible = Visible::Last),
+    row("sphere_near_root", |p| p.misses_root = true),
+    row("triangle_anchor", |p| {
+        if let Shape::Triangle([a, b, c]) = *p.shape("Sail") {
+            shift(p, "Sail", (b + c - 2.0 * a) / 3.0);
+        }
+    }),
     row("triangle_parallelogram Sail", |p| p.is_parallelogram = true),
     row("triangle_edge Sail", |p| p.misses_edge = true),
     row("box_axis x|box_axis y|box_axis z", |p| p.misses_axis = true),
@@ -209,6 +218,13 @@ const OTHERS: &[Mistake] = &[
     row("gamma_18", |p| {
         p.change = |color| color.map(|byte| power(byte, 1.8))
     }),
+    row("decoded_twice", |p| {
+        p.change = |color| color.map(decoded_twice)
+    }),
+    row("six_levels", |p| {
+        p.change = |color| color.map(|byte| (f64::from(byte) / 51.0).round() as u8 * 51)
+    }),
+    row("sharpened", |p| p.afterwards = Some(sharpened)),
     row("video_range", |p| {
         p.change = |color| color.map(|byte| (16.0 + f64::from(byte) * 219.0 / 255.0).round() as u8)
     }),
@@ -282,6 +298,10 @@ pub fn scene(name: &str) -> (Program, String) {
         "clipped" => {
             program.near = 6.5;
             text = text.replace("d 2.75", "d 2.75  near 6.5");
+        }
+        "cut" => {
+            program.near = 9.0;
+            text = text.replace("d 2.75", "d 2.75  near 9");
         }
         "lens" => {
             program.distance = 1.0 / libm::tan(20_f64.to_radians());
@@ -377,6 +397,7 @@ fn figure() -> Program {
         clips_distances: false,
         misses_edge: false,
         is_parallelogram: false,
+        misses_root: false,
         misses_axis: false,
         faces: None,
         pixel: 1.0,
@@ -421,12 +442,11 @@ fn street() -> Program {
 
 /// A byte of sRGB as a plain power would have encoded its light.
 fn power(byte: u8, power: f64) -> u8 {
-    let part = f64::from(byte) / 255.0;
-    let light = match part <= 0.04045 {
-        true => part / 12.92,
-        false => libm::pow((part + 0.055) / 1.055, 2.4),
-    };
-    (255.0 * libm::pow(light, 1.0 / power)).round() as u8
+    (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
+}
+
+fn decoded_twice(byte: u8) -> u8 {
+    (255.0 * light(light(f64::from(byte) / 255.0))).round() as u8
 }
 
 /// Gray by encoded values.

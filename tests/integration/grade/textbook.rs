@@ -8,7 +8,7 @@
 use std::array;
 
 use glam::DVec3;
-use image::{Rgb, RgbImage};
+use image::{Pixel, Rgb, RgbImage, imageops};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
 
 /// A thing of a scene. Colours are in sRGB bytes.
@@ -85,6 +85,8 @@ pub enum Squares {
     Remainders,
     /// By the sum of two that are rounded to the nearest.
     Rounded,
+    /// By the sum of two of which the first is rounded to the nearest, and the other down.
+    Moved,
     /// By their sum, rounded down.
     Sum,
     /// By the first one, rounded down.
@@ -174,6 +176,8 @@ pub struct Program {
     /// side of the third edge.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
+    /// Whether the greater root of a sphere is not tried.
+    pub misses_root: bool,
     /// Whether boxes have no sides across z.
     pub misses_axis: bool,
     /// The colours of a box's faces across x, y and z, in the place of its own.
@@ -289,8 +293,7 @@ impl Program {
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),
-            _ if part <= 0.04045 => part / 12.92,
-            _ => libm::pow((part + 0.055) / 1.055, 2.4),
+            _ => light(part),
         }
     }
 
@@ -380,9 +383,16 @@ impl Program {
             Squares::Rounded => (x / square).round() as i64,
             _ => (x / square).floor() as i64,
         };
-        let (i, k) = (number(at.x), number(at.z) + self.parity);
+        let moved = if self.squares == Squares::Moved {
+            square / 2.0
+        } else {
+            0.0
+        };
+        let (i, k) = (number(at.x + moved), number(at.z) + self.parity);
         let is_second = match self.squares {
-            Squares::Floored | Squares::Truncated | Squares::Rounded => (i + k) % 2 != 0,
+            Squares::Floored | Squares::Moved | Squares::Truncated | Squares::Rounded => {
+                (i + k) % 2 != 0
+            }
             Squares::Sum => ((at.x + at.z) / square).floor() as i64 % 2 != 0,
             Squares::BothEven => i % 2 != 0 || k % 2 != 0,
             Squares::Stripes => i % 2 != 0,
@@ -400,7 +410,8 @@ impl Program {
                 let from = eye - center;
                 let (b, c) = (from.dot(ray), from.length_squared() - radius * radius);
                 let root = (b * b - c).sqrt();
-                [Some(-b + root), Some(-b - root)].map(|t| t.filter(|t| !t.is_nan()))
+                let greater = Some(-b + root).filter(|_| !self.misses_root);
+                [greater, Some(-b - root)].map(|t| t.filter(|t| !t.is_nan()))
             }
             Shape::Triangle([a, b, c]) => {
                 let (ab, ac) = (b - a, c - a);
@@ -432,5 +443,29 @@ impl Program {
                 [Some(t).filter(|t| t.is_finite()), None]
             }
         }
+    }
+}
+
+/// A picture with what each pixel has more than the mean of those around it added once more.
+pub fn sharpened(picture: &RgbImage) -> RgbImage {
+    let around = imageops::filter3x3(picture, &[1.0; 9]);
+    let [columns, rows] = [picture.width(), picture.height()].map(|side| 1..side - 1);
+    RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
+        let own = picture.get_pixel(x, y);
+        let mean = match columns.contains(&x) && rows.contains(&y) {
+            true => around.get_pixel(x, y),
+            false => own,
+        };
+        own.map2(mean, |own, mean| {
+            (2 * i16::from(own) - i16::from(mean)).clamp(0, 255) as u8
+        })
+    })
+}
+
+/// The light of a part of 255.
+pub fn light(part: f64) -> f64 {
+    match part <= 0.04045 {
+        true => part / 12.92,
+        false => libm::pow((part + 0.055) / 1.055, 2.4),
     }
 }

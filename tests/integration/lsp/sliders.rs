@@ -130,8 +130,8 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere { center (0, asin(a) / 1rad, 0) }",
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
-        // Errors that are there already do not count. If all nearby numbers are wrong, there are no
-        // limits.
+        // Errors that are there already do not count. If all nearby numbers are wrong, there are
+        // no limits.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",

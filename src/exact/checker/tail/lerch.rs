@@ -1,9 +1,10 @@
-//! The Lerch series V_s(θ) = Σ_j e^(iθj) (w + j)^(−s) for s = 3, 4, 5, by the expansion at its pole.
+//! The Lerch series V_s(θ) = Σ_j e^(iθj) (w + j)^(−s) for s = 3, 4, 5, by the expansion at its
+//! pole.
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ| up to which a Taylor series is used for the rest of the pole. The next term, θ⁹/47900160, is
-/// 100 of the 500 roundings that V may be off by.
+/// Angle |θ| up to which a Taylor series is used for the rest of the pole. The next term,
+/// θ⁹/47900160, is 100 of the 500 roundings that V may be off by.
 const NEAR_POLE: f64 = 0.2;
 
 /// Computes V_3, V_4 and V_5 at θ, |θ| ≤ π, up to R″. `rotation` is e^iθ.

@@ -109,8 +109,8 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the amplitudes of X's first terms in the mode n = 1. `first` is that of a first term with
-/// the factor 1, and `next` leads from each term to the next.
+/// Returns the amplitudes of X's first terms in the mode n = 1. `first` is that of a first term
+/// with the factor 1, and `next` leads from each term to the next.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -122,7 +122,8 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
 
 /// Returns the last mode to compute and a bound on all later ones. `size` bounds the modes without
 /// their factor n^−3; the later ones are less than a quarter of `limit`, unless the modes are too
-/// many. Returns `None` if the bound `trivial` is no worse, or the budget does not afford the modes.
+/// many. Returns `None` if the bound `trivial` is no worse, or the budget does not afford the
+/// modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
     // Σ n^−3 over the odd n beyond an integer Q is at most 1/4Q².
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);

@@ -24,8 +24,8 @@ const BEYOND_LAST_SHARE: f64 = 0.6;
 const LERCH_SHARE: f64 = 0.02;
 /// Minimum w for the series in 1/w. Its terms fall by s/w or faster, to a third each.
 const MIN_W: f64 = 16.0;
-/// Angle |θ| below which |1 − e^iθ|² = 2 − 2cos θ is replaced by a lower bound in θ², because a computed
-/// cosine loses most of its digits there.
+/// Angle |θ| below which |1 − e^iθ|² = 2 − 2cos θ is replaced by a lower bound in θ², because a
+/// computed cosine loses most of its digits there.
 const SMALL_ANGLE: f64 = 0.2;
 /// Lower bound on (2 − 2cos θ)/θ² for |θ| < `SMALL_ANGLE`. The ratio is 1 to within θ²/12, a third
 /// of a percent.
@@ -41,8 +41,8 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
     // The depth from which the rest is negligible; the first term is at most ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
-    // The truncation error of a mode falls as w^−5, and the terms from A_5 on as m^−5. The factor of
-    // A_5 is 0 if there are fewer terms.
+    // The truncation error of a mode falls as w^−5, and the terms from A_5 on as m^−5. The factor
+    // of A_5 is 0 if there are fewer terms.
     let steep = g * libm::pow(factor / (g * g * g) / (LERCH_SHARE * tolerance), 0.2);
     let fourth = series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g);
     let fourth = libm::pow(fourth / (LATER_TERMS_SHARE * tolerance), 0.2);
