@@ -275,10 +275,15 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(CommentPosition::Value);
         let word = self.word(0);
+        // The next line has another name and a value.
+        let is_next = self.is_on_new_line(0)
+            && self.starts_value(1)
+            && !self.words.is_value(word)
+            && !self.is_foreign_call();
         let is_field = if self.is_field_name(word) {
             !self.words.is_let(word)
         } else {
-            self.starts_block() || self.starts_item()
+            is_next || self.starts_block() || self.starts_item()
         };
         let is_comma = word == "," && (self.is_name(1) || !self.starts_value(1));
         let is_end = matches!(word, "" | "let" | "{" | "}" | ";") && !self.is_flat_list();

@@ -167,12 +167,12 @@ impl<'s> Recovery<'_, 's> {
     /// Returns whether no value can follow.
     fn is_end_of_definition(&mut self) -> bool {
         let word = self.word(0);
-        let is_new_name = self.is_name(0) && self.is_on_new_line(0);
         matches!(word, "" | "let" | "{" | "}" | ";")
-            || (is_new_name && (!self.words.is_value(word) || self.is_head(0)))
+            || (self.is_name(0)
+                && self.is_on_new_line(0)
+                && !self.is_foreign_call()
+                && (!self.words.is_value(word) || self.is_head(0)))
     }
-
-    // Blocks.
 
     /// Reads a block whose head has no slip, or is missing.
     pub(super) fn block(&mut self) {

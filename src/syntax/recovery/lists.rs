@@ -95,6 +95,12 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
+    /// Returns whether a call of another language's function starts here: a value, even on a new
+    /// line.
+    pub(super) fn is_foreign_call(&mut self) -> bool {
+        self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
+    }
+
     /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read.
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
