@@ -190,8 +190,9 @@ impl Search<'_> {
             }
             // Numbers that are not the right ones leave a little at edges, which others would seem
             // to explain.
-            let left = Left::by(judge, judged.candidate());
-            if left.is_some_and(|left| left.is_at_edges) {
+            let has_numbers = judged.candidate().numeric().next().is_some();
+            let left = || Left::by(judge, judged.candidate());
+            if has_numbers && left().is_some_and(|left| left.is_at_edges) {
                 let plain = plain(judge, judged.candidate());
                 judged = judge.judged(&plain, &judge.middle).unwrap_or(judged);
             }
