@@ -1,7 +1,7 @@
 //! Builds diagnostics where problems of meaning arise.
 
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Fix, Label, Severity},
+    diagnostic::{Applicability, Diagnostic, Fix, Label, Problems, Severity},
     source::Span,
 };
 
@@ -63,6 +63,11 @@ impl Diagnostic {
     ) -> Self {
         let texts = texts.into_iter();
         self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
+    }
+
+    /// Adds the diagnostic to others.
+    pub(super) fn report(self, problems: &mut Problems) {
+        problems.push(self);
     }
 
     /// Whether the diagnostic has a code.

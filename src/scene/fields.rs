@@ -3,13 +3,12 @@
 use std::cmp::Ordering;
 
 use super::{
-    field_ref::FieldRef,
     model::{Camera, Image, Lens, View},
     shape::Shape,
 };
 use crate::{
     math::compare_half_turns,
-    schema::{CAMERA, IMAGE, Value},
+    schema::{CAMERA, IMAGE, NamedField, Value},
 };
 
 /// An image, a camera or a shape, whose fields are read and changed by their names.
@@ -26,23 +25,42 @@ pub enum FieldOwner {
 impl FieldOwner {
     /// Returns the value of a field; `None` if the field is not used, because another way of a
     /// choice is taken. A box has the fields of both of its ways.
-    pub fn value(self, field: &str) -> Option<Value> {
-        match self {
-            Self::Image(mut image) => Some(image_field(&mut image, field)?.get()),
-            Self::Camera(mut camera) => Some(camera_field(&mut camera, field)?.get()),
-            Self::Shape(shape) => shape.field(field),
+    pub fn value(mut self, field: &str) -> Option<Value> {
+        if let Self::Shape(Shape::Box(cuboid)) = &self
+            && let Some(value) = cuboid.center_or_size(field)
+        {
+            return Some(Value::Vector(value));
         }
+        let mut fields = self.fields().into_iter();
+        let (_, found) = fields.find(|(name, _)| *name == field)?;
+        Some(found.value())
     }
 
     /// Returns the same with another value of a field; `None` if the field is not used, or the
     /// value is of another type. The language's conditions are not checked.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
-        match &mut self {
-            Self::Image(image) => image_field(image, field)?.set(value)?,
-            Self::Camera(camera) => camera_field(camera, field)?.set(value)?,
-            Self::Shape(shape) => *shape = shape.with_field(field, value)?,
+        if let (Self::Shape(Shape::Box(cuboid)), Value::Vector(to)) = (&mut self, value)
+            && cuboid.set_center_or_size(field, to)
+        {
+            return Some(self);
         }
+        let is_it = |(name, _): &NamedField<'_>| *name == field;
+        self.fields().into_iter().find(is_it)?.1.set(value)?;
         Some(self)
+    }
+
+    /// Returns the fields that are used, except the width and the height of an image, which are no
+    /// `f64`s, and the derived ones of a box.
+    fn fields(&mut self) -> Vec<NamedField<'_>> {
+        match self {
+            Self::Image(Image {
+                width: _,
+                height: _,
+                background,
+            }) => vec![IMAGE.background.of(background)],
+            Self::Camera(camera) => camera_fields(camera),
+            Self::Shape(shape) => shape.fields(),
+        }
     }
 
     /// Whether the language's conditions hold, as far as rounded numbers tell.
@@ -69,17 +87,7 @@ impl FieldOwner {
     }
 }
 
-/// Returns a field of an image. Width and height are no `f64`s and cannot be changed so.
-fn image_field<'a>(image: &'a mut Image, field: &str) -> Option<FieldRef<'a>> {
-    let Image {
-        width: _,
-        height: _,
-        background,
-    } = image;
-    (field == IMAGE.background.name).then_some(FieldRef::Color(background))
-}
-
-fn camera_field<'a>(camera: &'a mut Camera, field: &str) -> Option<FieldRef<'a>> {
+fn camera_fields(camera: &mut Camera) -> Vec<NamedField<'_>> {
     let Camera {
         eye,
         view,
@@ -90,18 +98,17 @@ fn camera_field<'a>(camera: &'a mut Camera, field: &str) -> Option<FieldRef<'a>>
         near,
         far,
     } = camera;
-    Some(match (view, lens) {
-        _ if field == CAMERA.eye.name => FieldRef::Vector(eye),
-        _ if field == CAMERA.up.name => FieldRef::Vector(up),
-        _ if field == CAMERA.roll.name => FieldRef::Angle(roll),
-        _ if field == CAMERA.near.name => FieldRef::Number(near),
-        _ if field == CAMERA.far.name => FieldRef::Number(far.as_mut()?),
-        (View::Lookat(point), _) if field == CAMERA.lookat.name => FieldRef::Vector(point),
-        (View::Direction(along), _) if field == CAMERA.direction.name => FieldRef::Vector(along),
-        (_, Lens::Distance(d)) if field == CAMERA.d.name => FieldRef::Number(d),
-        (_, Lens::Distance(_)) if field == CAMERA.view_height.name => FieldRef::Number(view_height),
-        (_, Lens::Fov(angle)) if field == CAMERA.fov.name => FieldRef::Angle(angle),
-        (_, Lens::HorizontalFov(angle)) if field == CAMERA.hfov.name => FieldRef::Angle(angle),
-        _ => return None,
-    })
+    let mut fields = vec![CAMERA.eye.of(eye), CAMERA.up.of(up), CAMERA.roll.of(roll)];
+    fields.push(CAMERA.near.of(near));
+    fields.extend(far.as_mut().map(|far| CAMERA.far.of(far)));
+    fields.push(match view {
+        View::Lookat(point) => CAMERA.lookat.of(point),
+        View::Direction(along) => CAMERA.direction.of(along),
+    });
+    match lens {
+        Lens::Distance(d) => fields.extend([CAMERA.d.of(d), CAMERA.view_height.of(view_height)]),
+        Lens::Fov(angle) => fields.push(CAMERA.fov.of(angle)),
+        Lens::HorizontalFov(angle) => fields.push(CAMERA.hfov.of(angle)),
+    }
+    fields
 }

@@ -74,7 +74,7 @@ impl LoweredBlock<'_> {
     }
 
     /// Returns the value of a field, or its default; `None` if it is missing or wrong.
-    pub fn value<T: FieldValue>(&self, field: FieldHandle<T>) -> Option<T> {
+    pub fn value<T: FieldValue + Copy>(&self, field: FieldHandle<T>) -> Option<T> {
         let value = match self.given(field) {
             Some(given) => given.value,
             None => *DEFAULTS.get(self.row.kind as usize)?.get(field.index)?,

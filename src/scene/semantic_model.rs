@@ -6,11 +6,11 @@
 use std::sync::Arc;
 
 use super::{
-    eval::{Evaluator, Names},
+    eval::{Names, value_of},
     model::{Camera, Image, Object, Sampler, Scene},
 };
 use crate::{
-    diagnostic::{Diagnostic, Problems},
+    diagnostic::Diagnostic,
     schema::{Type, Value},
     source::Sources,
     syntax::{
@@ -95,12 +95,6 @@ impl<'s> SemanticModel<'s> {
     /// Evaluates a value of the tree; `wanted` is the type that would fit, if it is known. Returns
     /// `None` if the value has errors, or means nothing by itself, such as the word of a method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
-        let mut problems = Problems::default();
-        let mut evaluator = Evaluator {
-            sources: self.sources,
-            names: &self.names,
-            problems: &mut problems,
-        };
-        evaluator.value(value, wanted)
+        value_of(value, wanted, self.sources, &self.names)
     }
 }

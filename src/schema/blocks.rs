@@ -1,7 +1,7 @@
 //! The table of blocks and their fields.
 
 use super::{
-    row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several},
+    row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset},
     types::{Type, contents},
 };
 use Condition::{
@@ -9,108 +9,86 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// Makes the fields of a kind of block, each with a row and a handle.
+/// Makes the rows of all kinds of blocks in the order of [`BlockKind`], and a handle for each
+/// field.
 ///
-/// A line gives a field's name, type, preset and help; then any other columns of its row.
-macro_rules! fields {
-    ($kind:ident $handles:ident $constant:ident {
-        $($name:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
-    }) => {
-        #[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
+/// The head of a block gives its kind, the type and the name of its handles, its keyword with the
+/// article, whether it is an object, and its help. Each line of fields gives a field's name, type,
+/// preset and help; then any other columns of its row. The second braces hold any other columns of
+/// the block's row.
+macro_rules! blocks {
+    ($($kind:ident $handles:ident $constant:ident $article:literal $name:literal is_object($is_object:literal) $help:literal {
+        $($field:ident $takes:ident $preset:ident $(($default:literal))? $about:literal $($column:ident($value:expr))*;)*
+    } {
+        $($more:ident($content:expr))*
+    })*) => {
+        $(#[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $handles {
-            $(#[doc = $help] pub $name: FieldHandle<contents::$takes>,)*
+            $(#[doc = $about] pub $field: FieldHandle<contents::$takes>,)*
         }
 
         #[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         pub const $constant: $handles = {
             #[allow(non_camel_case_types, reason = "the variants are named as the fields are")]
-            enum Index { $($name),* }
+            enum Index { $($field),* }
             $handles {
-                $($name: FieldHandle::new(
-                    stringify!($name),
+                $($field: FieldHandle::new(
+                    stringify!($field),
                     BlockKind::$kind,
-                    Index::$name as usize,
+                    Index::$field as usize,
                 ),)*
             }
         };
 
-        impl $handles {
-            const ROWS: &[FieldRow] = &[$(FieldRow {
-                $($more: $value,)*
+        const _: () = assert!(
+            BLOCKS[BlockKind::$kind as usize].kind as usize == BlockKind::$kind as usize,
+            "rows stand in the order of their kinds"
+        );)*
+
+        /// The rows of all kinds of blocks, in the order of [`BlockKind`].
+        pub const BLOCKS: &[BlockRow] = &[$(BlockRow {
+            is_object: $is_object,
+            fields: &[$(FieldRow {
+                $($column: $value,)*
                 ..FieldRow::new(
-                    stringify!($name),
+                    stringify!($field),
                     Type::$takes,
                     Preset::$preset $(($default))?,
-                    $help,
+                    $about,
                 )
-            }),*];
-        }
+            }),*],
+            $($more: $content,)*
+            ..BlockRow::new(BlockKind::$kind, $name, concat!($article, " ", $name), $help)
+        }),*];
     };
 }
 
-/// A row without choices or other words, which the table's rows start from.
-const BLOCK: BlockRow = BlockRow {
-    kind: BlockKind::Image,
-    name: "",
-    noun: "",
-    is_object: false,
-    help: "",
-    fields: &[],
-    choices: &[],
-    together: &[],
-    several: &[],
-    parted: &[],
-    also_tried: "",
-    elsewhere: &[],
-};
+/// Returns the names of fields of a block, by their handles.
+macro_rules! names {
+    ($handles:ident $($field:ident)*) => {
+        &[$($handles.$field.name),*]
+    };
+}
 
-/// The rows of all kinds of blocks, in the order of [`BlockKind`].
-pub const BLOCKS: &[BlockRow] = &[
-    IMAGE_ROW,
-    CAMERA_ROW,
-    SAMPLER_ROW,
-    SPHERE_ROW,
-    TRIANGLE_ROW,
-    BOX_ROW,
-    CHECKERBOARD_ROW,
-];
+/// Makes a choice of a block: why only one of its ways can be given, and the fields of each way.
+macro_rules! choice {
+    ($handles:ident $why:literal $($($field:ident)+)|+) => {
+        Choice { ways: &[$(&[$($handles.$field.name),+]),+], why: $why }
+    };
+}
 
-const _: () = {
-    let mut at = 0;
-    while at < BLOCKS.len() {
-        assert!(
-            BLOCKS[at].kind as usize == at,
-            "rows stand in the order of their kinds"
-        );
-        at += 1;
-    }
-};
-
-fields! {
-    Image ImageFields IMAGE {
+blocks! {
+    Image ImageFields IMAGE "an" "image" is_object(false) "the picture's size, and what is seen where nothing is hit" {
         width Number Value("800") "the columns of pixels" must(PIXELS) also_tried("columns w");
         height Number Value("450") "the rows of pixels" must(PIXELS) also_tried("rows h");
         background Color Value("black") "the colour where nothing is hit" also_tried("bg color colour sky");
+    } {
+        several(&[("resolution size dimensions", names!(IMAGE width height))])
+        also_tried("picture window film output")
     }
-}
 
-const IMAGE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Image,
-    name: "image",
-    noun: "an image",
-    help: "the picture's size, and what is seen where nothing is hit",
-    fields: ImageFields::ROWS,
-    several: &[Several {
-        words: "resolution size dimensions",
-        fields: &[IMAGE.width.name, IMAGE.height.name],
-    }],
-    also_tried: "picture window film output",
-    ..BLOCK
-};
-
-fields! {
-    Camera CameraFields CAMERA {
+    Camera CameraFields CAMERA "a" "camera" is_object(false) "the pinhole camera: where it stands, where it looks, how much it sees" {
         eye Vector Required "the point that all rays pass through" example("(0, 2, 8)")
             also_tried("position pos from center centre origin location look_from");
         lookat Vector Alternative "the point that it looks at" example("(0, 1, 0)") also_tried("look_at target at to") perhaps("look");
@@ -127,96 +105,48 @@ fields! {
             example("60deg") also_tried("xfov horizontal_fov") perhaps("angle");
         near Number Value("0") "nothing at this depth or nearer is seen" must(&[AtLeast(0.0)]);
         far Number Nothing "nothing at this depth or farther is seen" example("100");
+    } {
+        choices(&[
+            choice!(CAMERA "either a point or a direction says where the camera looks" lookat | direction),
+            choice!(CAMERA "one of d, fov and hfov says how much the camera sees" d | fov | hfov),
+        ])
+        together(&["lookat ≠ eye", "near < far"])
+        also_tried("cam view viewer eye")
+        elsewhere(&[
+            ("aspect aspect_ratio ratio right",
+             "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9"),
+            ("width height resolution size dimensions image_width image_height",
+             "write the picture's size in pixels as `image { width 640  height 480 }`; `view_height` is the height of the window in metres"),
+            ("zoom zoom_factor scale",
+             "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`"),
+            ("focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
+             "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm"),
+        ])
     }
-}
 
-const CAMERA_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Camera,
-    name: "camera",
-    noun: "a camera",
-    help: "the pinhole camera: where it stands, where it looks, how much it sees",
-    fields: CameraFields::ROWS,
-    choices: &[
-        Choice {
-            ways: &[&[CAMERA.lookat.name], &[CAMERA.direction.name]],
-            why: "either a point or a direction says where the camera looks",
-        },
-        Choice {
-            ways: &[&[CAMERA.d.name], &[CAMERA.fov.name], &[CAMERA.hfov.name]],
-            why: "one of d, fov and hfov says how much the camera sees",
-        },
-    ],
-    together: &["lookat ≠ eye", "near < far"],
-    also_tried: "cam view viewer eye",
-    elsewhere: &[
-        (
-            "aspect aspect_ratio ratio right",
-            "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9",
-        ),
-        (
-            "width height resolution size dimensions image_width image_height",
-            "write the picture's size in pixels as `image { width 640  height 480 }`; `view_height` is the height of the window in metres",
-        ),
-        (
-            "zoom zoom_factor scale",
-            "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`",
-        ),
-        (
-            "focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
-            "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm",
-        ),
-    ],
-    ..BLOCK
-};
-
-fields! {
-    Sampler SamplerFields SAMPLER {
+    Sampler SamplerFields SAMPLER "a" "sampler" is_object(false) "where in a pixel samples are taken, and how many" {
         method Method Value("multi_jittered") "the sampling technique" also_tried("technique type kind pattern");
         per_pixel Number Value("16") "the samples in each pixel" must(&[Whole, AtLeast(1.0)])
             also_tried("samples spp") perhaps("count n");
         total Number Nothing "the samples in the whole picture, instead of per_pixel"
             must(&[Whole, AtLeast(1.0), AtMostTwoTo(53)]) example("1_000_000");
         seed Number Value("0") "another seed gives other random samples" must(&[Whole, AtLeast(0.0), LessThanTwoTo(53)]);
+    } {
+        choices(&[choice!(SAMPLER "either one says how many samples there are" per_pixel | total)])
+        together(&["per_pixel times the number of pixels is at most 2^53"])
+        also_tried("sampling samples antialiasing")
     }
-}
 
-const SAMPLER_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Sampler,
-    name: "sampler",
-    noun: "a sampler",
-    help: "where in a pixel samples are taken, and how many",
-    fields: SamplerFields::ROWS,
-    choices: &[Choice {
-        ways: &[&[SAMPLER.per_pixel.name], &[SAMPLER.total.name]],
-        why: "either one says how many samples there are",
-    }],
-    together: &["per_pixel times the number of pixels is at most 2^53"],
-    also_tried: "sampling samples antialiasing",
-    ..BLOCK
-};
-
-fields! {
-    Sphere SphereFields SPHERE {
+    Sphere SphereFields SPHERE "a" "sphere" is_object(true) "a sphere" {
         center Vector Required "its centre" example("(0, 1, 0)") also_tried(POSITION);
         radius Number Value("1") "its radius" must(POSITIVE) also_tried("r") perhaps("size") doubled("diameter");
         color Color Value("olive") "its colour" also_tried(COLOR);
+    } {
+        parted(&[("x y z|cx cy cz", names!(SPHERE center))])
+        also_tried("ball circle globe")
     }
-}
 
-const SPHERE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Sphere,
-    name: "sphere",
-    noun: "a sphere",
-    is_object: true,
-    help: "a sphere",
-    fields: SphereFields::ROWS,
-    parted: &[("x y z|cx cy cz", &[SPHERE.center.name])],
-    also_tried: "ball circle globe",
-    ..BLOCK
-};
-
-fields! {
-    Triangle TriangleFields TRIANGLE {
+    Triangle TriangleFields TRIANGLE "a" "triangle" is_object(true) "a triangle, by centroid, normal and the lengths of its sides or by its vertices" {
         centroid Vector Alternative "the mean of its vertices" example("(0, 1, 0)")
             also_tried("center centre position pos at middle location");
         normal Vector Alternative "what its plane is perpendicular to, of any length" must(&[NotZero])
@@ -229,49 +159,19 @@ fields! {
         v1 Vector Alternative "one of its vertices, together with the two others" example("(1, 0, 0)") also_tried("b p1 vertex1");
         v2 Vector Alternative "one of its vertices, together with the two others" example("(0, 1, 0)") also_tried("c p2 vertex2");
         color Color Value("teal") "its colour" also_tried(COLOR);
+    } {
+        choices(&[choice!(TRIANGLE "a triangle is given by centroid, normal and sides, or by v0, v1 and v2" centroid normal sides spin | v0 v1 v2)])
+        several(&[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))])
+        parted(&[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))])
+        together(&[
+            "the sides form a triangle: each is shorter than the two others together",
+            "v0, v1 and v2 do not lie on one line",
+        ])
+        also_tried("tri sail polygon")
+        elsewhere(&[("v3 v4 v5 p3 d", "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it")])
     }
-}
 
-const TRIANGLE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Triangle,
-    name: "triangle",
-    noun: "a triangle",
-    is_object: true,
-    help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
-    fields: TriangleFields::ROWS,
-    choices: &[Choice {
-        ways: &[
-            &[
-                TRIANGLE.centroid.name,
-                TRIANGLE.normal.name,
-                TRIANGLE.sides.name,
-                TRIANGLE.spin.name,
-            ],
-            &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
-        ],
-        why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
-    }],
-    several: &[Several {
-        words: "vertices points corners vertex",
-        fields: &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
-    }],
-    parted: &[(
-        "v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3",
-        &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
-    )],
-    together: &[
-        "the sides form a triangle: each is shorter than the two others together",
-        "v0, v1 and v2 do not lie on one line",
-    ],
-    also_tried: "tri sail polygon",
-    elsewhere: &[(
-        "v3 v4 v5 p3 d",
-        "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it",
-    )],
-};
-
-fields! {
-    Box BoxFields BOX {
+    Box BoxFields BOX "a" "box" is_object(true) "a box along the axes, by centre and size or by two corners" {
         center Vector Alternative "its centre" example("(0, 1, 0)") also_tried(POSITION);
         size Vector Value("(0.5, 1.5, 2)") "its extents along x, y and z" must(&[EachMoreThanZero])
             also_tried("sides dimensions extent");
@@ -280,85 +180,39 @@ fields! {
         color Color Value("orange") "its colour" also_tried(COLOR);
         colors FaceColors Nothing "the colours of its faces across x, y and z, instead of color" example("(tan, wheat, peru)")
             also_tried("faces colours");
+    } {
+        choices(&[
+            choice!(BOX "a box is given by center and size, or by min and max" center size | min max),
+            choice!(BOX "a box has one colour, or one for its faces across each axis" color | colors),
+        ])
+        parted(&[
+            ("corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b", names!(BOX min max)),
+            ("width height depth|w h d|size_x size_y size_z", names!(BOX size)),
+            ("x y z|cx cy cz", names!(BOX center)),
+            ("color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z", names!(BOX colors)),
+        ])
+        together(&["min < max on every axis"])
+        also_tried("cube cuboid block crate brick wall slab")
+        elsewhere(&[
+            ("width height depth x y z", "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z"),
+            ("turn rotate rotation rotated roll spin angle tilt yaw pitch",
+             "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2"),
+        ])
     }
-}
 
-const BOX_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Box,
-    name: "box",
-    noun: "a box",
-    is_object: true,
-    help: "a box along the axes, by centre and size or by two corners",
-    fields: BoxFields::ROWS,
-    choices: &[
-        Choice {
-            ways: &[
-                &[BOX.center.name, BOX.size.name],
-                &[BOX.min.name, BOX.max.name],
-            ],
-            why: "a box is given by center and size, or by min and max",
-        },
-        Choice {
-            ways: &[&[BOX.color.name], &[BOX.colors.name]],
-            why: "a box has one colour, or one for its faces across each axis",
-        },
-    ],
-    parted: &[
-        (
-            "corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b",
-            &[BOX.min.name, BOX.max.name],
-        ),
-        (
-            "width height depth|w h d|size_x size_y size_z",
-            &[BOX.size.name],
-        ),
-        ("x y z|cx cy cz", &[BOX.center.name]),
-        (
-            "color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z",
-            &[BOX.colors.name],
-        ),
-    ],
-    together: &["min < max on every axis"],
-    also_tried: "cube cuboid block crate brick wall slab",
-    elsewhere: &[
-        (
-            "width height depth x y z",
-            "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z",
-        ),
-        (
-            "turn rotate rotation rotated roll spin angle tilt yaw pitch",
-            "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2",
-        ),
-    ],
-    ..BLOCK
-};
-
-fields! {
-    Checkerboard CheckerboardFields CHECKERBOARD {
+    Checkerboard CheckerboardFields CHECKERBOARD "a" "checkerboard" is_object(true) "the infinite checkered floor in a horizontal plane" {
         y Number Value("0") "the height of its plane" also_tried("height level");
         square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares");
         colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
+    } {
+        parted(&[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))])
+        also_tried("plane floor ground checker chessboard board")
+        elsewhere(&[(
+            "size width depth length extent extents rows columns",
+            "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
+        )])
     }
 }
-
-const CHECKERBOARD_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Checkerboard,
-    name: "checkerboard",
-    noun: "a checkerboard",
-    is_object: true,
-    help: "the infinite checkered floor in a horizontal plane",
-    fields: CheckerboardFields::ROWS,
-    parted: &[(
-        "color1 color2|colour1 colour2|color_a color_b|even odd",
-        &[CHECKERBOARD.colors.name],
-    )],
-    also_tried: "plane floor ground checker chessboard board",
-    elsewhere: &[(
-        "size width depth length extent extents rows columns",
-        "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
-    )],
-    ..BLOCK
-};
 
 /// Conditions on a number of pixels along a side of the picture.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];

@@ -18,7 +18,7 @@ pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
 pub use row_types::{
-    BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several,
+    BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, NamedField, Preset,
 };
 pub use types::{FieldValue, Type, Value};
 

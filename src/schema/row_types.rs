@@ -4,7 +4,7 @@ use std::{fmt, marker::PhantomData};
 
 use glam::DVec3;
 
-use super::types::{Type, Value};
+use super::types::{FieldValue, Type, Value};
 use crate::{
     math::compare_half_turns,
     suggest::{self, is_among},
@@ -48,8 +48,9 @@ pub struct BlockRow {
     pub choices: &'static [Choice],
     /// Conditions between fields, written with the fields' names.
     pub together: &'static [&'static str],
-    /// Words that people try for several of the fields at once.
-    pub several: &'static [Several],
+    /// Words that people try for several of the fields at once, with a list of the fields' values,
+    /// and these fields.
+    pub several: &'static [(&'static str, &'static [&'static str])],
     /// Sets of words that people try together for the parts of one field, or for one field each.
     ///
     /// The words of a set are separated by blanks, and sets by `|`. The second part names the one
@@ -69,15 +70,6 @@ pub struct Choice {
     pub ways: &'static [&'static [&'static str]],
     /// Why only one of them can be given.
     pub why: &'static str,
-}
-
-/// Words that people try for several fields at once, with a list of the fields' values.
-#[derive(Debug)]
-pub struct Several {
-    /// The words.
-    pub words: &'static str,
-    /// The fields.
-    pub fields: &'static [&'static str],
 }
 
 /// The table's row for a field.
@@ -158,6 +150,16 @@ impl<T> FieldHandle<T> {
     }
 }
 
+impl<T: FieldValue> FieldHandle<T> {
+    /// Returns the field's name with a reference to its value.
+    pub fn of(self, value: &mut T) -> NamedField<'_> {
+        (self.name, value)
+    }
+}
+
+/// The name of a field, and a reference to its value, whatever its type.
+pub type NamedField<'a> = (&'static str, &'a mut dyn FieldValue);
+
 /// The value of a field that is not given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
@@ -229,6 +231,29 @@ impl fmt::Display for Condition {
 }
 
 impl BlockRow {
+    /// Returns the row of a setting without fields or other words.
+    pub(super) const fn new(
+        kind: BlockKind,
+        name: &'static str,
+        noun: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self {
+            kind,
+            name,
+            noun,
+            is_object: false,
+            help,
+            fields: &[],
+            choices: &[],
+            together: &[],
+            several: &[],
+            parted: &[],
+            also_tried: "",
+            elsewhere: &[],
+        }
+    }
+
     /// Returns the row of a field by its name.
     pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
         self.fields.iter().find(|field| field.name == name)

@@ -2,70 +2,98 @@
 
 use std::fmt;
 
-use glam::DVec3;
+use crate::{math::Angle, numbers};
 
-use super::methods::Method;
-use crate::{color::Color, math::Angle, numbers};
+/// Makes the language's types and their values, each with a Rust type.
+///
+/// A line gives the variant, its Rust type, the type with its article, the plural, and the help that
+/// says what to write for a value of the type.
+macro_rules! types {
+    ($($variant:ident $contents:ty, $noun:literal $plural:literal $such_as:literal;)*) => {
+        /// A type of the language.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Type {
+            $(#[doc = concat!("The type of ", $plural, ".")] $variant,)*
+        }
 
-/// A type of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Type {
-    /// A number.
-    Number,
-    /// A number with a unit.
-    Angle,
-    /// A list of three numbers.
-    Vector,
-    /// An sRGB colour.
-    Color,
-    /// A pair of colours.
-    Colors,
-    /// A list of three colours: those of the faces of a box across x, y and z.
-    FaceColors,
-    /// The name of a sampling technique.
-    Method,
+        impl Type {
+            /// Returns the type with its article, such as `a number`.
+            pub fn noun(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $noun,)*
+                }
+            }
+
+            /// Returns the plural of the type, such as `numbers`.
+            pub fn plural(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $plural,)*
+                }
+            }
+
+            /// Returns the help that says what to write for a value of the type.
+            pub fn such_as(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $such_as,)*
+                }
+            }
+        }
+
+        /// A value of the language.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Value {
+            $(#[doc = concat!("The value is ", $noun, ".")] $variant(contents::$variant),)*
+        }
+
+        impl Value {
+            /// Returns the value's type.
+            pub fn kind(&self) -> Type {
+                match self {
+                    $(Self::$variant(_) => Type::$variant,)*
+                }
+            }
+        }
+
+        /// For each of the language's types the Rust type of its values.
+        pub(super) mod contents {
+            $(pub type $variant = $contents;)*
+        }
+
+        $(impl FieldValue for contents::$variant {
+            fn from_value(value: Value) -> Option<Self> {
+                match value {
+                    Value::$variant(contents) => Some(contents),
+                    _ => None,
+                }
+            }
+
+            fn value(&self) -> Value {
+                Value::$variant(*self)
+            }
+
+            fn set(&mut self, value: Value) -> Option<()> {
+                *self = Self::from_value(value)?;
+                Some(())
+            }
+        })*
+    };
+}
+
+types! {
+    Number f64, "a number" "numbers" "write a number, such as `2`";
+    Angle crate::math::Angle, "an angle" "angles" "write an angle, such as `30deg`";
+    Vector glam::DVec3, "a vector" "vectors" "write three numbers, such as `(0, 1, 0)`";
+    Color crate::color::Color, "a colour" "colours" "write a colour, such as `olive` or `rgb(255, 165, 0)`";
+    Colors [crate::color::Color; 2], "a pair of colours" "pairs of colours" "write two colours, such as `(gray, white)`";
+    FaceColors [crate::color::Color; 3], "a list of three colours" "lists of three colours" "write three colours, such as `(tan, wheat, peru)`";
+    Method crate::schema::Method, "a method" "methods" "write a method, such as `jittered`";
 }
 
 impl Type {
-    /// Returns the type with its article, such as `a number`.
-    pub fn noun(self) -> &'static str {
-        match self {
-            Self::Number => "a number",
-            Self::Angle => "an angle",
-            Self::Vector => "a vector",
-            Self::Color => "a colour",
-            Self::Colors => "a pair of colours",
-            Self::FaceColors => "a list of three colours",
-            Self::Method => "a method",
-        }
-    }
-
     /// Returns the type without an article, such as `number`.
     pub fn word(self) -> &'static str {
         let noun = self.noun();
         noun.split_once(' ').map_or(noun, |(_, word)| word)
-    }
-
-    /// Returns the plural of the type, such as `numbers`.
-    pub fn plural(self) -> String {
-        match self {
-            Self::Colors => "pairs of colours".to_owned(),
-            Self::FaceColors => "lists of three colours".to_owned(),
-            _ => format!("{}s", self.word()),
-        }
-    }
-
-    /// Returns the help that says what to write for a value of the type.
-    pub fn such_as(self) -> &'static str {
-        match self {
-            Self::Number => "write a number, such as `2`",
-            Self::Angle => "write an angle, such as `30deg`",
-            Self::Vector => "write three numbers, such as `(0, 1, 0)`",
-            Self::Color => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
-            Self::Colors => "write two colours, such as `(gray, white)`",
-            Self::FaceColors => "write three colours, such as `(tan, wheat, peru)`",
-            Self::Method => "write a method, such as `jittered`",
-        }
     }
 
     /// Returns the type and the number of a list's elements: of a vector three numbers, of a pair
@@ -80,39 +108,7 @@ impl Type {
     }
 }
 
-/// A value of the language.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// An angle.
-    Angle(Angle),
-    /// A vector.
-    Vector(DVec3),
-    /// A colour.
-    Color(Color),
-    /// A pair of colours.
-    Colors([Color; 2]),
-    /// Three colours.
-    FaceColors([Color; 3]),
-    /// A sampling technique.
-    Method(Method),
-}
-
 impl Value {
-    /// Returns the value's type.
-    pub fn kind(&self) -> Type {
-        match self {
-            Self::Number(_) => Type::Number,
-            Self::Angle(_) => Type::Angle,
-            Self::Vector(_) => Type::Vector,
-            Self::Color(_) => Type::Color,
-            Self::Colors(_) => Type::Colors,
-            Self::FaceColors(_) => Type::FaceColors,
-            Self::Method(_) => Type::Method,
-        }
-    }
-
     /// Whether no number in the value is infinite or NaN.
     pub fn is_finite(&self) -> bool {
         match self {
@@ -144,37 +140,15 @@ impl fmt::Display for Value {
 }
 
 /// A Rust type that holds the values of one of the language's types.
-pub trait FieldValue: Copy {
+pub trait FieldValue {
     /// Returns the contents of a value; `None` if the value is of another type.
-    fn from_value(value: Value) -> Option<Self>;
-}
+    fn from_value(value: Value) -> Option<Self>
+    where
+        Self: Sized;
 
-/// Names the Rust type of each of the language's types, and unpacks values to it.
-macro_rules! contents {
-    ($($variant:ident $contents:ty;)*) => {
-        /// For each of the language's types the Rust type of its values.
-        pub(super) mod contents {
-            $(pub type $variant = $contents;)*
-        }
+    /// Returns the contents as a value.
+    fn value(&self) -> Value;
 
-        $(#[allow(unused_qualifications, reason = "the paths must be right in `contents`, too")]
-        impl FieldValue for $contents {
-            fn from_value(value: Value) -> Option<Self> {
-                match value {
-                    Value::$variant(contents) => Some(contents),
-                    _ => None,
-                }
-            }
-        })*
-    };
-}
-
-contents! {
-    Number f64;
-    Angle crate::math::Angle;
-    Vector glam::DVec3;
-    Color crate::color::Color;
-    Colors [crate::color::Color; 2];
-    FaceColors [crate::color::Color; 3];
-    Method crate::schema::Method;
+    /// Changes the contents. Returns `None` if the new value is of another type.
+    fn set(&mut self, value: Value) -> Option<()>;
 }

@@ -91,11 +91,12 @@ fn slider<'a>(
     let range = behind.and_then(range_behind);
     let Some(literal) = Literal::of(value) else {
         let note = "a range is for a number or an angle that stands alone".to_owned();
-        return range.map(|_| Slider {
+        let (span, limits, note) = (value.span, None, range.map(|_| note));
+        return note.is_some().then_some(Slider {
             name,
-            span: value.span,
-            limits: None,
-            note: Some(note),
+            span,
+            limits,
+            note,
         });
     };
     let bounds = Bounds::of_name(analysis, name, literal.unit);
@@ -104,10 +105,11 @@ fn slider<'a>(
         Some(Err(note)) => (tried(&literal, bounds, trials), Some(note)),
         None => (tried(&literal, bounds, trials), None),
     };
+    let (span, limits) = (literal.span, Some(limits));
     Some(Slider {
         name,
-        span: literal.span,
-        limits: Some(limits),
+        span,
+        limits,
         note,
     })
 }

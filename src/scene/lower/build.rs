@@ -1,4 +1,4 @@
-//! Blocks → scene: the parts of the scene, once all fields have values.
+//! Blocks → scene: the objects and the other parts of the scene, once all fields have values.
 
 use super::{
     fixes,
@@ -9,10 +9,11 @@ use crate::{
     scene::{
         error::{error, warning},
         lowered_block::LoweredBlock,
-        model::{Count, Image, SMALLEST, Sampler},
+        model::{Count, Image, Object, SMALLEST, Sampler},
         semantic_model::Parts,
+        shape::Shape,
     },
-    schema::{self, BlockKind, IMAGE, ImageFields, Method, SAMPLER, SamplerFields},
+    schema::{self, BlockKind, CHECKERBOARD, IMAGE, ImageFields, Method, SAMPLER, SamplerFields},
     source::{SourceId, Span},
     suggest,
     syntax::shorten,
@@ -87,12 +88,11 @@ impl<'s> Lowering<'s> {
         } else {
             fixes::at_end("write the smallest scene", SMALLEST, self.sources)
         };
-        self.problems.push(
-            error("missing_camera", "the scene has no camera")
-                .at(START, "no `camera` in this text")
-                .help(format!("add one, such as `{example}`"))
-                .fixes([fix]),
-        );
+        error("missing_camera", "the scene has no camera")
+            .at(START, "no `camera` in this text")
+            .help(format!("add one, such as `{example}`"))
+            .fixes([fix])
+            .report(&mut self.problems);
     }
 
     fn no_objects(&mut self) {
@@ -100,12 +100,11 @@ impl<'s> Lowering<'s> {
         let objects = schema::BLOCKS.iter().filter(|row| row.is_object);
         let kinds = suggest::choice(objects.map(|row| row.name));
         let help = format!("the picture shows the background only; add one, such as `{example}`");
-        self.problems.push(
-            warning("no_objects", "the scene has no objects")
-                .at(START, format!("no {kinds} in this text"))
-                .help(help)
-                .fixes([add]),
-        );
+        warning("no_objects", "the scene has no objects")
+            .at(START, format!("no {kinds} in this text"))
+            .help(help)
+            .fixes([add])
+            .report(&mut self.problems);
     }
 
     /// Returns a block with the fields that it needs, and a fix that adds it.
@@ -114,6 +113,29 @@ impl<'s> Lowering<'s> {
         let (example, title) = (row.example(), format!("add {}", row.noun));
         let fix = fixes::at_end(title, &format!("{example}\n"), self.sources);
         (example, fix)
+    }
+
+    /// Builds an object of a block at some values of its indices. Returns whether it is built: not
+    /// if a value is missing or wrong.
+    pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
+        let Some(shape) = Shape::lower(block, &mut self.problems) else {
+            return false;
+        };
+        if let Shape::Checkerboard(board) = shape {
+            self.boards.push((board, block.place(CHECKERBOARD.square)));
+        }
+        let listed = || Vec::from_iter(indices.iter().map(u32::to_string)).join(", ");
+        let name = block.name.map(|name| match indices {
+            [] => name.text.to_owned(),
+            _ => format!("{}[{}]", name.text, listed()),
+        });
+        self.objects.push(Object {
+            name,
+            indices: indices.into(),
+            shape,
+            span: block.span,
+        });
+        true
     }
 
     /// Builds the image; `None` if a value is missing or wrong.
@@ -158,12 +180,11 @@ impl<'s> Lowering<'s> {
                 let help = format!(
                     "a pixel without a sample shows the background; give a `total` of at least {pixels}"
                 );
-                self.problems.push(
-                    warning("few_samples", message)
-                        .at(given.span, "fewer than there are pixels")
-                        .help(help)
-                        .writing(given.span, Applicability::Placeholder, [pixels.to_string()]),
-                );
+                warning("few_samples", message)
+                    .at(given.span, "fewer than there are pixels")
+                    .help(help)
+                    .writing(given.span, Applicability::Placeholder, [pixels.to_string()])
+                    .report(&mut self.problems);
             }
             (Count::PerPixel(count), Some(pixels), Some(given))
                 if count > MOST_SAMPLES / pixels =>
@@ -173,12 +194,11 @@ impl<'s> Lowering<'s> {
                 let message = format!("{written} samples in each of {pixels} pixels are too many");
                 let help =
                     format!("at most {most} samples per pixel keep the whole count within 2^53");
-                self.problems.push(
-                    error("too_many_samples", message)
-                        .at(given.span, "too many")
-                        .help(help)
-                        .writing(given.span, Applicability::Placeholder, [most.to_string()]),
-                );
+                error("too_many_samples", message)
+                    .at(given.span, "too many")
+                    .help(help)
+                    .writing(given.span, Applicability::Placeholder, [most.to_string()])
+                    .report(&mut self.problems);
             }
             _ => {}
         }

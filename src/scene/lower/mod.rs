@@ -11,8 +11,6 @@ mod field_value;
 mod fixes;
 mod items;
 mod lowering;
-mod missing;
-mod objects;
 mod read;
 mod repetition;
 mod suggestions;

@@ -1,13 +1,12 @@
 //! The sphere.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
 use crate::{
     color::Color,
     numbers::{short, short_vector},
-    scene::{field_ref::FieldRef, lowered_block::LoweredBlock},
-    schema::{SPHERE, SphereFields},
+    scene::lowered_block::LoweredBlock,
+    schema::{NamedField, SPHERE, SphereFields},
 };
 
 /// A sphere.
@@ -35,13 +34,12 @@ impl Sphere {
         })
     }
 
-    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
-        Some(match name {
-            _ if name == SPHERE.center.name => FieldRef::Vector(&mut self.center),
-            _ if name == SPHERE.radius.name => FieldRef::Number(&mut self.radius),
-            _ if name == SPHERE.color.name => FieldRef::Color(&mut self.color),
-            _ => return None,
-        })
+    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
+        vec![
+            SPHERE.center.of(&mut self.center),
+            SPHERE.radius.of(&mut self.radius),
+            SPHERE.color.of(&mut self.color),
+        ]
     }
 
     pub(super) fn is_possible(&self) -> bool {
@@ -67,18 +65,5 @@ impl Sphere {
     pub(super) fn summary(&self) -> String {
         let (center, radius) = (short_vector(self.center), short(self.radius));
         format!("center {center}, radius {radius}, {}", self.color)
-    }
-
-    pub(super) fn facts(&self) -> Vec<(&'static str, Json)> {
-        let Self {
-            center,
-            radius,
-            color,
-        } = self;
-        vec![
-            ("center", json!(center.to_array())),
-            ("radius", json!(radius)),
-            ("color", json!(color.to_string())),
-        ]
     }
 }
