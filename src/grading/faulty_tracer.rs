@@ -384,7 +384,7 @@ impl FaultyTracer {
                 let off = (point - min).abs().min((point - max).abs());
                 off.min_position()
             }
-            _ => 0,
+            Shape::Sphere(_) | Shape::Triangle(_) => 0,
         };
         Some(object.colors[color])
     }
