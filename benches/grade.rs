@@ -1,9 +1,9 @@
 //! Measures how well `diff` names mistakes: runs the built program on the corpus of
 //! `tests/integration/grade`.
 //!
-//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` those of every size
-//! and way of sampling. `-- --write FOLDER` writes the pictures, their scenes and `truth.json` in
-//! place of judging them. `--program FILE` asks another program.
+//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` judges every size and
+//! sampling. `-- --write FOLDER` writes the pictures, their scenes and `truth.json` instead of
+//! judging them. `--program FILE` runs another program.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -146,7 +146,7 @@ fn judge(program: &str, of: &str, cases: &[Case]) {
     for case in cases {
         let (answer, taken) = ask(program, case, folder.path());
         time += taken;
-        if case.is_told(&answer) {
+        if case.is_judged_correctly(&answer) {
             right += 1;
         } else {
             eprintln!("{}: {}", case.title, named_mistakes(&answer));

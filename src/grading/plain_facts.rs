@@ -1,26 +1,23 @@
-//! What is plain to see in a picture, before any mistake is fitted to it: that nothing is in it, or
-//! that a part of it is empty.
+//! Facts that are obvious in a picture before any mistake is fitted: it is empty, a part of it is
+//! empty, or it is transparent.
 
 use glam::DVec3;
 
 use super::{
-    candidate::{Candidate, Mistake, Row},
-    faulty_tracer::FaultyTracer,
-    grid::Grid,
-    light::{Curve, is_near},
-    mistakes::ROWS,
+    hypotheses::{Candidate, Curve, Mistake, MistakeRow, ROWS, is_near},
+    scoring::{FaultyTracer, Grid},
     verdict::NamedMistake,
 };
 use crate::{area::Area, film::Film, scene::Scene};
 
-/// Neighbours in a picture that are noise differ by as much as pixels far from each other, and by
-/// less than this part of it in one of a scene.
-const ALIKE: f64 = 0.8;
+/// Ratio of the squared differences of neighbours to those of distant pixels below which a picture
+/// is not noise. In noise the ratio is 1.
+const NOISE_RATIO: f64 = 0.8;
 
-/// The cells, along the longer side, in which it is looked at whether anything is seen.
+/// Cells along the longer side in which objects are looked for.
 const CELLS: u32 = 32;
 
-/// Maximum number of causes that are told.
+/// Maximum number of causes that are listed.
 const CAUSES: usize = 3;
 
 fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
@@ -33,14 +30,15 @@ fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
     }
 }
 
-/// What a picture of a part of a scene is that has nothing in it; none if it has. `exact` is what
-/// it should show.
-pub fn nothing_in_it(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
+/// Returns the fact that a picture is empty or noise. Returns `None` if it is not. `exact` is the
+/// correct picture.
+pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
-        // That would be all that there is to see.
-        let is_right = exact.pixels().iter().all(|pixel| is_near(*pixel, first));
-        (!is_right).then_some(())?;
+        // Correct if the exact picture has one colour, too.
+        if exact.pixels().iter().all(|pixel| is_near(*pixel, first)) {
+            return None;
+        }
         let background = scene.image.background;
         if is_near(first, background.to_linear()) {
             let message = format!(
@@ -57,15 +55,14 @@ pub fn nothing_in_it(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMi
         let message = "the picture has one colour all over".to_owned();
         return Some(fact("one_colour", message, help.to_owned()));
     }
-    is_noise(film).then_some(())?;
-    (!is_noise(exact)).then(|| {
+    (is_noise(film) && !is_noise(exact)).then(|| {
         let message = "the picture is noise: it is no more like this scene than noise is";
         let help = "look at the file: a header with another size or another number of bytes in a pixel, or memory that was never written";
         fact("noise", message.to_owned(), help.to_owned())
     })
 }
 
-/// Whether pixels side by side have no more in common than others.
+/// Returns whether neighbouring pixels have no more in common than distant ones.
 fn is_noise(film: &Film) -> bool {
     let width = film.width() as usize;
     let pixels = film.pixels();
@@ -78,19 +75,19 @@ fn is_noise(film: &Film) -> bool {
     let below = pairs.map(|(one, other)| square(one, other)).sum::<f64>() / count;
     let rows = pixels.chunks_exact(width).flat_map(|row| row.windows(2));
     let beside = rows.map(|pair| square(&pair[0], &pair[1])).sum::<f64>() / count;
-    far > 0.0 && below.min(beside) > 2.0 * ALIKE * far
+    far > 0.0 && below.min(beside) > 2.0 * NOISE_RATIO * far
 }
 
-/// The rows of the table by which a camera sees nothing of this scene.
+/// Lists the rows of the table by which a camera sees nothing of a scene.
 fn causes(scene: &Scene) -> String {
     let part = Area::whole(scene.image.width, scene.image.height);
     let grid = Grid::new(&scene.image, part, CELLS);
     let background = scene.image.background.to_linear();
-    let right = Candidate::right(scene);
-    let shows_nothing = |row: &&'static Row| {
+    let right = Candidate::correct(scene);
+    let shows_nothing = |row: &&'static MistakeRow| {
         let wrong = right.with(Mistake::Row(row, None));
         wrong.is_some_and(|wrong| {
-            let tracer = FaultyTracer::new(&wrong.drawn(&grid), wrong.behaviour, Curve::Right);
+            let tracer = FaultyTracer::new(&wrong.drawn(&grid), wrong.behaviour, Curve::Correct);
             let cells = tracer.moments(grid.cells, 1).mean;
             cells.iter().all(|cell| cell.to_array() == background)
         })
@@ -103,16 +100,16 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// The rows at the top or at the bottom of a picture that have one colour and should not, at least
-/// two and not all.
+/// Rows of pixels at the top or bottom of a picture that have one colour and should not: at least
+/// two, and not all.
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyRows {
-    /// The first and the last.
+    /// The first and the last row.
     rows: [usize; 2],
 }
 
 impl EmptyRows {
-    /// Those of a picture, beside the exact one.
+    /// Finds the empty rows of a picture, given the exact one.
     pub fn of(film: &Film, exact: &Film) -> Option<Self> {
         let width = film.width() as usize;
         let height = film.pixels().len() / width;
@@ -122,24 +119,24 @@ impl EmptyRows {
             let light = film.pixels()[at(0) * width];
             let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
             let count = (0..height).take_while(are_empty).count();
-            // A sky has one colour in any picture, be it the wrong one everywhere.
+            // A sky has one colour in any picture, even if it is the wrong colour.
             let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
-            let is_told = |y: &usize| {
+            let is_wrong = |y: &usize| {
                 let own = row(exact, at(*y));
                 let has_several = own.iter().any(|pixel| !is_near(*pixel, own[0]));
                 let wrong = own.iter().filter(|pixel| !is_near(**pixel, light));
                 wrong.count() > width / 8 && (has_several || is_shown(own[0]))
             };
-            let told = (0..count).filter(is_told).count();
+            let wrong_rows = (0..count).filter(is_wrong).count();
             let ends = [at(0), at(count.max(1) - 1)];
             let rows = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-            (told >= 2 && count + 2 <= height).then_some(Self { rows })
+            (wrong_rows >= 2 && count + 2 <= height).then_some(Self { rows })
         };
         from_below(true).or_else(|| from_below(false))
     }
 
-    /// A picture in which these rows have no numbers.
-    pub fn left_out(&self, film: &Film) -> Film {
+    /// Returns a picture in which these rows are NaN.
+    pub fn removed_from(&self, film: &Film) -> Film {
         let width = film.width() as usize;
         let mut left = film.clone();
         let [first, last] = self.rows;
@@ -147,8 +144,8 @@ impl EmptyRows {
         left
     }
 
-    /// It, told.
-    pub fn told(&self) -> NamedMistake {
+    /// Returns the fact to report.
+    pub fn fact(&self) -> NamedMistake {
         let [first, last] = self.rows;
         let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";
         let message = format!("rows {first} to {last} are empty: they have one colour");
@@ -156,23 +153,18 @@ impl EmptyRows {
     }
 }
 
-/// That a picture is not opaque; `opacity` is the least and the greatest of its alpha, from 0 to 1.
+/// Returns the fact that a picture is not opaque; `opacity` is the least and the greatest alpha,
+/// from 0 to 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();
-    let (id, message) = match [least, most].map(byte) {
-        [0.0, 0.0] => (
-            "transparent",
-            "the picture is transparent all over: its alpha is 0".to_owned(),
-        ),
-        [one, two] if one == two => (
-            "alpha",
-            format!("the picture is not opaque: its alpha is {one} of 255"),
-        ),
+    let (id, is) = match [least, most].map(byte) {
+        [0.0, 0.0] => ("transparent", "transparent all over: its alpha is 0".into()),
+        [one, two] if one == two => ("alpha", format!("not opaque: its alpha is {one} of 255")),
         [one, two] => (
             "alpha",
-            format!("the picture is not opaque: its alpha is {one} to {two} of 255"),
+            format!("not opaque: its alpha is {one} to {two} of 255"),
         ),
     };
-    fact(id, message, help.to_owned())
+    fact(id, format!("the picture is {is}"), help.to_owned())
 }

@@ -1,25 +1,25 @@
-//! What is said of a picture, for people and for programs.
+//! The verdict on a picture, for people and for programs.
 
 use serde_json::{Map, Value, json};
 
 use super::objects::{self, ObjectVerdict};
 use crate::{numbers::short, scene::Scene};
 
-/// What a picture is.
+/// The result in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Equal to the exact one within its tolerance.
+    /// Equal to the exact picture within its tolerance.
     Right,
-    /// Right but for sampling noise.
+    /// Right except for sampling noise.
     Noise,
-    /// Wrong, and mistakes are named.
+    /// Wrong, and the mistakes are named.
     Wrong,
-    /// Wrong, and no mistake that is known explains it.
+    /// Wrong, and no known mistake explains it.
     Unknown,
 }
 
 impl Kind {
-    /// The word for programs.
+    /// Returns the word for programs.
     pub fn word(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -30,48 +30,49 @@ impl Kind {
     }
 }
 
-/// A mistake that is told.
+/// A mistake in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMistake {
-    /// A word for programs.
+    /// Stable identifier, for programs.
     pub id: &'static str,
-    /// What it is.
+    /// What is wrong.
     pub message: String,
-    /// The way out.
+    /// How to correct it.
     pub help: String,
-    /// The `--set` arguments that make it.
+    /// The `--set` arguments that reproduce it.
     pub set: Vec<String>,
-    /// The share of the squared difference beyond noise that it explains.
+    /// Share of the squared difference beyond noise that it explains.
     pub explains: f64,
 }
 
-/// What is said of a picture.
+/// The verdict on a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// What it is.
+    /// The result in one word.
     pub kind: Kind,
-    /// How many independent samples in a pixel leave as much noise; none where it is not known.
+    /// Number of independent samples in a pixel that leave as much noise; `None` if it is not
+    /// known.
     pub samples: Option<f64>,
-    /// The mistakes: together they explain the picture.
+    /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes that come nearest, where none that are known explain the picture.
+    /// The mistakes that come nearest, if no known ones explain the picture.
     pub guesses: Vec<NamedMistake>,
-    /// The share of the squared difference beyond noise that mistakes or guesses leave, if it is
-    /// more than noise.
+    /// Share of the squared difference beyond noise that mistakes or guesses leave, if it is more
+    /// than noise.
     pub rest: Option<f64>,
-    /// The objects.
+    /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,
     /// Whether the background is right.
     pub is_background_right: bool,
     /// Whether the picture's file is a JPEG, which changes colours.
     pub is_coded: bool,
-    /// Whether not all mistakes were tried, as the scene has too much in it.
+    /// Whether the search ended at its budget before all mistakes were tried.
     pub is_cut: bool,
 }
 
 impl Verdict {
-    /// One without mistakes.
-    pub fn of(kind: Kind, scene: &Scene) -> Self {
+    /// Returns a verdict without mistakes.
+    pub fn without_mistakes(kind: Kind, scene: &Scene) -> Self {
         Self {
             kind,
             samples: None,
@@ -85,8 +86,8 @@ impl Verdict {
         }
     }
 
-    /// The same of a picture of which something else is plain to see: it is told first.
-    pub fn beside(mut self, fact: NamedMistake) -> Self {
+    /// Adds an obvious fact in front of the mistakes or guesses.
+    pub fn with_fact(mut self, fact: NamedMistake) -> Self {
         match self.kind {
             Kind::Unknown => self.guesses.insert(0, fact),
             Kind::Right | Kind::Noise | Kind::Wrong => {
@@ -97,14 +98,15 @@ impl Verdict {
         self
     }
 
-    /// The verdict in one line.
+    /// Returns the verdict in one line.
     pub fn line(&self) -> String {
         match (self.kind, self.samples) {
             (Kind::Right, _) => "right: equal to the exact picture".to_owned(),
             (Kind::Noise, Some(samples)) => {
-                let count = match samples < 9.5 {
-                    true => (2.0 * samples).round() / 2.0,
-                    false => samples.round(),
+                let count = if samples < 9.5 {
+                    (2.0 * samples).round() / 2.0
+                } else {
+                    samples.round()
                 };
                 let count = short(count);
                 format!("right but for sampling noise: about {count} random samples per pixel")
@@ -118,27 +120,29 @@ impl Verdict {
                 let nearest = match &self.guesses[..] {
                     [] => String::new(),
                     guesses => {
-                        format!("; this comes nearest{}: {}", self.left(), messages(guesses))
+                        let left = self.unexplained();
+                        format!("; this comes nearest{left}: {}", messages(guesses))
                     }
                 };
-                let limit = match self.is_cut {
-                    true => "; the search came to its bound (--effort 4 goes on)",
-                    false => "",
+                let limit = if self.is_cut {
+                    "; the search came to its bound (--effort 4 goes on)"
+                } else {
+                    ""
                 };
                 format!("wrong, and not by a mistake known here{nearest}{limit}")
             }
         }
     }
 
-    /// What guesses leave, in words.
-    fn left(&self) -> String {
+    /// Returns what guesses leave, in words.
+    fn unexplained(&self) -> String {
         match self.rest.map(|rest| (100.0 * rest).round()) {
             Some(percent) if percent > 0.0 => format!(", and leaves {percent} % unexplained"),
             _ => String::new(),
         }
     }
 
-    /// The same for programs, field by field.
+    /// Returns the verdict as JSON fields, for programs.
     pub fn to_json(&self) -> Map<String, Value> {
         let objects = self.objects.iter().map(|object| {
             json!({ "index": object.index, "name": object.name, "right": object.is_right, "off": object.off })
@@ -160,7 +164,7 @@ impl Verdict {
     }
 }
 
-/// What mistakes are, one after the other.
+/// Joins the messages of mistakes.
 fn messages(mistakes: &[NamedMistake]) -> String {
     let messages: Vec<_> = mistakes.iter().map(|one| &one.message[..]).collect();
     messages.join("; ")

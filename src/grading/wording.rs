@@ -1,6 +1,6 @@
-//! How a mistake is told: a word for programs, what it is, with its numbers, and the way out.
+//! The words for a mistake: an identifier, a message with its numbers, and advice.
 
-use super::{candidate::Mistake, parameters::Owner};
+use super::hypotheses::{Mistake, Owner};
 use crate::{
     color::{Color, linear_to_srgb},
     numbers::{short, significant},
@@ -10,7 +10,7 @@ use crate::{
 const FILTER: &str = "a pixel is the mean of light over its own square: its samples lie evenly in it, and nowhere else";
 
 impl Mistake {
-    /// A word for programs.
+    /// Returns the identifier, for programs.
     pub fn id(&self) -> &'static str {
         match self {
             Self::Row(row, _) => row.id,
@@ -25,7 +25,7 @@ impl Mistake {
         }
     }
 
-    /// The way out.
+    /// Returns advice on how to correct it.
     pub fn help(&self, scene: &Scene) -> String {
         match self {
             Self::Row(row, _) => row.help.to_owned(),
@@ -44,7 +44,7 @@ impl Mistake {
         }
     }
 
-    /// What it is.
+    /// Returns what is wrong.
     pub fn message(&self, scene: &Scene) -> String {
         let (parameter, numbers) = match self {
             Self::Row(row, None) => return row.message.to_owned(),

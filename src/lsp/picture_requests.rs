@@ -13,7 +13,7 @@ use super::{
 use crate::{
     editor::{
         self, Analysis,
-        viewport::{self, Along, Drag, ObjectOverlay, ShownObjects, Vanishing},
+        viewport::{self, Along, Drag, ObjectOverlay, Overlays, ShownObjects, Vanishing},
     },
     numbers::{short, short_vector, significant},
     scene::Object,
@@ -202,11 +202,20 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         let (scene, world) = version.world(1);
         viewport::hide(&mut overlays, scene, world);
     }
-    let vanishing = ["x", "y", "z"].into_iter().zip(&overlays.vanishing);
+    let Overlays {
+        size,
+        axis,
+        horizon,
+        vanishing,
+        near,
+        far,
+        objects,
+    } = overlays;
+    let vanishing = ["x", "y", "z"].into_iter().zip(vanishing);
     let vanishing = vanishing.map(|(axis, Vanishing { point, lines })| {
-        json!({ "axis": axis, "point": point.map(written_point), "lines": written_lines(lines) })
+        json!({ "axis": axis, "point": point.map(written_point), "lines": written_lines(&lines) })
     });
-    let objects = overlays.objects.iter().map(|outline| {
+    let objects = objects.iter().map(|outline| {
         let mut object = object(outline.object, converter, version);
         object["outline"] = written_lines(&outline.lines);
         let handles = outline.handles.iter().map(|(name, at)| {
@@ -217,12 +226,12 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
         object
     });
     Ok(json!({
-        "size": overlays.size,
-        "axis": written_point(overlays.axis),
-        "horizon": overlays.horizon.map(|line| written_line(&line)),
+        "size": size,
+        "axis": written_point(axis),
+        "horizon": horizon.map(|line| written_line(&line)),
         "vanishing": vanishing.collect::<Vec<_>>(),
-        "near": written_lines(&overlays.near),
-        "far": written_lines(&overlays.far),
+        "near": written_lines(&near),
+        "far": written_lines(&far),
         "objects": objects.collect::<Vec<_>>(),
     }))
 }

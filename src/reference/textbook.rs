@@ -86,7 +86,7 @@ impl Textbook {
         let point = self.eye + t * direction;
         let odd = match self.shapes[object] {
             Shape::Checkerboard(Checkerboard { square, .. }) => is_odd(point, square),
-            _ => false,
+            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) => false,
         };
         Some(TextbookHit {
             object,

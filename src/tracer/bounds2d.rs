@@ -49,7 +49,7 @@ impl Object<f64> {
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing))
             }
             Shape::Box(cuboid) => Object::Convex(cuboid::prepare(double, cuboid, face)),
-            _ => Object::new(double, shape),
+            Shape::Sphere(_) | Shape::Checkerboard(_) => Object::new(double, shape),
         };
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
@@ -58,7 +58,9 @@ impl Object<f64> {
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
-            _ => corners.map_or(Hull::Unbounded, |corners| of_corners(&corners, ahead)),
+            (_, Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_)) => {
+                corners.map_or(Hull::Unbounded, |corners| of_corners(&corners, ahead))
+            }
         };
         let extent = match hull {
             Hull::Behind => None,

@@ -29,7 +29,7 @@ impl Pieces {
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let faces = |object: &Object| match object.shape {
             Shape::Box(cuboid) => cuboid.faces,
-            _ => None,
+            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_) => None,
         };
         if scene.objects.iter().all(|object| faces(object).is_none()) {
             return (Cow::Borrowed(scene), Self::default());

@@ -80,7 +80,7 @@ impl Generator {
     }
 
     fn color(&mut self) -> &'static str {
-        *self.random.one_of(&[
+        self.random.one_of::<&str>(&[
             "black", "white", "red", "olive", "#012345", "gold", "cyan", "lime",
         ])
     }

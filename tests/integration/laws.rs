@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3, Vec3Swizzles, dvec3};
 use pinhole::{
     math::Angle,
     scene::{
-        CenteredTriangle, Checkerboard, Count, Method, Scene, Shape, Triangle, TriangleOutline,
-        View,
+        CenteredTriangle, Checkerboard, Count, Cuboid, Method, Scene, Shape, Sphere, Triangle,
+        TriangleOutline, View,
     },
 };
 
@@ -89,25 +89,43 @@ fn mapped(
     camera.far = camera.far.map(|far| far * scale);
     for shape in shapes(&mut scene) {
         match shape {
-            Shape::Sphere(sphere) => {
-                sphere.center = place(sphere.center);
-                sphere.radius *= scale;
+            Shape::Sphere(Sphere {
+                center,
+                radius,
+                color: _,
+            }) => {
+                *center = place(*center);
+                *radius *= scale;
             }
             Shape::Triangle(triangle) => match &mut triangle.outline {
-                TriangleOutline::Centered(triangle) => {
-                    triangle.centroid = place(triangle.centroid);
-                    triangle.normal = direction(triangle.normal);
-                    triangle.sides *= scale;
+                TriangleOutline::Centered(CenteredTriangle {
+                    centroid,
+                    normal,
+                    sides,
+                    spin: _,
+                }) => {
+                    *centroid = place(*centroid);
+                    *normal = direction(*normal);
+                    *sides *= scale;
                 }
                 TriangleOutline::Vertices(vertices) => *vertices = vertices.map(&place),
             },
-            Shape::Box(cuboid) => {
-                let (a, b) = (place(cuboid.min), place(cuboid.max));
-                (cuboid.min, cuboid.max) = (a.min(b), a.max(b));
+            Shape::Box(Cuboid {
+                min,
+                max,
+                color: _,
+                faces: _,
+            }) => {
+                let (a, b) = (place(*min), place(*max));
+                (*min, *max) = (a.min(b), a.max(b));
             }
-            Shape::Checkerboard(board) => {
-                board.y = place(DVec3::Y * board.y).y;
-                board.square *= scale;
+            Shape::Checkerboard(Checkerboard {
+                y,
+                square,
+                colors: _,
+            }) => {
+                *y = place(DVec3::Y * *y).y;
+                *square *= scale;
             }
         }
     }

@@ -31,6 +31,7 @@ mod inspect;
 mod interrupt;
 mod language;
 mod laws;
+mod layers;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod numerics;

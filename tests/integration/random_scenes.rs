@@ -79,7 +79,7 @@ impl Text<'_> {
     }
 
     fn color(&mut self) -> &'static str {
-        *self.random.one_of(&[
+        self.random.one_of::<&str>(&[
             "black", "white", "red", "olive", "teal", "#0102fe", "orange",
         ])
     }

@@ -103,10 +103,33 @@ fn the_readme_has_the_two_set_up_commands_and_the_first_scene() {
 }
 
 #[test]
+fn every_command_is_in_the_readme_and_has_examples() {
+    let (folder, readme) = (Folder::with([]), read("README.md"));
+    let help = folder.done("--help").text().to_owned();
+    let (_, list) = help.split_once("Commands:\n").unwrap();
+    let list = list.lines().take_while(|line| !line.is_empty());
+    let commands = list.map(|line| line.split_whitespace().next().unwrap());
+    for command in commands.filter(|name| *name != "help") {
+        let call = format!("pinhole {command}");
+        assert!(
+            readme.contains(&format!("`{call}")),
+            "no {call} in README.md"
+        );
+        // Editors start the server; nobody types its messages.
+        let help = folder.done(&format!("{command} --help"));
+        let examples = help.text().split_once("Examples:");
+        let is_shown = examples.is_some_and(|(_, examples)| examples.contains(&call));
+        let is_shown = is_shown || command == "lsp";
+        assert!(is_shown, "{command} --help has no examples");
+    }
+}
+
+#[test]
 fn relative_links_lead_to_files() {
     let mut paths = [
         "README.md",
         "CHANGELOG.md",
+        "CONTRIBUTING.md",
         "docs",
         "examples",
         "benches",

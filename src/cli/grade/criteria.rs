@@ -28,7 +28,7 @@ pub enum Criterion {
 }
 
 /// Prefixes of the ids of mistakes, with their criteria. Ids without a prefix here are about a
-/// field of the camera, or about hits.
+/// field of the camera.
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),
@@ -69,6 +69,14 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("parallel_rays", Criterion::Camera),
     ("nothing_seen", Criterion::Camera),
     ("eye_and_lookat", Criterion::Camera),
+    ("behind_seen", Criterion::Hits),
+    ("depth_ignored", Criterion::Hits),
+    ("sphere_", Criterion::Hits),
+    // Those of an object are told by their messages.
+    ("object_", Criterion::Hits),
+    ("box_", Criterion::Hits),
+    ("faces_", Criterion::Hits),
+    ("triangle_", Criterion::Hits),
 ];
 
 /// Returns the criterion of a mistake.
@@ -76,20 +84,24 @@ pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
     if let Some(index) = object(finding, scene) {
         return match scene.objects[index].shape {
             Shape::Checkerboard(_) => Criterion::Board,
-            _ => Criterion::Object(index),
+            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) => Criterion::Object(index),
         };
     }
+    of_id(finding.id).unwrap_or(Criterion::Hits)
+}
+
+/// Returns the criterion of an id, whatever object it is about; `None` for the field of an object.
+fn of_id(id: &str) -> Option<Criterion> {
     let mut beginnings = BEGINNINGS.iter();
-    let found = beginnings.find(|(beginning, _)| finding.id.starts_with(beginning));
+    let found = beginnings.find(|(beginning, _)| id.starts_with(beginning));
     let camera = schema::block("camera").map_or(&[][..], |block| block.fields);
     let is_of = |field: &str| {
-        let rest = finding.id.strip_prefix(field);
+        let rest = id.strip_prefix(field);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
     match found {
-        Some((_, criterion)) => *criterion,
-        None if camera.iter().any(|field| is_of(field.name)) => Criterion::Camera,
-        None => Criterion::Hits,
+        Some((_, criterion)) => Some(*criterion),
+        None => (camera.iter().any(|field| is_of(field.name))).then_some(Criterion::Camera),
     }
 }
 
@@ -124,4 +136,16 @@ pub fn ids() -> impl Iterator<Item = &'static str> {
 /// Whether a mistake has this id.
 pub fn is_id(id: &str) -> bool {
     ids().any(|own| own == id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{grading, of_id};
+
+    #[test]
+    fn every_mistake_of_the_table_has_a_criterion() {
+        for id in grading::mistake_ids() {
+            assert!(of_id(id).is_some(), "{id}: add it to BEGINNINGS");
+        }
+    }
 }

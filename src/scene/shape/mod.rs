@@ -3,10 +3,8 @@
 //! Each kind has a file, which says how the kind is lowered from its block, where it is and how far
 //! it reaches, what its fields are, and how it is described. Here is only the choice between them.
 //!
-//! A new kind begins with [`BlockKind`] and its row in the schema. From there the compiler leads to
-//! this room, the tracer and the comparisons with it, and the editor's viewport; tests lead to the
-//! reference of the language, the page of Studio and the random scenes of the tests. Nothing leads
-//! to values without names in `syntax::recovery::fields`, which may offer names for them.
+//! A new kind begins with [`BlockKind`] and its row in the schema. From there the compiler and the
+//! tests lead to everything else; CONTRIBUTING.md lists where to, and what nothing leads to.
 
 mod checkerboard;
 mod cuboid;

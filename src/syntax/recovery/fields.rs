@@ -3,6 +3,7 @@
 use super::{Context, Recovery, foreign::CommentPosition};
 use crate::{
     diagnostic::{Edit, Fix, Label},
+    schema::{self, BOX, BlockKind, SPHERE},
     source::Span,
     syntax::{
         messages::{self as say, statement},
@@ -332,11 +333,11 @@ impl<'s> Recovery<'_, 's> {
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
         let shape: Vec<bool> = values.iter().map(is_vector).collect();
-        let names: &[&'static str] = match (self.context.kind, shape.as_slice()) {
-            _ if !block.fields.is_empty() => &[],
-            ("sphere", [true] | [true, false]) => &["center", "radius"],
-            ("box", [true, true]) => &["min", "max"],
-            _ => &[],
+        let kind = schema::block(self.context.kind).map(|row| row.kind);
+        let names = match kind {
+            _ if !block.fields.is_empty() => &[][..],
+            Some(kind) => names_of_values(kind, &shape),
+            None => &[],
         };
         let named = names.iter().zip(&values).map(|(name, value)| {
             let written = self.written(value.span);
@@ -346,12 +347,33 @@ impl<'s> Recovery<'_, 's> {
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
         // The two vectors of a box may also be its centre and its size.
-        let said = say::MISSING_FIELD_NAME.safe_if(self.context.kind == "sphere");
+        let said = say::MISSING_FIELD_NAME.safe_if(kind == Some(BlockKind::Sphere));
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
         block.fields.extend(fields.map(|(text, value)| {
             let name = Name { text, span };
             Field { name, value, span }
         }));
+    }
+}
+
+/// Returns the names of the fields that values without names stand for at the start of a block.
+/// The shape says of each value whether it is a vector.
+fn names_of_values(kind: BlockKind, shape: &[bool]) -> &'static [&'static str] {
+    match (kind, shape) {
+        (BlockKind::Sphere, [true] | [true, false]) => {
+            const { &[SPHERE.center.name, SPHERE.radius.name] }
+        }
+        (BlockKind::Box, [true, true]) => const { &[BOX.min.name, BOX.max.name] },
+        (
+            BlockKind::Image
+            | BlockKind::Camera
+            | BlockKind::Sampler
+            | BlockKind::Sphere
+            | BlockKind::Triangle
+            | BlockKind::Box
+            | BlockKind::Checkerboard,
+            _,
+        ) => &[],
     }
 }

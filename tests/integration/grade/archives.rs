@@ -1,4 +1,4 @@
-//! Zip files that a class handed in, well-meant or not.
+//! Grading of zip files, well-formed and malicious.
 
 use std::io::{Cursor, Write};
 
@@ -6,7 +6,7 @@ use zip::{ZipWriter, write::SimpleFileOptions};
 
 use super::classes::{METADATA, assert_lines, folder, graded};
 
-/// A zip file with these entries.
+/// Returns a zip file with entries.
 fn zip(entries: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, content) in entries {
@@ -25,7 +25,7 @@ fn zip(entries: &[(&str, &[u8])]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// Changes all places of some bytes.
+/// Replaces both occurrences of some bytes.
 fn patch(bytes: &mut [u8], from: &[u8], to: &[u8]) {
     let places: Vec<_> = (0..bytes.len() - from.len())
         .filter(|&at| bytes[at..].starts_with(from))
@@ -37,7 +37,7 @@ fn patch(bytes: &mut [u8], from: &[u8], to: &[u8]) {
 }
 
 #[test]
-fn a_zip_file_is_a_class_and_nothing_in_it_leads_out() {
+fn a_zip_file_is_graded_as_a_class_and_no_entry_escapes_it() {
     let folder = folder();
     let [right, red] = ["right.png", "red.png"].map(|name| folder.read(name));
     let inner = zip(&[("render.png", &right)]);
@@ -55,7 +55,7 @@ fn a_zip_file_is_a_class_and_nothing_in_it_leads_out() {
     ]);
     // Code page 437, in which 0x81 is ü, and 0x82 é.
     patch(&mut file, b"fXnn/", b"f\x81nn/");
-    // Encrypted: a bit before each name says so.
+    // Encrypted: a flag in front of each name says so.
     for (head, flags) in [(30, 6), (46, 8)] {
         let name = b"dora/Xecret.png";
         let names: Vec<_> = (head..file.len() - name.len())
@@ -101,7 +101,7 @@ fn a_zip_file_is_a_class_and_nothing_in_it_leads_out() {
 }
 
 #[test]
-fn a_zip_file_of_a_student_is_his_folder_and_one_around_a_class_is_left() {
+fn a_students_zip_file_is_a_folder_and_a_folder_around_a_class_is_skipped() {
     let folder = folder();
     let [right, red] = ["right.png", "red.png"].map(|name| folder.read(name));
     folder.write("class/anna.zip", zip(&[("out/render.png", &right)]));
@@ -133,7 +133,7 @@ fn a_zip_file_of_a_student_is_his_folder_and_one_around_a_class_is_left() {
     let names: Vec<_> = found.iter().map(|line| &line["student"]).collect();
     assert_eq!(names, ["Anna Li", "Ben <b>, Cy", "Dora", "eve@example.org"]);
     assert_eq!(found[1]["verdict"], "wrong");
-    // Whoever has only a folder, or one with what a system leaves there, is somebody.
+    // An empty folder counts as a student, as does one with files that a system leaves behind.
     let files: [(&str, &[u8]); 7] = [
         ("anna/render.png", &right),
         ("ben/", b""),
@@ -165,14 +165,14 @@ fn a_zip_file_of_a_student_is_his_folder_and_one_around_a_class_is_left() {
 }
 
 #[test]
-fn a_zip_file_without_end_is_unpacked_to_its_bound() {
+fn zip_bombs_are_rejected_at_the_stated_limits() {
     let folder = folder();
     let right = folder.read("right.png");
     let mut bomb = zip(&[
         ("anna/a.png", &vec![0; (256 << 20) + 1]),
         ("ben/b.png", &right),
     ]);
-    // It says that it has ten bytes.
+    // Its header claims ten bytes.
     let length = ((256u32 << 20) + 1).to_le_bytes();
     let places: Vec<_> = (0..bomb.len() - 4)
         .filter(|&at| bomb[at..].starts_with(&length))
@@ -198,7 +198,7 @@ fn a_zip_file_without_end_is_unpacked_to_its_bound() {
         told.contains("it has 10001 entries, and at most 10000 are read"),
         "{told}"
     );
-    // A list that would take all memory is not read to its end.
+    // A directory that would fill all memory is not read to its end.
     let name = "x".repeat(60_000);
     let names: Vec<String> = (0..300).map(|index| format!("{index}{name}")).collect();
     let long: Vec<(&str, &[u8])> = names.iter().map(|name| (&**name, &b""[..])).collect();

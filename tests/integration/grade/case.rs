@@ -1,5 +1,5 @@
-//! A picture by which grading is judged, told by its title: the scene, the size, how many samples a
-//! pixel has and where they lie, and the mistakes. 256 samples stand for the exact mean.
+//! A picture for testing the grading, described by its title: the scene, the size, samples per
+//! pixel, the sampling, and the mistakes. 256 samples stand for the exact mean.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -9,18 +9,18 @@ use super::{
     textbook::{Program, SAMPLINGS},
 };
 
-/// A picture, and what is wrong with it.
+/// A picture with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The right program, and its scene's text.
+    /// The correct program, and its scene's text.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,
 }
 
 impl Case {
-    /// The one that has a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or
-    /// `street 96x64 1 Random: right`.
+    /// Parses a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or `street
+    /// 96x64 1 Random: right`.
     pub fn of(title: &str) -> Self {
         let (picture, names) = title.split_once(": ").unwrap();
         let [name, size, samples, sampling] = picture.split(' ').collect::<Vec<_>>()[..] else {
@@ -47,38 +47,35 @@ impl Case {
         }
     }
 
-    /// The picture.
+    /// Renders the picture.
     pub fn picture(&self) -> RgbImage {
         let mut program = self.right.clone();
-        self.mistakes
-            .iter()
-            .for_each(|one| (one.make)(&mut program));
+        self.mistakes.iter().for_each(|one| one.make(&mut program));
         program.render()
     }
 
-    /// Whether an answer of `diff --format json` names all mistakes and no others.
-    pub fn is_told(&self, answer: &Value) -> bool {
-        let said = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
-        match self.mistakes.is_empty() {
-            true => answer["verdict"] == "right" || answer["verdict"] == "noise",
-            false => {
-                let mut mistakes = self.mistakes.iter();
-                said.len() == self.mistakes.len() && mistakes.all(|one| is_said(one, said))
-            }
+    /// Returns whether an answer of `diff --format json` names all mistakes and no others.
+    pub fn is_judged_correctly(&self, answer: &Value) -> bool {
+        let named = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
+        if self.mistakes.is_empty() {
+            answer["verdict"] == "right" || answer["verdict"] == "noise"
+        } else {
+            let mut mistakes = self.mistakes.iter();
+            named.len() == self.mistakes.len() && mistakes.all(|one| is_named(one, named))
         }
     }
 }
 
-/// Whether a mistake is among those that were said.
-fn is_said(mistake: &Mistake, said: &[Value]) -> bool {
+/// Returns whether a mistake is among the named ones.
+fn is_named(mistake: &Mistake, named: &[Value]) -> bool {
     mistake.name.split('|').any(|name| {
         let (id, words) = name.split_once(' ').unwrap_or((name, ""));
-        said.iter().any(|said| {
-            let sets = said["set"].as_array().map_or(&[][..], Vec::as_slice);
+        named.iter().any(|answer| {
+            let sets = answer["set"].as_array().map_or(&[][..], Vec::as_slice);
             let mut targets = sets.iter().filter_map(|set| set.as_str()?.split_once('='));
-            let message = said["message"].as_str().unwrap_or_default();
+            let message = answer["message"].as_str().unwrap_or_default();
             targets.any(|(target, _)| target == name)
-                || (said["id"] == id && message.contains(words))
+                || (answer["id"] == id && message.contains(words))
         })
     })
 }

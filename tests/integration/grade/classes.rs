@@ -1,5 +1,5 @@
-//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with what
-//! else there is in them.
+//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with whatever
+//! else is in them.
 
 use std::{
     fs::File,
@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
 
-/// A scene with a picture that is found out at once.
+/// A small scene whose mistakes are found quickly.
 pub const SCENE: &str = "image { width 24 height 16 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sphere Ball { center (-1, 1, 0) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Pictures and how they are rendered.
+/// Pictures and the arguments that render them.
 const PICTURES: &str = "
     right.png -> --set sampler.method=exact
     red.png -> --set sampler.method=exact --set image.background=red
@@ -25,7 +25,7 @@ const PICTURES: &str = "
     noise.png -> --set sampler.method=random --set sampler.per_pixel=4
 ";
 
-/// The scene and the pictures.
+/// Creates a folder with the scene and the pictures.
 pub fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     for [name, arguments] in rows(PICTURES) {
@@ -34,24 +34,25 @@ pub fn folder() -> Folder {
     folder
 }
 
-/// Puts files into a folder: where, and what is copied there; other words are the content.
+/// Writes files into a folder, each a path and a name of a picture to copy or a text.
 pub fn put(folder: &Folder, files: &[(&str, &str)]) {
     for (path, content) in files {
-        match content.ends_with(".png") {
-            true => folder.write(path, folder.read(content)),
-            false => folder.write(path, content),
+        if content.ends_with(".png") {
+            folder.write(path, folder.read(content))
+        } else {
+            folder.write(path, content)
         }
     }
 }
 
-/// Makes a file so many hours older.
+/// Makes a file older by some hours.
 fn age(folder: &Folder, path: &str, hours: u64) {
     let file = File::options().write(true).open(folder.path(path)).unwrap();
     let time = SystemTime::now() - Duration::from_secs(3600 * hours);
     file.set_modified(time).unwrap();
 }
 
-/// The lines of a class, by student.
+/// Grades a class. Returns its JSON lines.
 pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
     let said = folder.run(&format!("grade a.scn {arguments} --format json"));
     assert_eq!(
@@ -65,7 +66,7 @@ pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
         .collect()
 }
 
-/// What is compared of each: the student, the file, the verdict, and what is not.
+/// Compares lines by student, file, verdict, and the files that were not compared.
 #[track_caller]
 pub fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
     let said = |line: &Value| {
@@ -135,7 +136,7 @@ fn an_export_of_gradescope_is_a_class() {
             "wrong",
             &["photo.heic", LOGO],
         ),
-        // The template is in every folder, and is nobody's.
+        // The template is in every folder and belongs to nobody.
         ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];
@@ -159,7 +160,7 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // One of a clone is older, which says nothing there.
+    // An older file within a clone means nothing.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
         &folder,
@@ -217,12 +218,12 @@ fn clones_of_github_classroom_are_a_class() {
             ),
         ],
     );
-    // They have the same picture, and it is not the right one.
+    // Two students have the same wrong picture.
     let equal: Vec<_> = chosen.iter().map(|line| &line["equal_to"]).collect();
     assert_eq!(equal, [&Value::Null, &json!(["cy"]), &json!(["ben"])]);
 }
 
-/// What Moodle hands out: names of folders and of files.
+/// Moodle's export: names of folders and files, and their contents.
 const MOODLE: [(&str, &str); 9] = [
     ("Anna Li_11_assignsubmission_file_render.png", "right.png"),
     ("Ben_12_assignsubmission_file_/out/new.png", "red.png"),
@@ -242,7 +243,7 @@ const MOODLE: [(&str, &str); 9] = [
 ];
 
 #[test]
-fn what_moodle_hands_out_is_a_class() {
+fn an_export_of_moodle_is_a_class() {
     let folder = folder();
     let files = MOODLE.map(|(path, content)| (format!("handed in/{path}"), content));
     for (path, content) in &files {
@@ -282,7 +283,7 @@ fn what_moodle_hands_out_is_a_class() {
     );
     let numbers: Vec<_> = found.iter().map(|line| &line["number"]).collect();
     assert_eq!(numbers, ["14", "11", "12", "13", "15"]);
-    // On a terminal and in a table a name does nothing.
+    // A name cannot inject control characters into a terminal or formulas into a table.
     let table = folder.told("grade a.scn 'handed in' -o out", 1);
     assert!(table.contains("=1+1\\u{202e}  "), "{table}");
     assert!(folder.text("out/grade.csv").contains("\"'=1+1\\u{202e}\""));
@@ -290,7 +291,7 @@ fn what_moodle_hands_out_is_a_class() {
 }
 
 #[test]
-fn loose_files_are_somebodys_and_a_folder_that_was_made_here_is_not() {
+fn loose_files_belong_to_students_and_the_output_folder_does_not() {
     let folder = folder();
     let files = [
         ("class/anna.png", "right.png"),
@@ -319,9 +320,9 @@ fn loose_files_are_somebodys_and_a_folder_that_was_made_here_is_not() {
     }
 }
 
-/// What all made alike is no template.
+/// Files that all students have are no template if nobody has anything else.
 #[test]
-fn a_picture_that_all_have_and_nothing_else_is_theirs() {
+fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     let folder = folder();
     let files = [
         ("class/anna/render.png", "red.png"),
@@ -337,7 +338,7 @@ fn a_picture_that_all_have_and_nothing_else_is_theirs() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // Another picture makes it look like one, until it is named.
+    // A second picture makes the common one a template, unless `--picture` names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[
@@ -357,9 +358,9 @@ fn a_picture_that_all_have_and_nothing_else_is_theirs() {
     assert_eq!(none.matches(words).count(), 2, "{none}");
 }
 
-/// Whoever names the folder around a class means the class, and not one student.
+/// A folder around an exported class is graded as the class, not as one student.
 #[test]
-fn the_folder_around_what_a_system_made_is_that() {
+fn a_folder_around_an_export_is_graded_as_the_export() {
     let folder = folder();
     let files = [
         ("g/export/submission_metadata.yml", METADATA),
@@ -371,7 +372,7 @@ fn the_folder_around_what_a_system_made_is_that() {
         ("h/hw-submissions/hw-anna/x.png", "right.png"),
         ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
         ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
-        // These are two students, each of whom has a repository or a file of another one.
+        // Two students, who have a clone or another student's file in their folders.
         ("s/anna/tracer/x.png", "right.png"),
         ("s/anna/tracer/.git/HEAD", "ref"),
         ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),
@@ -421,9 +422,9 @@ fn the_folder_around_what_a_system_made_is_that() {
     }
 }
 
-/// What a shell makes of `class/*` is the class, too.
+/// A shell's expansion of `class/*` is graded as the class.
 #[test]
-fn the_folders_in_a_class_are_named() {
+fn the_folders_of_a_class_may_be_listed() {
     let folder = folder();
     let files = [
         ("g/submission_metadata.yml", METADATA),
@@ -441,7 +442,7 @@ fn the_folders_in_a_class_are_named() {
         ("class/ben/render.png", "red.png"),
         ("class/cy/out/x.png", "red.png"),
         ("class/dora.png", "right.png"),
-        // Two classes, and no student.
+        // Two classes.
         ("one/anna/x.png", "right.png"),
         ("two/anna/x.png", "red.png"),
         ("two/ben.png", "red.png"),

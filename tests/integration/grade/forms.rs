@@ -1,4 +1,4 @@
-//! What teachers' systems take: JUnit XML, Gradescope's results and Moodle's worksheet, with
+//! Output for teachers' systems: JUnit XML, Gradescope's results and Moodle's worksheet, with
 //! points.
 
 use serde_json::Value;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::classes::{folder, put};
 use crate::{program::Folder, table::rows};
 
-/// A class with one of each.
+/// Creates a class with one picture of each verdict.
 fn class() -> Folder {
     let folder = folder();
     let files = [
@@ -21,7 +21,7 @@ fn class() -> Folder {
         ),
     ];
     put(&folder, &files);
-    // No mistake makes it.
+    // A picture that no mistake explains.
     let mut stripes = image::open(folder.path("right.png")).unwrap().to_rgb8();
     for (x, y, pixel) in stripes.enumerate_pixels_mut() {
         if (x + 2 * y) % 5 < 2 {
@@ -34,7 +34,7 @@ fn class() -> Folder {
 }
 
 #[test]
-fn junit_has_a_case_a_student() {
+fn junit_has_a_test_case_per_student() {
     let folder = class();
     let said = folder.run("grade a.scn class --format junit");
     assert_eq!((said.status, said.errors.as_str()), (1, ""));
@@ -142,7 +142,7 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         assert_eq!(failed, expected, "{student}");
     }
     assert!(results("D").get("score").is_none());
-    // One student's goes to standard output, as an autograder wants it.
+    // A single student's result goes to standard output, where an autograder expects it.
     let said = folder.run("grade a.scn class/F_6_assignsubmission_file_f.png --format gradescope");
     assert_eq!(said.status, 1);
     let found: Value = serde_json::from_slice(&said.output).unwrap();
@@ -174,7 +174,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
     );
     assert_eq!(folder.text("work.csv"), WORKSHEET);
     let filled = said.text();
-    // Rows in which nothing changes are the same to the byte.
+    // Rows without a change are kept byte for byte.
     for row in [
         "\"Participant 99\",\"No, \"\"body\"\"\",,20.00,Yes,\"Monday, 3 March\",\"stays\"\r\n",
         "\"Participant 3\",C,2.00,20.00,No,-,\"stays\"\r\n",
@@ -212,7 +212,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         ]
     );
     assert!(new[1][6].contains("<br>- the image has a wrong colour"));
-    // Without points grades stay; in another language columns have other names.
+    // Without points grades are kept; in another language columns have other names.
     let german = WORKSHEET
         .replace("Grade,", "Bewertung,")
         .replace("Feedback comments", "Feedback als Kommentar");
@@ -260,7 +260,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
 }
 
 #[test]
-fn points_are_numbers_for_mistakes_that_there_are() {
+fn points_are_numbers_for_known_mistakes() {
     let folder = class();
     let cases = rows(
         r#"
@@ -283,13 +283,13 @@ fn points_are_numbers_for_mistakes_that_there_are() {
 }
 
 #[test]
-fn a_part_of_a_picture_is_compared_with_the_part_that_is_named() {
+fn a_crop_is_compared_with_the_part_that_is_named() {
     let folder = class();
     folder.told(
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // No text of Pinhole's own is left in it.
+    // Without Pinhole's metadata.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {

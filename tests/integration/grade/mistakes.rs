@@ -1,8 +1,7 @@
-//! The mistakes that a class makes, as changes of a right program, and the scenes that they are
-//! made in.
+//! The mistakes that a class makes, as changes of a correct program, and the scenes that show them.
 
 use glam::{DVec3, dvec3};
-use image::imageops;
+use image::{RgbImage, imageops};
 
 use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible, light, sharpened,
@@ -10,22 +9,51 @@ use super::textbook::{
 
 /// A mistake.
 pub struct Mistake {
-    /// What `diff` is to say, one of these between bars: a mistake's id, with a part of its
-    /// message behind it, or what it is to `--set`.
+    /// Accepted answers of `diff`, separated by bars: an id, optionally followed by a part of its
+    /// message, or the target of its `--set`.
     pub name: &'static str,
-    /// Makes it.
-    pub make: fn(&mut Program),
+    change: Change,
+}
+
+/// What a mistake changes.
+enum Change {
+    /// The program; nothing in a scene without what the mistake is about.
+    Program(fn(&mut Program)),
+    /// Each pixel's bytes, at the end.
+    Pixels(fn([u8; 3]) -> [u8; 3]),
+    /// The whole picture, after that.
+    Picture(fn(&RgbImage) -> RgbImage),
 }
 
 impl Mistake {
-    /// What it is called in a picture's title.
+    /// Returns its name in a picture's title.
     pub fn title(&self) -> &'static str {
         self.name.split('|').next().unwrap_or_default()
     }
+
+    /// Makes the mistake in a program.
+    pub fn make(&self, program: &mut Program) {
+        match self.change {
+            Change::Program(change) => change(program),
+            Change::Pixels(change) => program.change = change,
+            Change::Picture(change) => program.afterwards = Some(change),
+        }
+    }
 }
 
-const fn row(name: &'static str, make: fn(&mut Program)) -> Mistake {
-    Mistake { name, make }
+const fn row(name: &'static str, change: fn(&mut Program)) -> Mistake {
+    let change = Change::Program(change);
+    Mistake { name, change }
+}
+
+const fn pixels(name: &'static str, change: fn([u8; 3]) -> [u8; 3]) -> Mistake {
+    let change = Change::Pixels(change);
+    Mistake { name, change }
+}
+
+const fn picture(name: &'static str, change: fn(&RgbImage) -> RgbImage) -> Mistake {
+    let change = Change::Picture(change);
+    Mistake { name, change }
 }
 
 /// All mistakes, in groups.
@@ -37,45 +65,30 @@ pub const GROUPS: [&[Mistake]; 5] = [
     OTHERS,
 ];
 
-/// Of the whole picture.
+/// Mistakes of the whole picture.
 const OF_THE_PICTURE: &[Mistake] = &[
-    row("mirrored", |p| {
-        p.afterwards = Some(imageops::flip_horizontal)
-    }),
-    row("upside_down", |p| {
-        p.afterwards = Some(imageops::flip_vertical)
-    }),
-    row("turned_180|up_negated", |p| {
-        p.afterwards = Some(imageops::rotate180)
-    }),
-    row("channels", |p| p.change = |[r, g, b]| [b, g, r]),
-    row("gray", |p| {
-        p.change = |color| gray(color, [0.299, 0.587, 0.114])
-    }),
+    picture("mirrored", imageops::flip_horizontal),
+    picture("upside_down", imageops::flip_vertical),
+    picture("turned_180|up_negated", imageops::rotate180),
+    pixels("channels", |[r, g, b]| [b, g, r]),
+    pixels("gray", |color| gray(color, [0.299, 0.587, 0.114])),
     row("not_encoded", |p| p.encoding = Encoding::None),
     row("encoded_twice", |p| p.encoding = Encoding::Twice),
-    row("gamma_22", |p| {
-        p.change = |color| color.map(|byte| power(byte, 2.2))
-    }),
-    row("gamma_2", |p| {
-        p.change = |color| color.map(|byte| power(byte, 2.0))
-    }),
+    pixels("gamma_22", |color| color.map(|byte| power(byte, 2.2))),
+    pixels("gamma_2", |color| color.map(|byte| power(byte, 2.0))),
     row("gamma_22_averaged", |p| p.encoding = Encoding::Power(2.2)),
     row("averaged_encoded", |p| p.averages_encoded = true),
     row("cut_off", |p| p.cuts_bytes = true),
-    row("inverted", |p| {
-        p.change = |color| color.map(|byte| 255 - byte)
-    }),
-    row("not_decoded", |p| {
-        p.change =
-            |color| color.map(|byte| (255.0 * (f64::from(byte) / 255.0).sqrt()).round() as u8)
+    pixels("inverted", |color| color.map(|byte| 255 - byte)),
+    pixels("not_decoded", |color| {
+        color.map(|byte| (255.0 * (f64::from(byte) / 255.0).sqrt()).round() as u8)
     }),
     row("not_divided twice", |p| p.gain = 2.0),
     row("not_divided half", |p| p.gain = 0.5),
     row("half_pixel", |p| p.offset = 0.5),
 ];
 
-/// Of the camera.
+/// Mistakes of the camera.
 const OF_THE_CAMERA: &[Mistake] = &[
     row("aspect its window is 4:3", |p| p.aspect = 0.75),
     row("aspect twice as wide", |p| p.aspect = 2.0),
@@ -83,7 +96,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
     row("w_not_normalised", |p| p.axes = Axes::LongW),
     row("parallel_rays", |p| p.axes = Axes::Parallel),
-    // A camera that sees nothing of the scene is no more than that.
+    // If nothing of the scene is visible, this is all that can be said.
     row("eye_not_subtracted|nothing_seen", |p| {
         p.axes = Axes::WithoutEye
     }),
@@ -101,7 +114,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
 ];
 
-/// Of the board.
+/// Mistakes of the board.
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
@@ -117,7 +130,7 @@ const OF_THE_BOARD: &[Mistake] = &[
     }),
 ];
 
-/// Of the other objects.
+/// Mistakes of the other objects.
 pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("object_missing Ball", |p| {
         p.objects.retain(|object| object.name != "Ball")
@@ -140,7 +153,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("depth_ignored", |p| p.visible = Visible::Last),
     row("sphere_near_root", |p| p.misses_root = true),
     row("triangle_anchor", |p| {
-        if let Shape::Triangle([a, b, c]) = *p.shape("Sail") {
+        if let Some(&mut Shape::Triangle([a, b, c])) = p.shape("Sail") {
             shift(p, "Sail", (b + c - 2.0 * a) / 3.0);
         }
     }),
@@ -158,12 +171,12 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("Crate.center", |p| shift(p, "Crate", dvec3(-0.3, 0.1, 0.2))),
     row("Sail.centroid", |p| shift(p, "Sail", dvec3(-0.2, 0.3, 0.1))),
     row("Ball.radius", |p| {
-        if let Shape::Sphere(_, radius) = p.shape("Ball") {
+        if let Some(Shape::Sphere(_, radius)) = p.shape("Ball") {
             *radius *= 1.2;
         }
     }),
     row("Crate.size", |p| {
-        if let Shape::Box(_, greatest) = p.shape("Crate") {
+        if let Some(Shape::Box(_, greatest)) = p.shape("Crate") {
             greatest.y += 0.4;
         }
     }),
@@ -175,35 +188,23 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     }),
 ];
 
-/// Others, of which some show in few scenes.
+/// Other mistakes, some of which are visible in few scenes.
 const OTHERS: &[Mistake] = &[
-    row("transposed", |p| {
-        p.afterwards = Some(|picture| imageops::flip_horizontal(&imageops::rotate90(picture)))
+    picture("transposed", |picture| {
+        imageops::flip_horizontal(&imageops::rotate90(picture))
     }),
-    row("turned_90 quarter, clockwise", |p| {
-        p.afterwards = Some(imageops::rotate90)
-    }),
-    row("turned_90 anticlockwise", |p| {
-        p.afterwards = Some(imageops::rotate270)
-    }),
+    picture("turned_90 quarter, clockwise", imageops::rotate90),
+    picture("turned_90 anticlockwise", imageops::rotate270),
     row("squeezed", |p| p.is_squeezed = true),
-    row("channels red, blue, green", |p| {
-        p.change = |[r, g, b]| [r, b, g]
+    pixels("channels red, blue, green", |[r, g, b]| [r, b, g]),
+    pixels("channels green, red, blue", |[r, g, b]| [g, r, b]),
+    pixels("channels green, blue, red", |[r, g, b]| [g, b, r]),
+    pixels("channels blue, red, green", |[r, g, b]| [b, r, g]),
+    pixels("gray the mean of their encoded values", |color| {
+        gray(color, [1.0; 3])
     }),
-    row("channels green, red, blue", |p| {
-        p.change = |[r, g, b]| [g, r, b]
-    }),
-    row("channels green, blue, red", |p| {
-        p.change = |[r, g, b]| [g, b, r]
-    }),
-    row("channels blue, red, green", |p| {
-        p.change = |[r, g, b]| [b, r, g]
-    }),
-    row("gray the mean of their encoded values", |p| {
-        p.change = |color| gray(color, [1.0; 3])
-    }),
-    row("gray weighted as light", |p| {
-        p.change = |color| gray(color, [0.2126, 0.7152, 0.0722])
+    pixels("gray weighted as light", |color| {
+        gray(color, [0.2126, 0.7152, 0.0722])
     }),
     row("half_pixel up and left", |p| p.offset = -0.5),
     row("half_pixel a whole pixel too far down and right", |p| {
@@ -215,18 +216,14 @@ const OTHERS: &[Mistake] = &[
     }),
     row("wider_pixel", |p| p.pixel = 2.0),
     row("samples_narrow", |p| p.pixel = 0.5),
-    row("gamma_18", |p| {
-        p.change = |color| color.map(|byte| power(byte, 1.8))
+    pixels("gamma_18", |color| color.map(|byte| power(byte, 1.8))),
+    pixels("decoded_twice", |color| color.map(decoded_twice)),
+    pixels("six_levels", |color| {
+        color.map(|byte| (f64::from(byte) / 51.0).round() as u8 * 51)
     }),
-    row("decoded_twice", |p| {
-        p.change = |color| color.map(decoded_twice)
-    }),
-    row("six_levels", |p| {
-        p.change = |color| color.map(|byte| (f64::from(byte) / 51.0).round() as u8 * 51)
-    }),
-    row("sharpened", |p| p.afterwards = Some(sharpened)),
-    row("video_range", |p| {
-        p.change = |color| color.map(|byte| (16.0 + f64::from(byte) * 219.0 / 255.0).round() as u8)
+    picture("sharpened", sharpened),
+    pixels("video_range", |color| {
+        color.map(|byte| (16.0 + f64::from(byte) * 219.0 / 255.0).round() as u8)
     }),
     row("bytes_wrap", |p| {
         p.change = |color| color.map(|byte| if byte == 255 { 0 } else { byte })
@@ -249,15 +246,17 @@ const OTHERS: &[Mistake] = &[
     row("eye_lookat_exchanged", |p| {
         (p.eye, p.lookat) = (p.lookat, p.eye)
     }),
-    // The scene's 40 degrees, of which half is taken for 20 radians.
+    // The scene's 40 degrees, half of which are taken for 20 radians.
     row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
     row("colors_exchanged", |p| {
-        let [ball, crate_] = ["Ball", "Crate"].map(|name| p.object(name).color);
-        color(p, "Ball", crate_);
-        color(p, "Crate", ball);
+        let colors = ["Ball", "Crate"].map(|name| p.object(name).map(|object| object.color));
+        if let [Some(ball), Some(crate_)] = colors {
+            color(p, "Ball", crate_);
+            color(p, "Crate", ball);
+        }
     }),
     row("Crate.max|max", |p| {
-        if let Shape::Box(_, greatest) = p.shape("Crate") {
+        if let Some(Shape::Box(_, greatest)) = p.shape("Crate") {
             greatest.x = 1.9;
         }
     }),
@@ -285,10 +284,10 @@ const OTHERS: &[Mistake] = &[
     }),
 ];
 
-/// The scenes: the picture of the assignment, turned a little; another one with the same names,
-/// seen from closer by, with a far plane, and more objects; and what some mistakes need to show: a
-/// near plane that cuts objects off, a low window, a box whose faces have colours of their own, and
-/// the floor as the first object.
+/// Returns a scene: the assignment's picture, turned a little; another one with the same names, a
+/// closer camera, a far plane and more objects; or a variant for mistakes that need one: a near
+/// plane that clips objects, a low window, a box with colours for its faces, or the floor as the
+/// first object.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -343,7 +342,7 @@ box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
 ";
 
 fn figure() -> Program {
-    // The sail of the assignment, whose corners are given: the base's ends and the apex.
+    // The assignment's sail, whose corners are given: the ends of its base and the apex.
     let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
     let normal = dvec3(0.3, 0.0, 1.0).normalize();
     let right = DVec3::Y.cross(normal);
@@ -440,7 +439,7 @@ fn street() -> Program {
     street
 }
 
-/// A byte of sRGB as a plain power would have encoded its light.
+/// Encodes the light of an sRGB byte with a power instead.
 fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
 }
@@ -449,7 +448,7 @@ fn decoded_twice(byte: u8) -> u8 {
     (255.0 * light(light(f64::from(byte) / 255.0))).round() as u8
 }
 
-/// Gray by encoded values.
+/// Averages encoded values.
 fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
     let sum: f64 = weights.iter().sum();
     let parts = color.iter().zip(weights);
@@ -458,41 +457,43 @@ fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
 }
 
 fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3])) {
-    if let Shape::Board(y, square, second) = program.shape("Floor") {
+    if let Some(Shape::Board(y, square, second)) = program.shape("Floor") {
         change(y, square, second);
     }
 }
 
 fn shift(program: &mut Program, name: &str, by: DVec3) {
     match program.shape(name) {
-        Shape::Sphere(center, _) => *center += by,
-        Shape::Triangle(corners) => corners.iter_mut().for_each(|corner| *corner += by),
-        Shape::Box(least, greatest) => (*least, *greatest) = (*least + by, *greatest + by),
-        Shape::Board(y, ..) => *y += by.y,
+        Some(Shape::Sphere(center, _)) => *center += by,
+        Some(Shape::Triangle(corners)) => corners.iter_mut().for_each(|corner| *corner += by),
+        Some(Shape::Box(least, greatest)) => (*least, *greatest) = (*least + by, *greatest + by),
+        Some(Shape::Board(y, ..)) => *y += by.y,
+        None => {}
     }
 }
 
-/// Moves the crate's corners, each by so many times its size.
+/// Moves the crate's corners, each by a multiple of its size.
 fn stretch(program: &mut Program, by: [f64; 2]) {
-    if let Shape::Box(least, greatest) = program.shape("Crate") {
+    if let Some(Shape::Box(least, greatest)) = program.shape("Crate") {
         let size = *greatest - *least;
         (*least, *greatest) = (*least + by[0] * size, *greatest + by[1] * size);
     }
 }
 
-/// Turns the sail about its middle.
+/// Turns the sail about its centroid.
 fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
-    if let Shape::Triangle(corners) = program.shape("Sail") {
+    if let Some(Shape::Triangle(corners)) = program.shape("Sail") {
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         *corners = corners.map(|corner| middle + turned(corner - middle));
     }
 }
 
 fn color(program: &mut Program, name: &str, color: [u8; 3]) {
-    program.object(name).color = color;
+    if let Some(object) = program.object(name) {
+        object.color = color;
+    }
 }
 
 fn exchange(program: &mut Program, order: [usize; 3]) {
-    let faces = program.faces.expect("faces with colours");
-    program.faces = Some(order.map(|axis| faces[axis]));
+    program.faces = program.faces.map(|faces| order.map(|axis| faces[axis]));
 }

@@ -1,4 +1,4 @@
-//! Grading: pictures of a tracer of its own judged by the library, and the command `grade`.
+//! Grading: pictures of an independent ray tracer judged by the library, and the command `grade`.
 
 mod archives;
 mod case;
@@ -28,9 +28,9 @@ use crate::{
     images,
 };
 
-/// Pictures of all kinds, a title in each line: right ones by every method, and mistakes that a
+/// Titles of pictures, one in each line: right ones by every sampling, and the mistakes that a
 /// class makes. Each has as many samples as the mistake needs: 16 in a pixel make more noise at
-/// edges than decoding with the power 2.2 in place of sRGB does.
+/// edges than decoding with the power 2.2 instead of sRGB does.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
@@ -47,19 +47,43 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// What is said of a picture that is judged otherwise than right.
+/// The benchmark makes each mistake in each scene, and leaves out those that change nothing.
+#[test]
+fn every_mistake_can_be_made_in_every_scene() {
+    for name in [
+        "figure",
+        "street",
+        "clipped",
+        "cut",
+        "lens",
+        "low",
+        "painted",
+        "backwards",
+        "empty",
+    ] {
+        let (mut right, _) = mistakes::scene(name);
+        if name == "empty" {
+            right.objects.clear();
+        }
+        for mistake in mistakes::GROUPS.into_iter().flatten() {
+            mistake.make(&mut right.clone());
+        }
+    }
+}
+
+/// Returns the title and the answer if a picture is judged wrongly.
 fn wrongly_judged(case: &Case) -> Option<String> {
     let picture = case.picture();
     let size = picture.dimensions().into();
     let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
     let answer = answer(&case.text, &[], &file);
-    // Half a pixel is told by edges alone, of which it explains most.
+    // Half a pixel shows only at edges, of whose differences it explains most.
     let is_half = |one: &Value| one["id"] == "half_pixel" && one["explains"].as_f64() < Some(0.5);
     let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
-    if !case.is_told(&answer) || mistakes.any(is_half) {
+    if !case.is_judged_correctly(&answer) || mistakes.any(is_half) {
         return Some(format!("{}: {}", case.title, answer["line"]));
     }
-    // What is told makes the picture.
+    // The scene with the named `--set` arguments explains the picture.
     let sets = answer["mistakes"].as_array().unwrap().iter();
     let sets: Vec<Vec<&str>> = sets
         .map(|one| {
@@ -75,7 +99,7 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
 
-/// What is said of a file with a picture of a scene that is set otherwise.
+/// Judges a file against a scene with `--set` arguments.
 fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     let mut sources = Sources::new(Source::from_text("a.scn", text));
     sets.iter().for_each(|set| sources.push_set(set));
@@ -94,7 +118,7 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     Value::Object(verdict.unwrap().to_json())
 }
 
-/// Of a mirrored picture a part beside the middle shows what lies on the other side of it.
+/// A part beside the middle of a mirrored picture shows what lies on the other side.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

@@ -1,9 +1,9 @@
 //! A ray tracer as a class writes it, from the formulas of a textbook (Suffern 2007, "Ray Tracing
 //! from the Ground Up", chapters 3, 4, 9 and 19), in plain `f64`. It shares nothing with Pinhole,
-//! so that its pictures can judge the grading of pictures.
+//! so that its pictures are independent evidence.
 //!
 //! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes.
-//! What a program may do wrong are its fields; the mistakes that a class makes stand in `mistakes`.
+//! The fields of a program include what it may do wrong; `mistakes` lists the mistakes of a class.
 
 use std::array;
 
@@ -11,27 +11,27 @@ use glam::DVec3;
 use image::{Pixel, Rgb, RgbImage, imageops};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
 
-/// A thing of a scene. Colours are in sRGB bytes.
+/// A shape of a scene. Colours are in sRGB bytes.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Centre and radius.
+    /// Center and radius.
     Sphere(DVec3, f64),
-    /// The base's left end, its right end, and the apex.
+    /// The left and the right end of the base, and the apex.
     Triangle([DVec3; 3]),
-    /// The least corner and the greatest one.
+    /// The least and the greatest corner.
     Box(DVec3, DVec3),
-    /// The plane at this height, with squares of this side and a second colour.
+    /// A plane's height, the side of its squares, and their second colour.
     Board(f64, f64, [u8; 3]),
 }
 
-/// A shape, its name and its colour.
+/// A shape with its name and colour.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// In the scene's text.
+    /// Name in the scene's text.
     pub name: &'static str,
-    /// What it is.
+    /// The shape.
     pub shape: Shape,
-    /// Of a board, the first one.
+    /// Colour; a board's first one.
     pub color: [u8; 3],
 }
 
@@ -42,9 +42,9 @@ pub enum Encoding {
     Srgb,
     /// Not at all.
     None,
-    /// By this curve twice.
+    /// By sRGB's curve twice.
     Twice,
-    /// By one over a power.
+    /// By the reciprocal of a power.
     Power(f64),
 }
 
@@ -61,71 +61,71 @@ pub enum Visible {
     Farthest,
 }
 
-/// Whether what lies behind the eye is seen.
+/// How surfaces behind the eye are treated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Behind {
-    /// It is not.
+    /// They are not seen.
     Unseen,
-    /// As far away as it is.
+    /// They count by their distance.
     ByDistance,
-    /// Before everything that lies before the eye.
+    /// They count as nearest.
     First,
 }
 
-/// How the number of a square of the board is told, which is 1 for its second colour.
+/// Rule for the number of a board's square, which is odd for its second colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squares {
-    /// By the sum of two coordinates that are rounded down.
+    /// The sum of the coordinates, rounded down.
     Floored,
-    /// By the sum of two that are cut off.
+    /// The sum of the truncated coordinates.
     Truncated,
-    /// By the remainder of their sum, which is -1 for a negative odd one.
+    /// The remainder of the sum, which is −1 for a negative odd one.
     Remainder,
-    /// By whether their two remainders differ.
+    /// Whether the remainders differ.
     Remainders,
-    /// By the sum of two that are rounded to the nearest.
+    /// The sum of the coordinates, rounded to the nearest.
     Rounded,
-    /// By the sum of two of which the first is rounded to the nearest, and the other down.
+    /// The sum of the coordinates, the first rounded to the nearest, the other down.
     Moved,
-    /// By their sum, rounded down.
+    /// The coordinates' sum, rounded down.
     Sum,
-    /// By the first one, rounded down.
+    /// The first coordinate, rounded down.
     Stripes,
-    /// By whether one of two that are rounded down is odd.
+    /// Whether one of the coordinates, rounded down, is odd.
     BothEven,
-    /// By the sign of the product of their sines.
+    /// The sign of the product of their sines.
     Sines,
 }
 
-/// What is wrong with the camera's axes and rays.
+/// Fault of the camera's axes and rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
-    /// Nothing.
+    /// None.
     Right,
-    /// The new u stands for the old one in the roll.
+    /// The roll uses the new u in place of the old one.
     NewU,
-    /// Up stands for v.
+    /// The up vector is taken for v.
     UpAsV,
-    /// w has not the length 1.
+    /// w is not normalised.
     LongW,
-    /// w is made of lookat alone.
+    /// w is computed from lookat alone.
     WithoutEye,
-    /// u alone is rolled.
+    /// Only u is rolled.
     RolledU,
-    /// The angle of a ray grows as the distance from the picture's middle does.
+    /// A ray's angle grows linearly with the distance from the picture's middle.
     Fisheye,
-    /// Rays are not divided by their length.
+    /// Rays are not normalised.
     LongRays,
     /// All rays have the direction −w.
     Parallel,
 }
 
-/// Where the samples of a pixel lie.
+/// Places of the samples in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
-    /// An even grid.
+    /// On a regular grid.
     Regular,
-    /// Independent ones.
+    /// Independent and uniform.
     Random,
     /// One in each cell of a grid.
     Jittered,
@@ -143,48 +143,47 @@ pub const SAMPLINGS: [Sampling; 4] = [
 /// A scene, and what the program does with it.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Of the picture, in pixels.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
     pub background: [u8; 3],
     pub eye: DVec3,
     pub lookat: DVec3,
     pub up: DVec3,
-    /// In radians.
+    /// Roll in radians.
     pub roll: f64,
-    /// Of the view plane.
+    /// Distance of the view plane.
     pub distance: f64,
     pub view_height: f64,
     pub near: f64,
     pub far: f64,
-    /// In the order of the text.
+    /// The objects, in the order of the text.
     pub objects: Vec<Object>,
     pub sampling: Sampling,
-    /// A square number in each pixel.
+    /// Number of samples in each pixel, a square.
     pub samples: u32,
     /// Whether the window's height is taken for its width.
     pub is_wide: bool,
     /// Whether the window is as wide as it is tall.
     pub is_squeezed: bool,
-    /// The window is so many times as wide as it should be.
+    /// Ratio of the window's width to its correct width.
     pub aspect: f64,
     pub axes: Axes,
-    /// What light is multiplied by.
+    /// Factor of the light.
     pub gain: f64,
-    /// Whether near and far are distances.
+    /// Whether near and far are compared with distances, not with depths.
     pub clips_distances: bool,
-    /// Whether one test of a triangle is missing: of an edge's side, or that the point is on this
-    /// side of the third edge.
+    /// Whether one test of a triangle is missing: of one edge's side.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
     /// Whether the greater root of a sphere is not tried.
     pub misses_root: bool,
     /// Whether boxes have no sides across z.
     pub misses_axis: bool,
-    /// The colours of a box's faces across x, y and z, in the place of its own.
+    /// Colours of the boxes' faces across x, y and z, if not the box's own colour.
     pub faces: Option<[[u8; 3]; 3]>,
-    /// The side of the square that samples lie in, in pixels.
+    /// Side of the square in which samples lie, in pixels.
     pub pixel: f64,
-    /// Added to each sample's place, in pixels.
+    /// Shift of the samples to the right and down, in pixels.
     pub offset: f64,
     pub behind: Behind,
     pub visible: Visible,
@@ -192,30 +191,28 @@ pub struct Program {
     /// Added to the number of a square.
     pub parity: i64,
     pub encoding: Encoding,
-    /// Whether the mean is of encoded colours.
+    /// Whether encoded colours are averaged.
     pub averages_encoded: bool,
-    /// Whether bytes are cut off, not rounded.
+    /// Whether bytes are truncated, not rounded.
     pub cuts_bytes: bool,
-    /// What is done to colours at the end.
+    /// Applied to each pixel's bytes.
     pub change: fn([u8; 3]) -> [u8; 3],
-    /// What is done to the picture then.
+    /// Applied to the picture at the end.
     pub afterwards: Option<fn(&RgbImage) -> RgbImage>,
 }
 
 impl Program {
-    /// One of its objects.
-    pub fn object(&mut self, name: &str) -> &mut Object {
-        let mut objects = self.objects.iter_mut();
-        let found = objects.find(|object| object.name == name);
-        found.expect("an object of this name")
+    /// Returns an object by its name, if the scene has it.
+    pub fn object(&mut self, name: &str) -> Option<&mut Object> {
+        self.objects.iter_mut().find(|object| object.name == name)
     }
 
-    /// The shape of one.
-    pub fn shape(&mut self, name: &str) -> &mut Shape {
-        &mut self.object(name).shape
+    /// Returns the shape of an object, if the scene has it.
+    pub fn shape(&mut self, name: &str) -> Option<&mut Shape> {
+        self.object(name).map(|object| &mut object.shape)
     }
 
-    /// The picture.
+    /// Renders the picture.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
         let backward = match self.axes {
@@ -239,9 +236,10 @@ impl Program {
             w = backward;
         }
         let pixel = self.view_height / f64::from(if self.is_wide { width } else { height });
-        let wide = match self.is_squeezed {
-            true => self.view_height / f64::from(width),
-            false => self.aspect * pixel,
+        let wide = if self.is_squeezed {
+            self.view_height / f64::from(width)
+        } else {
+            self.aspect * pixel
         };
         let light: [f64; 256] = array::from_fn(|byte| match byte as f64 / 255.0 {
             part if self.averages_encoded => part,
@@ -273,9 +271,10 @@ impl Program {
             }
             let mean = (self.gain * sum / f64::from(self.samples)).to_array();
             let bytes = mean.map(|part| {
-                let encoded = match self.averages_encoded {
-                    true => part,
-                    false => self.encode(part),
+                let encoded = if self.averages_encoded {
+                    part
+                } else {
+                    self.encode(part)
                 };
                 let half = if self.cuts_bytes { 0.0 } else { 0.5 };
                 (255.0 * encoded + half) as u8
@@ -288,8 +287,8 @@ impl Program {
         }
     }
 
-    /// The light of a colour: flat colours come out as they were written, but where light is not
-    /// encoded or encoded twice.
+    /// Decodes a colour. Flat colours come out unchanged, unless light is not encoded or encoded
+    /// twice.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),
@@ -298,9 +297,12 @@ impl Program {
     }
 
     fn encode(&self, light: f64) -> f64 {
-        let srgb = |light: f64| match light <= 0.003_130_8 {
-            true => 12.92 * light,
-            false => 1.055 * libm::pow(light, 1.0 / 2.4) - 0.055,
+        let srgb = |light: f64| {
+            if light <= 0.003_130_8 {
+                12.92 * light
+            } else {
+                1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+            }
         };
         match self.encoding {
             Encoding::Srgb => srgb(light),
@@ -325,9 +327,9 @@ impl Program {
         }
     }
 
-    /// The colour in a direction.
+    /// Returns the colour that a ray sees.
     fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
-        // What lies behind the eye is before everything, or counts as far away as it is.
+        // Surfaces behind the eye count as nearest, or by their distance.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t
@@ -403,7 +405,7 @@ impl Program {
         if is_second { second } else { object.color }
     }
 
-    /// The distances at which a ray meets a shape.
+    /// Returns the parameters at which a ray meets a shape.
     fn hits(&self, shape: &Shape, eye: DVec3, ray: DVec3) -> [Option<f64>; 2] {
         match *shape {
             Shape::Sphere(center, radius) => {
@@ -421,9 +423,10 @@ impl Program {
                 let area = normal.length_squared();
                 let beta = at.cross(ac).dot(normal) / area;
                 let gamma = ab.cross(at).dot(normal) / area;
-                let is_within = match self.is_parallelogram {
-                    true => beta <= 1.0 && gamma <= 1.0,
-                    false => beta + gamma <= 1.0,
+                let is_within = if self.is_parallelogram {
+                    beta <= 1.0 && gamma <= 1.0
+                } else {
+                    beta + gamma <= 1.0
                 };
                 let is_in = beta >= 0.0 && (gamma >= 0.0 || self.misses_edge) && is_within;
                 [Some(t).filter(|_| is_in), None]
@@ -446,15 +449,16 @@ impl Program {
     }
 }
 
-/// A picture with what each pixel has more than the mean of those around it added once more.
+/// Adds to each pixel its difference from the mean of the 3 × 3 around it.
 pub fn sharpened(picture: &RgbImage) -> RgbImage {
     let around = imageops::filter3x3(picture, &[1.0; 9]);
     let [columns, rows] = [picture.width(), picture.height()].map(|side| 1..side - 1);
     RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
         let own = picture.get_pixel(x, y);
-        let mean = match columns.contains(&x) && rows.contains(&y) {
-            true => around.get_pixel(x, y),
-            false => own,
+        let mean = if columns.contains(&x) && rows.contains(&y) {
+            around.get_pixel(x, y)
+        } else {
+            own
         };
         own.map2(mean, |own, mean| {
             (2 * i16::from(own) - i16::from(mean)).clamp(0, 255) as u8
@@ -462,10 +466,11 @@ pub fn sharpened(picture: &RgbImage) -> RgbImage {
     })
 }
 
-/// The light of a part of 255.
+/// Decodes sRGB from 0 to 1.
 pub fn light(part: f64) -> f64 {
-    match part <= 0.04045 {
-        true => part / 12.92,
-        false => libm::pow((part + 0.055) / 1.055, 2.4),
+    if part <= 0.04045 {
+        part / 12.92
+    } else {
+        libm::pow((part + 0.055) / 1.055, 2.4)
     }
 }

@@ -1,33 +1,34 @@
-//! Numbers for which a model comes nearest to a picture: by least squares, then by squares of small
-//! differences and absolute values of large ones.
+//! Fits the numbers of a model to a picture: by least squares, then by a robust loss.
 //!
 //! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of
-//! nonlinear parameters, 1963) with weights that make of squares absolute values (Schlossmacher,
-//! 1973), so that what the numbers cannot explain does not draw them away from what they can.
-//! Slopes are found by varying each number once, and then updated by what each move does (Broyden,
-//! A class of methods for solving nonlinear simultaneous equations, 1965).
+//! nonlinear parameters, 1963), with weights that turn squares into absolute values (Schlossmacher,
+//! 1973), so that what the numbers cannot explain does not distort them. Derivatives are found by
+//! varying each number once, and then updated by the effect of each move (Broyden, A class of
+//! methods for solving nonlinear simultaneous equations, 1965).
 
-/// A round whose first move changes no number by more than this part of its step is the last.
+use crate::grading::scoring::solve;
+
+/// Largest move of a number, in steps, at which the fit counts as converged.
 const CLOSE: f64 = 0.05;
 
-/// Numbers that were fitted.
+/// The result of a fit.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// The numbers.
+    /// The fitted numbers.
     pub numbers: Vec<f64>,
-    /// The sum of the absolute differences.
+    /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// How far each may be off: a standard deviation, if an error is that of rounding.
+    /// Standard deviation of each number, if errors are those of rounding.
     pub errors: Vec<f64>,
 }
 
-/// The sum of absolute differences.
+/// Sums absolute differences.
 pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// What is to be small: the sum of squares of differences; or in units of their deviations, and of
-/// absolute values of what is beyond one (Huber, Robust estimation of a location parameter, 1964).
+/// The function to minimise: the sum of squares; or, with standard deviations, Huber's loss, which
+/// is linear beyond one deviation (Huber, Robust estimation of a location parameter, 1964).
 struct Loss(Option<Vec<f64>>);
 
 impl Loss {
@@ -36,7 +37,7 @@ impl Loss {
         weights.map(|(at, d)| self.weight(at, *d) * d * d).sum()
     }
 
-    /// The weight of a square.
+    /// Returns the weight of a squared difference.
     fn weight(&self, at: usize, difference: f64) -> f64 {
         match &self.0 {
             None => 1.0,
@@ -45,13 +46,13 @@ impl Loss {
     }
 }
 
-/// Fits numbers from a start; `steps` are by how much each is varied to see what it does. `trial`
-/// gives the differences from a picture; none for numbers that cannot be, and where no more work
-/// may be done.
+/// Fits numbers from a start. `steps` are the changes by which derivatives are found. `trial`
+/// returns the differences from a picture; it returns `None` for impossible numbers, and if the
+/// budget is used up.
 ///
-/// By squares first, which have one valley; then in standard deviations, of which more than one
-/// counts by its absolute value, so that what the numbers cannot explain does not draw them away
-/// from what they can. `rounds` are those of both.
+/// Squares come first, because they have a single minimum; then Huber's loss in standard
+/// deviations, so that what the numbers cannot explain does not distort them. `rounds` are the
+/// maximum numbers of rounds of both.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -82,7 +83,7 @@ pub fn fit(
                 let Some((by, other)) = varied(steps[i]).or_else(|| varied(-steps[i])) else {
                     break 'fitting;
                 };
-                // In units of the step, so that all numbers are alike.
+                // Per step, so that all numbers have one scale.
                 let sign = steps[i] / by;
                 let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
                 slopes.push(slope.collect());
@@ -101,8 +102,8 @@ pub fn fit(
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
             let (mut has_improved, mut is_far) = (false, None);
-            // A move that fails with updated slopes is blamed on these: they are found anew before
-            // damping is tried.
+            // If a move with updated derivatives fails, they are computed anew before the damping
+            // grows.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();
@@ -130,9 +131,10 @@ pub fn fit(
             if is_far != Some(true) || !has_improved && are_new {
                 break;
             }
-            match has_improved {
-                true => round += 1,
-                false => slopes.clear(),
+            if has_improved {
+                round += 1
+            } else {
+                slopes.clear()
             }
         }
     }
@@ -149,49 +151,17 @@ pub fn fit(
     })
 }
 
-/// Slopes that agree with what a move did, by Broyden's method: to vary each number once more would
+/// Updates derivatives by the effect of a move (Broyden's method); varying each number again would
 /// take most of the time.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {
-        let told: f64 = slopes
-            .iter()
-            .zip(moves)
-            .map(|(slope, by)| slope[at] * by)
-            .sum();
-        let missed = (after[at] - before[at] - told) / square;
+        let terms = slopes.iter().zip(moves).map(|(slope, by)| slope[at] * by);
+        let missed = (after[at] - before[at] - terms.sum::<f64>()) / square;
         for (slope, by) in slopes.iter_mut().zip(moves) {
             slope[at] += missed * by;
         }
     }
-}
-
-/// Solves a small system of linear equations by elimination with the largest pivot.
-pub fn solve(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
-    let count = right.len();
-    for i in 0..count {
-        let pivot = (i..count).max_by(|&a, &b| rows[a][i].abs().total_cmp(&rows[b][i].abs()))?;
-        rows.swap(i, pivot);
-        right.swap(i, pivot);
-        if rows[i][i].abs() < 1e-300 {
-            return None;
-        }
-        for j in i + 1..count {
-            let factor = rows[j][i] / rows[i][i];
-            let (above, below) = rows.split_at_mut(j);
-            for (to, from) in below[0][i..].iter_mut().zip(&above[i][i..]) {
-                *to -= factor * from;
-            }
-            right[j] -= factor * right[i];
-        }
-    }
-    for i in (0..count).rev() {
-        for k in i + 1..count {
-            right[i] -= rows[i][k] * right[k];
-        }
-        right[i] /= rows[i][i];
-    }
-    right.iter().all(|x| x.is_finite()).then_some(right)
 }
 
 #[cfg(test)]
@@ -199,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_found_among_points_of_which_some_are_elsewhere() {
+    fn a_line_is_fitted_despite_outliers() {
         let points: Vec<f64> = (0..40)
             .map(|x| {
                 if x % 8 == 3 {
@@ -213,29 +183,11 @@ mod tests {
             let line = |(x, y): (usize, &f64)| numbers[0] + numbers[1] * x as f64 - y;
             Some(points.iter().enumerate().map(line).collect())
         };
-        let fitted = fit(
-            vec![0.0, 0.0],
-            &[0.1, 0.1],
-            [30, 30],
-            &|| vec![1e-3; 40],
-            &trial,
-        )
-        .unwrap();
+        let (start, deviations) = (vec![0.0; 2], || vec![1e-3; 40]);
+        let fitted = fit(start, &[0.1, 0.1], [30, 30], &deviations, &trial).unwrap();
         assert!(
             (fitted.numbers[0] - 2.0).abs() < 0.02 && (fitted.numbers[1] - 0.25).abs() < 0.002,
             "{fitted:?}"
-        );
-    }
-
-    #[test]
-    fn a_system_without_a_solution_has_none() {
-        assert_eq!(
-            solve(vec![vec![0.0, 2.0], vec![4.0, 0.0]], vec![2.0, 4.0]),
-            Some(vec![1.0, 1.0])
-        );
-        assert_eq!(
-            solve(vec![vec![0.0, 0.0], vec![0.0, 0.0]], vec![1.0, 1.0]),
-            None
         );
     }
 }

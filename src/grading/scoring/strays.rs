@@ -1,41 +1,41 @@
-//! What is wrong in a picture for certain, however it was sampled.
+//! Finds what is certainly wrong in a picture, however it was sampled.
 
 use glam::DVec3;
 
 use super::{moments::range, prediction::Prediction};
 
-/// How much a difference may be, in standard deviations, where that is known of what is random in
-/// it: of a million normal errors one is greater.
+/// Greatest error that counts as random, in standard deviations: of a million normal errors one is
+/// greater.
 pub const DEVIATIONS: f64 = 5.0;
 
-/// In steps: half of one is rounding, and half of that another way to decode.
+/// Greatest difference of a pixel of one colour that is ignored, in steps: half for rounding, and a
+/// quarter for another way to decode.
 pub const WRONG: f64 = 0.75;
 
-/// The pixels that no sampling of a candidate explains.
+/// The errors of pixels that no sampling of a candidate explains.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// The pixels of one colour that show another, by more than an edge brings into them that is
-    /// half a pixel off.
+    /// Indices of the pixels of one colour that show another, by more than a displacement of an
+    /// edge by half a pixel could cause.
     pub pixels: Vec<usize>,
-    /// Their squared difference.
+    /// Sum of their squared differences.
     square: f64,
-    /// The pixels of several colours, their squared difference, and that which is expected of one
-    /// sample in each.
+    /// For each pixel of several colours its index, its squared difference, and the variance of one
+    /// sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
-    /// The squared difference of the pixels of one colour, and of the others what is more than one
-    /// sample in each makes.
+    /// Returns the squared difference of the pixels of one colour, plus what the others have beyond
+    /// the variance of one sample each.
     pub fn square(&self) -> f64 {
-        let beyond = self
-            .edges
-            .iter()
-            .map(|(_, square, variance)| square - variance);
-        self.square + beyond.sum::<f64>().max(0.0)
+        let beyond = |(_, square, variance): &(usize, f64, f64)| square - variance;
+        let beyond: f64 = self.edges.iter().map(beyond).sum();
+        self.square + beyond.max(0.0)
     }
 
-    /// Whether there are none, or no more pixels of one colour than are missed.
+    /// Returns whether at most `missed` pixels of one colour are wrong, and those of several
+    /// colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
         let are_few = self.pixels.len() <= missed;
         let of_edges = Self {
@@ -45,7 +45,7 @@ impl Strays {
         are_few && of_edges.are_empty(1, |_| Some(0)) == [true]
     }
 
-    /// Whether there are none in each of some groups of pixels.
+    /// Returns for each group of pixels whether it has no stray.
     pub fn are_empty(&self, groups: usize, group: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
         let mut is_right = vec![true; groups];
         for group in self.pixels.iter().filter_map(|at| group(*at)) {
@@ -58,8 +58,8 @@ impl Strays {
                 (*squares, *expected) = (*squares + square, *expected + variance);
             }
         }
-        // Light is 1 at most, so the square of a pixel's sum over three channels is expected to be
-        // no more than three times the sum, and its variance no more than that.
+        // Light is at most 1, so the expected square of a pixel's sum over three channels is at
+        // most three times the sum, and its variance no more than that.
         let is_noise = |(squares, expected): (f64, f64)| {
             squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
         };
@@ -71,10 +71,10 @@ impl Strays {
 }
 
 impl Prediction<'_> {
-    /// What is wrong for certain.
+    /// Finds the strays of the prediction.
     pub fn strays(&self) -> Strays {
         let mut strays = Strays::default();
-        for at in 0..self.seen.len() {
+        for at in 0..self.observed.len() {
             let (difference, allowed) = (self.difference(at), self.allowed(at));
             let squares = difference * difference;
             if self.is_flat(at) {
@@ -92,17 +92,17 @@ impl Prediction<'_> {
         strays
     }
 
-    /// How much the light of a pixel may change if edges move by half a pixel: half of how much the
-    /// pixels around it differ, or the standard deviation of a sample in one of them, which
-    /// half of each of two colours make half of their difference.
+    /// Returns the change of a pixel's light if edges move by half a pixel: half the range of its
+    /// neighbours, or the standard deviation of a sample in one of them, which for half of each of
+    /// two colours is half of their difference.
     fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);
         ((most - least) / 2.0).max(variance.map(f64::sqrt))
     }
 
-    /// What a pixel may differ by for its rounding and for what is not known of it.
+    /// Returns the difference of a pixel that rounding and the uncertainty of its mean explain.
     fn allowed(&self, at: usize) -> DVec3 {
-        WRONG * self.steps(at) + DEVIATIONS * self.moments.doubt[at].map(f64::sqrt)
+        WRONG * self.steps(at) + DEVIATIONS * self.moments.mean_variance[at].map(f64::sqrt)
     }
 }

@@ -1,12 +1,12 @@
-//! A program with mistakes: the scene that it makes a picture of, how it behaves, and what it does
-//! to the picture's light.
+//! A hypothesis about the program that made a picture: the scene that it renders, how it behaves,
+//! and what it does to the picture's light.
 
 use std::sync::Arc;
 
 use super::{
-    faulty_tracer::Behaviour,
+    behaviour::Behaviour,
     layout::Layout,
-    light::{Curve, Look},
+    light::{Curve, Effect},
     parameters::Parameter,
 };
 use crate::scene::{FieldOwner as Part, Scene};
@@ -14,48 +14,48 @@ use crate::scene::{FieldOwner as Part, Scene};
 /// A mistake of a program.
 #[derive(Clone, Debug)]
 pub enum Mistake {
-    /// A row of the table, and the object that it is about, if it is about one.
-    Row(&'static Row, Option<usize>),
-    /// Numbers that are others.
+    /// A row of the table, and the index of its object if the row is about one.
+    Row(&'static MistakeRow, Option<usize>),
+    /// Numbers of the scene that have other values.
     Numbers(Parameter, Vec<f64>),
-    /// Something too many: pixels of a colour, in linear light, between the least and the greatest
-    /// column and row.
+    /// An extra patch: pixels of one colour, in linear light, inside a rectangle given by its least
+    /// and greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
-    /// Two objects of one colour each have each other's.
+    /// Two objects of one colour each that have each other's colours.
     ColorsExchanged(usize, usize),
-    /// Pixels are seen as through pixels so many times as wide.
+    /// A pixel filter whose width is this multiple of a pixel's.
     Filter(f64),
 }
 
 /// A row of the table of mistakes (`mistakes`).
 #[derive(Debug)]
-pub struct Row {
-    /// A word for programs.
+pub struct MistakeRow {
+    /// Stable identifier, for programs.
     pub id: &'static str,
-    /// Where it shows.
+    /// Where the mistake is visible.
     pub shows: Shows,
-    /// What it is; of one about an object, what follows its name.
+    /// The message; in a row about an object, the text that follows the object's name.
     pub message: &'static str,
-    /// The way out.
+    /// Advice on how to correct the mistake.
     pub help: &'static str,
-    /// What it changes; the second argument is the object that it is about, if it is about one.
+    /// Applies the mistake; the second argument is the object's index in a row about an object.
     pub change: fn(&mut Candidate, usize),
 }
 
-/// Where a mistake shows.
+/// Where a mistake is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
     /// In areas of one colour.
     InAreas,
-    /// Where colours meet, and nowhere else: it moves nothing by a pixel.
+    /// Only where colours meet: the mistake moves nothing by a whole pixel.
     AtEdges,
-    /// In both: so little that it is told by edges, or where it explains what is left.
+    /// In both, but so weakly that it is tested like a mistake at edges, or if areas are wrong.
     Everywhere,
 }
 
 impl Mistake {
-    /// Whether it is another one, but for its numbers.
-    pub fn is_alike(&self, other: &Self) -> bool {
+    /// Returns whether two mistakes are of one kind and concern the same thing; numbers may differ.
+    pub fn is_same_kind(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Row(row, object), Self::Row(other, of)) => {
                 row.message == other.message && object == of
@@ -69,71 +69,71 @@ impl Mistake {
         }
     }
 
-    /// How many numbers tell it.
-    pub fn fitted(&self) -> usize {
+    /// Returns the number of parameters that describe the mistake, for the cost of a candidate.
+    pub fn parameter_count(&self) -> usize {
         match self {
             Self::Row(..) | Self::ColorsExchanged(..) => 1,
-            // Which numbers they are, and they themselves.
+            // One for the choice of the parameter, and its numbers.
             Self::Numbers(_, numbers) => 1 + numbers.len(),
-            // A row, a colour and a rectangle.
+            // The choice of the mistake, a colour and a rectangle.
             Self::Patch(..) => 8,
             Self::Filter(_) => 2,
         }
     }
 }
 
-/// A program.
+/// A program, described by what it does otherwise than a correct one.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The scene.
+    /// The scene that it renders.
     pub scene: Scene,
     /// Whether each of the scene's objects is drawn.
     pub is_drawn: Vec<bool>,
-    /// How it behaves.
+    /// How it traces rays and places samples.
     pub behaviour: Behaviour,
-    /// By which curve it decodes the colours that it averages.
-    pub averaged: Curve,
-    /// How it encodes what it averaged.
+    /// Curve by which the program decodes the colours that it averages.
+    pub decoding: Curve,
+    /// Curve by which the program encodes the averages.
     pub curve: Curve,
-    /// How it lays out what it makes.
+    /// How it lays out the pixels.
     pub layout: Layout,
-    /// What it does to the light.
-    pub looks: Vec<Look>,
-    /// Its mistakes.
+    /// Effects on the picture's light, in the order of their application.
+    pub effects: Vec<Effect>,
+    /// The mistakes that make it of a correct program.
     pub mistakes: Vec<Mistake>,
 }
 
 impl Candidate {
-    /// A program without mistakes.
-    pub fn right(scene: &Scene) -> Self {
+    /// Returns a program without mistakes.
+    pub fn correct(scene: &Scene) -> Self {
         Self {
             scene: scene.clone(),
             is_drawn: vec![true; scene.objects.len()],
             behaviour: Behaviour::default(),
-            averaged: Curve::Right,
-            curve: Curve::Right,
+            decoding: Curve::Correct,
+            curve: Curve::Correct,
             layout: Layout::default(),
-            looks: Vec::new(),
+            effects: Vec::new(),
             mistakes: Vec::new(),
         }
     }
 
-    /// A program with these mistakes; none if they cannot be, or if one of them changes nothing.
+    /// Returns a program with some mistakes. Returns `None` if they cannot be made, or if one of
+    /// them changes nothing.
     pub fn of(scene: &Scene, mistakes: impl IntoIterator<Item = Mistake>) -> Option<Self> {
         let mut mistakes = mistakes.into_iter();
-        mistakes.try_fold(Self::right(scene), |candidate, one| candidate.with(one))
+        mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
     }
 
-    /// What a right program makes of what it draws of its scene.
-    pub fn shown_rightly(&self) -> Self {
+    /// Returns a correct program that renders the candidate's scene and omits the same objects.
+    pub fn drawn_correctly(&self) -> Self {
         Self {
             is_drawn: self.is_drawn.clone(),
-            ..Self::right(&self.scene)
+            ..Self::correct(&self.scene)
         }
     }
 
-    /// The same with one more mistake; none if that cannot be, or if it is a row that changes
-    /// nothing.
+    /// Adds a mistake. Returns `None` if it cannot be made, or if it is a row that changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -142,19 +142,24 @@ impl Candidate {
                 let camera = Part::Camera(candidate.scene.camera);
                 let shape = object.map(|object| Part::Shape(candidate.scene.objects[object].shape));
                 let is_possible = camera.is_possible() && shape.is_none_or(|it| it.is_possible());
-                let is_same = candidate.shows_as(self) && candidate.looks.len() == self.looks.len();
-                (is_possible && !is_same).then_some(())?;
+                let is_same =
+                    candidate.shows_as(self) && candidate.effects.len() == self.effects.len();
+                if !is_possible || is_same {
+                    return None;
+                }
             }
             Mistake::Numbers(parameter, numbers) => {
                 candidate.scene = parameter.put(&candidate.scene, numbers)?
             }
-            Mistake::Filter(width) if *width > 1.0 => candidate.looks.push(Look::Blur(*width)),
+            Mistake::Filter(width) if *width > 1.0 => candidate.effects.push(Effect::Blur(*width)),
             Mistake::Filter(width) => candidate.behaviour.pixel = *width,
             Mistake::ColorsExchanged(one, other) => {
                 let shapes =
                     [*one, *other].map(|at| Part::Shape(candidate.scene.objects[at].shape));
                 let [first, second] = shapes.map(|shape| shape.value("color"));
-                (first != second).then_some(())?;
+                if first == second {
+                    return None;
+                }
                 let objects = Arc::make_mut(&mut candidate.scene.objects);
                 for (at, shape, color) in [(*one, shapes[0], second?), (*other, shapes[1], first?)]
                 {
@@ -163,7 +168,7 @@ impl Candidate {
                     }
                 }
             }
-            Mistake::Patch(light, area) => candidate.looks.push(Look::Patch {
+            Mistake::Patch(light, area) => candidate.effects.push(Effect::Patch {
                 light: *light,
                 area: *area,
             }),
@@ -172,7 +177,7 @@ impl Candidate {
         Some(candidate)
     }
 
-    /// Those of its mistakes that are numbers.
+    /// Returns the mistakes that are numbers, each with its parameter.
     pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
         self.mistakes.iter().filter_map(|mistake| match mistake {
             Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
@@ -180,20 +185,20 @@ impl Candidate {
         })
     }
 
-    /// All these numbers, one after the other.
+    /// Returns all fitted numbers of the numeric mistakes, concatenated.
     pub fn numbers(&self) -> Vec<f64> {
         self.numeric()
             .flat_map(|(_, numbers)| numbers.to_vec())
             .collect()
     }
 
-    /// By how much each of these changes the picture by about so many pixels.
+    /// Returns for each fitted number the change that moves the picture by about `pixels` pixels.
     pub fn steps(&self, pixels: f64) -> Vec<f64> {
         let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
         self.numeric().flat_map(steps).collect()
     }
 
-    /// The same with other numbers.
+    /// Replaces the fitted numbers, in the order of `numbers`.
     pub fn with_numbers(&self, scene: &Scene, mut numbers: &[f64]) -> Option<Self> {
         let mut mistakes = self.mistakes.clone();
         for mistake in &mut mistakes {
@@ -206,46 +211,41 @@ impl Candidate {
         Self::of(scene, mistakes)
     }
 
-    /// Whether it does nothing to light but exchange channels, and mix it with that beside it.
+    /// Returns whether the effects keep the mean light of an area: they only exchange channels, or
+    /// mix a pixel with its neighbours.
     pub fn keeps_light(&self) -> bool {
-        let mut looks = self.looks.iter();
-        let keeps = |look: &Look| {
+        let mut effects = self.effects.iter();
+        let keeps = |effect: &Effect| {
             matches!(
-                look,
-                Look::Channels(_) | Look::Gray(_) | Look::Blur(_) | Look::Sharpened
+                effect,
+                Effect::Channels(_) | Effect::Gray(_) | Effect::Blur(_) | Effect::Sharpened
             )
         };
-        self.curve == Curve::Right && looks.all(keeps)
+        self.curve == Curve::Correct && effects.all(keeps)
     }
 
-    /// Whether what is seen is moved by pixels or parts of them.
-    pub fn is_shifted(&self) -> bool {
-        self.behaviour.offset != [0.0; 2] || self.behaviour.spread != [1.0; 2]
-    }
-
-    /// Whether pixels are wider or narrower than they should be.
+    /// Returns whether the pixel filter is wider or narrower than a pixel.
     pub fn is_filtered(&self) -> bool {
         let mut mistakes = self.mistakes.iter();
         mistakes.any(|one| matches!(one, Mistake::Filter(_)))
     }
 
-    /// Whether what it shows is known exactly.
+    /// Returns whether the candidate's picture can be computed exactly.
     pub fn is_exact(&self) -> bool {
-        self.behaviour.is_right() && !self.is_filtered()
+        self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Whether it has the same mistakes as another one, but for their numbers, or is the same
-    /// program.
-    pub fn is_alike(&self, other: &Self) -> bool {
-        if self.looks.is_empty() && other.looks.is_empty() && self.shows_as(other) {
+    /// Returns whether both candidates have mistakes of the same kinds, or are the same program.
+    pub fn is_same_kind(&self, other: &Self) -> bool {
+        if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;
         }
         let mut own = self.mistakes.iter();
-        let has = |one: &Mistake| other.mistakes.iter().any(|it| it.is_alike(one));
+        let has = |one: &Mistake| other.mistakes.iter().any(|it| it.is_same_kind(one));
         self.mistakes.len() == other.mistakes.len() && own.all(has)
     }
 
-    /// Whether it is the same program as another one, but for what they do to light.
+    /// Returns whether both are the same program apart from their effects on light.
     pub fn shows_as(&self, other: &Self) -> bool {
         self.traces_as(other)
             && self.behaviour == other.behaviour
@@ -253,18 +253,19 @@ impl Candidate {
             && self.layout == other.layout
     }
 
-    /// Whether it traces what another one does, but for how they behave, and for what they do then.
+    /// Returns whether both trace the same scene with the same decoding; behaviour and what follows
+    /// tracing may differ.
     pub fn traces_as(&self, other: &Self) -> bool {
         let (one, two) = (&self.scene, &other.scene);
         one.camera == two.camera
             && one.image == two.image
-            && self.averaged == other.averaged
+            && self.decoding == other.decoding
             && self.is_drawn == other.is_drawn
             && (Arc::ptr_eq(&one.objects, &two.objects) || one.objects == two.objects)
     }
 
-    /// How many numbers were fitted.
-    pub fn fitted(&self) -> usize {
-        self.mistakes.iter().map(Mistake::fitted).sum()
+    /// Returns the number of parameters that describe all mistakes.
+    pub fn parameter_count(&self) -> usize {
+        self.mistakes.iter().map(Mistake::parameter_count).sum()
     }
 }

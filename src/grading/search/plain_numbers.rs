@@ -1,36 +1,36 @@
-//! The plainest numbers that explain a picture as well as those that were fitted: the scene's own
-//! where that is so, and else short ones.
+//! Simplifies fitted numbers: the scene's own where they explain the picture as well, and short
+//! ones elsewhere.
 //!
-//! Whoever mistypes a scene changes one number of a vector, and to a short one. Among fits that are
-//! equally good, that one is told which has most of the scene's own numbers, and then the fewest
+//! Whoever mistypes a scene changes one number of a vector, and to a short one. Among equally good
+//! fits the one is chosen that keeps most of the scene's own numbers, and then has the fewest
 //! digits.
 
-use super::{
-    candidate::{Candidate, Mistake},
-    judge::{CELL_STEP, Judge, price},
-    parameters::Parameter,
+use super::judge::{CELL_STEP, Judge, price};
+use crate::{
+    grading::hypotheses::{Candidate, Mistake, Parameter},
+    numbers::rounded,
+    scene::Scene,
 };
-use crate::{numbers::rounded, scene::Scene};
 
-/// No edge moves by more than this part of a pixel for a shorter number, and by a quarter of it in
-/// each round after that.
+/// Greatest displacement of an edge by rounding a number, in pixels, in the first round.
 const TENTH: f64 = 0.1;
+/// Number of rounds, each of which allows a quarter of the displacement of the one before.
 const QUARTERS: i32 = 5;
 
-/// A number is not rounded further than it may be off itself: so many standard deviations.
+/// Standard deviations of a number within which it may be rounded.
 const DEVIATIONS: f64 = 8.0;
 
-/// Rounds of fitting the other numbers where one is the scene's own.
+/// Rounds of fitting the other numbers after one is replaced by the scene's own.
 const ROUNDS: usize = 8;
 
-/// A candidate whose numbers are as plain as they can be.
+/// Returns a candidate with the simplest numbers.
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
     shortened(judge, own.as_ref().unwrap_or(candidate))
 }
 
-/// The same with the scene's own numbers where it explains the picture as well with them.
+/// Replaces numbers by the scene's own while the picture is explained as well.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);
@@ -43,7 +43,7 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             if !judge.work.may_go_on() {
                 return candidate.clone();
             }
-            // What is not fitted does not cost.
+            // A number that is not fitted has no cost.
             let gain = price(level, numbers.len() - free.len());
             let free: Vec<usize> = free.into_iter().map(|i| first + i).collect();
             let judged = || {
@@ -58,7 +58,7 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             };
             let other = judged.candidate();
             if judged.cost - gain <= cost || is_explained && judge.explains(other) {
-                // From better numbers those may be found that could not be before.
+                // The better numbers may be a start for replacements that failed before.
                 return with_own(judge, other, cost.max(judged.cost));
             }
         }
@@ -67,9 +67,9 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Numbers of which more are the scene's own, and which of the others are free, those first that
-/// leave fewest free: all but one are the scene's own, or all but two, and of an eye and what it
-/// looks at one of the two points.
+/// Returns variants of a numeric mistake with more of the scene's own numbers, each with the
+/// indices of its free numbers, fewest free first: all but one or two coordinates of a vector are
+/// the scene's own, or one of the points `eye` and `lookat`.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -77,44 +77,35 @@ fn plainer(
 ) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
     let own = parameter.numbers(scene);
     match (&parameter.fields[..], own.len()) {
-        // Of a direction no picture tells the length: it is such that one number is the scene's.
+        // A picture does not determine a direction's length: it is scaled so that one coordinate is
+        // the scene's.
         (["normal" | "direction"], _) => {
             let is_scaled = (0..3).any(|i| numbers[i].abs() == own[i].abs() && own[i] != 0.0);
-            let told = (0..3).filter(|&i| !is_scaled && numbers[i] * own[i] != 0.0);
-            let scaled = told.map(|i| {
+            let nonzero = (0..3).filter(|&i| !is_scaled && numbers[i] * own[i] != 0.0);
+            let scaled = nonzero.map(|i| {
                 let by = (own[i] / numbers[i]).abs();
                 let scaled = numbers.iter().map(|x| by * x).collect();
-                (
-                    parameter.clone(),
-                    scaled,
-                    (0..3).filter(|&j| j != i).collect(),
-                )
+                let free = (0..3).filter(|&j| j != i).collect();
+                (parameter.clone(), scaled, free)
             });
             scaled.collect()
         }
         ([_, _], _) => {
             let fields = parameter.fields.iter().zip(numbers.chunks(3));
             let alone = fields.map(|(field, own)| {
-                let (owner, fields) = (parameter.owner, vec![*field]);
-                (Parameter { owner, fields }, own.to_vec(), vec![0, 1, 2])
+                let point = Parameter::new(parameter.owner, &[*field]);
+                (point, own.to_vec(), vec![0, 1, 2])
             });
             alone.collect()
         }
         (_, 3) if !parameter.is_color() => {
             let are_own = (0..3).filter(|&i| numbers[i] == own[i]).count();
-            let free = [
-                vec![0],
-                vec![1],
-                vec![2],
-                vec![1, 2],
-                vec![0, 2],
-                vec![0, 1],
-            ];
+            let free: [&[usize]; 6] = [&[0], &[1], &[2], &[1, 2], &[0, 2], &[0, 1]];
             let fewer = free.into_iter().filter(|free| 3 - free.len() > are_own);
-            let with = |free: Vec<usize>| {
+            let with = |free: &[usize]| {
                 let mut mixed = own.clone();
                 free.iter().for_each(|&i| mixed[i] = numbers[i]);
-                (parameter.clone(), mixed, free)
+                (parameter.clone(), mixed, free.to_vec())
             };
             fewer.map(with).collect()
         }
@@ -122,7 +113,7 @@ fn plainer(
     }
 }
 
-/// A candidate whose numbers have as few digits as do.
+/// Rounds a candidate's numbers to as few digits as possible.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let level = judge.fitting(candidate);
     let free: Vec<usize> = (0..candidate.numbers().len()).collect();
@@ -135,12 +126,11 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let Some(long) = judge.judged(candidate, level) else {
         return candidate.clone();
     };
-    // A number that is short was not fitted: it may cost what that costs.
+    // A short number counts as not fitted, so it may increase the other costs by its own.
     let most = long.cost + price(level, free.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
-        // What a vector's length may be off is no matter, so that no error is more than a part of a
-        // step.
+        // A vector's length may be arbitrarily uncertain, so errors are limited to a step.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));
@@ -150,7 +140,7 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     };
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
-        // Noise that is no chance, as that of a regular grid, may be fitted by a long number.
+        // Structured noise, as of a regular grid, may be fitted only by long numbers.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =

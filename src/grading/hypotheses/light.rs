@@ -1,4 +1,4 @@
-//! What a program may do to light: encode it otherwise, mix its channels.
+//! What a program may do to light: encode it by another curve, mix its channels, change its pixels.
 
 use std::{
     collections::BTreeMap,
@@ -10,41 +10,41 @@ use crate::{
     lock::lock,
 };
 
-/// A step of 8-bit sRGB. Nobody sees less, so no file is taken for finer.
+/// Step of 8-bit sRGB. Nobody sees less, so files of more bits are treated as if they had 8.
 pub const STEP: f64 = 1.0 / 255.0;
 
-/// How light is encoded, told by what light is seen in its place.
+/// Curve by which light is encoded, described by the light that a correct decoder sees instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curve {
-    /// As it should be: itself.
-    Right,
-    /// Not at all, so that it is decoded.
+    /// The correct curve, sRGB: the same light is seen.
+    Correct,
+    /// No encoding: light is decoded once too often.
     Missing,
-    /// Twice, so that it is encoded.
+    /// Encoding twice.
     Twice,
-    /// By the power 1/2.2.
+    /// The power 1/2.2.
     Power22,
-    /// By a square root.
+    /// A square root.
     Root,
 }
 
 impl Curve {
-    /// All of them, in order.
+    /// All curves, in the order of their numbers.
     pub const ALL: [Self; 5] = [
-        Self::Right,
+        Self::Correct,
         Self::Missing,
         Self::Twice,
         Self::Power22,
         Self::Root,
     ];
-    /// How many there are.
+    /// Number of curves.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// The light that was encoded, where other light is seen.
+    /// Returns the light that was encoded, given the light that is seen.
     pub fn light(self, seen: f64) -> f64 {
         match self {
-            Self::Right => seen,
-            // A file of floats may have negative ones, of which there are no powers.
+            Self::Correct => seen,
+            // A film of floats may have negative numbers, which have no powers.
             _ if seen < 0.0 => 0.0,
             Self::Missing => linear_to_srgb(seen),
             Self::Twice => srgb_to_linear(seen),
@@ -53,11 +53,11 @@ impl Curve {
         }
     }
 
-    /// The light that is seen in the place of light.
+    /// Returns the light that is seen, given the light that was encoded.
     pub fn seen(self, light: f64) -> f64 {
         let light = light.max(0.0);
         match self {
-            Self::Right => light,
+            Self::Correct => light,
             Self::Missing => srgb_to_linear(light),
             Self::Twice => linear_to_srgb(light),
             Self::Power22 => srgb_to_linear(libm::pow(light, 1.0 / 2.2)),
@@ -65,19 +65,19 @@ impl Curve {
         }
     }
 
-    /// The light of a step of the encoding of what is seen in its place.
+    /// Returns the light of a step of 8 bits at some light that is encoded by the curve.
     pub fn step(self, light: f64) -> f64 {
         let at = (light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize;
         self.table()[at][0]
     }
 
-    /// Interpolates `seen` in a table: fast, and to within a thousandth of the light of white.
+    /// Interpolates `seen` in a table: fast, and accurate to a thousandth of white.
     pub fn seen_quickly(self, light: f64) -> f64 {
         let table = self.table();
         interpolated(light, |at| table[at][1])
     }
 
-    /// The step of each of `LIGHTS` + 1 lights from 0 to 1, and what is seen in its place.
+    /// Returns the step and the seen light for each of `LIGHTS` + 1 lights from 0 to 1.
     fn table(self) -> &'static [[f64; 2]] {
         static TABLES: [OnceLock<Vec<[f64; 2]>>; Curve::COUNT] =
             [const { OnceLock::new() }; Curve::COUNT];
@@ -92,10 +92,10 @@ impl Curve {
     }
 }
 
-/// Intervals between the lights of a table.
+/// Number of intervals in a table of lights.
 const LIGHTS: usize = 4096;
 
-/// Interpolates a table of `LIGHTS` + 1 values, which belong to lights from 0 to 1.
+/// Interpolates a table of `LIGHTS` + 1 values for lights from 0 to 1.
 fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
     let place = light.clamp(0.0, 1.0) * LIGHTS as f64;
     let at = (place as usize).min(LIGHTS - 1);
@@ -103,17 +103,17 @@ fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
     low + (place - at as f64) * (high - low)
 }
 
-/// Encodes light from 0 to 1 as sRGB from 0 to 1, to within a hundredth of a step.
+/// Encodes light from 0 to 1 as sRGB from 0 to 1, accurate to a hundredth of a step.
 pub fn encoded_quickly(light: f64) -> f64 {
-    // Light that was encoded twice is seen as the encoding of light.
+    // Light that was encoded twice is seen as its encoding.
     Curve::Twice.seen_quickly(light)
 }
 
-/// A function of light, and its values in a table.
+/// A tabulated function of light.
 pub struct Tabulated(Arc<[f64]>);
 
 impl Tabulated {
-    /// Tabulates a function; the table is made once.
+    /// Tabulates a function; each function's table is made once.
     pub fn new(curve: fn(f64) -> f64) -> Self {
         static TABLES: Mutex<BTreeMap<usize, Arc<[f64]>>> = Mutex::new(BTreeMap::new());
         let mut tables = lock(&TABLES);
@@ -130,33 +130,34 @@ impl Tabulated {
     }
 }
 
-/// What is done to a picture's light.
+/// An effect on a picture's light.
 #[derive(Clone, Copy, Debug)]
-pub enum Look {
-    /// Its channels are in another order.
+pub enum Effect {
+    /// The channels are in another order.
     Channels([usize; 3]),
-    /// All channels are a mean of them.
+    /// All channels have a weighted mean of the channels.
     Gray([f64; 3]),
-    /// Each channel goes through a curve.
-    Curve(fn(f64) -> f64),
-    /// Its bytes are cut off instead of rounded.
+    /// Each channel goes through a function.
+    PerChannel(fn(f64) -> f64),
+    /// Bytes are truncated instead of rounded.
     CutOff,
-    /// What a pixel has more than the mean of the 3 × 3 around it is added once more.
+    /// The difference of a pixel from the mean of the 3 × 3 around it is added once more.
     Sharpened,
-    /// Each pixel is a mean over a neighbourhood: as if seen through a pixel so many times as wide.
+    /// Each pixel is averaged over its neighbourhood, as if it were seen through a pixel of this
+    /// width, in pixels.
     Blur(f64),
-    /// Pixels between two places that have a colour are no part of the scene.
+    /// A rectangle's pixels of one colour are no part of the scene.
     Patch {
-        /// The colour in linear light.
+        /// The colour, in linear light.
         light: [f64; 3],
         /// The least and the greatest column and row.
         area: [[f64; 2]; 2],
     },
 }
 
-/// Whether two colours are within a step of each other.
+/// Returns whether two colours are within 1.5 steps of each other.
 pub fn is_near(one: [f64; 3], other: [f64; 3]) -> bool {
-    let step = |light| Curve::Right.step(light);
+    let step = |light| Curve::Correct.step(light);
     (0..3).all(|i| (one[i] - other[i]).abs() < 1.5 * f64::max(step(one[i]), step(other[i])))
 }
 
@@ -165,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_seen_quickly_is_near_what_is_seen() {
+    fn interpolated_light_is_near_the_function() {
         for curve in Curve::ALL {
             // Ends and inner points of the table's intervals.
             for light in (0..=16 * LIGHTS).map(|at| at as f64 / (16 * LIGHTS) as f64) {

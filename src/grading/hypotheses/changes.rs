@@ -1,13 +1,13 @@
-//! What the rows of the table of mistakes change in a candidate.
+//! The changes that rows of the table of mistakes make to a candidate.
 
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::{
+    behaviour::{HitFault, SeenSurface, Spheres, SquareRule},
     candidate::Candidate,
-    faulty_tracer::{Hit, Spheres, Squares, Visible},
-    light::{Curve, Look},
+    light::{Curve, Effect},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -16,23 +16,23 @@ use crate::{
     scene::{Cuboid, Lens, Shape, TriangleOutline, View},
 };
 
-/// Gray by a mean of encoded values.
+/// Makes the picture gray by a weighted mean of encoded values.
 pub fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
-    c.looks.extend([
-        Look::Curve(linear_to_srgb),
-        Look::Gray(weights),
-        Look::Curve(srgb_to_linear),
+    c.effects.extend([
+        Effect::PerChannel(linear_to_srgb),
+        Effect::Gray(weights),
+        Effect::PerChannel(srgb_to_linear),
     ]);
 }
 
-/// Each channel's light becomes another one, once.
-pub fn look(c: &mut Candidate, curve: fn(f64) -> f64) {
-    if c.looks.is_empty() {
-        c.looks.push(Look::Curve(curve));
+/// Maps the light of each channel, unless another effect is set.
+pub fn map_channels(c: &mut Candidate, curve: fn(f64) -> f64) {
+    if c.effects.is_empty() {
+        c.effects.push(Effect::PerChannel(curve));
     }
 }
 
-/// Samples lie elsewhere, by so many pixels to the right and down in the file.
+/// Shifts the samples by pixels to the right and down in the file.
 pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
@@ -41,7 +41,7 @@ pub fn is_square(c: &Candidate) -> bool {
     c.scene.image.width == c.scene.image.height
 }
 
-/// How far the view plane is from the eye.
+/// Returns the distance of the view plane from the eye, in metres.
 pub fn distance(c: &Candidate) -> f64 {
     let height = c.scene.camera.view_height;
     let half = |angle: Angle| libm::tan(angle.in_radians() / 2.0);
@@ -57,8 +57,8 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// The window has other proportions than the picture.
-pub fn widen(c: &mut Candidate, aspect: f64) {
+/// Gives the window another aspect ratio than the picture's, unless it has one already.
+pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;
     if c.behaviour.aspect == 1.0 && (by - 1.0).abs() > 1e-3 {
@@ -66,18 +66,18 @@ pub fn widen(c: &mut Candidate, aspect: f64) {
     }
 }
 
-/// Spheres are hit wrongly.
-pub fn hit_spheres(c: &mut Candidate, spheres: Spheres) {
+/// Sets a fault in how spheres are hit, if the scene has a sphere.
+pub fn set_sphere_fault(c: &mut Candidate, spheres: Spheres) {
     if shapes(c).any(|shape| matches!(shape, Shape::Sphere(_))) {
         c.behaviour.spheres = spheres;
     }
 }
 
-/// An object is hit wrongly.
-pub fn hit(c: &mut Candidate, object: usize, hit: Hit) {
+/// Sets a fault in how an object is hit, if its shape can have that fault.
+pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     let is_about = match (hit, c.scene.objects[object].shape) {
-        (Hit::WithoutAxis(_), Shape::Box(_)) => true,
-        (Hit::WithoutAxis(_), _) => false,
+        (HitFault::WithoutAxis(_), Shape::Box(_)) => true,
+        (HitFault::WithoutAxis(_), _) => false,
         (_, shape) => matches!(shape, Shape::Triangle(_)),
     };
     if is_about && c.behaviour.hit.is_none() {
@@ -85,40 +85,40 @@ pub fn hit(c: &mut Candidate, object: usize, hit: Hit) {
     }
 }
 
-/// Light is encoded otherwise, once.
-pub fn encode(c: &mut Candidate, curve: Curve) {
-    if c.curve == Curve::Right {
+/// Sets the curve that encodes light, unless one is set.
+pub fn set_encoding(c: &mut Candidate, curve: Curve) {
+    if c.curve == Curve::Correct {
         c.curve = curve;
     }
 }
 
-/// Colours are decoded by a curve, averaged, and encoded by it.
-pub fn average(c: &mut Candidate, curve: Curve) {
-    if c.curve == Curve::Right {
-        (c.averaged, c.curve) = (curve, curve);
+/// Sets one curve that decodes the colours and encodes their average, unless one is set.
+pub fn set_averaging(c: &mut Candidate, curve: Curve) {
+    if c.curve == Curve::Correct {
+        (c.decoding, c.curve) = (curve, curve);
     }
 }
 
-pub fn show(c: &mut Candidate, visible: Visible) {
+pub fn set_order(c: &mut Candidate, visible: SeenSurface) {
     if c.scene.objects.len() > 1 {
-        see(c, visible);
+        set_seen_surface(c, visible);
     }
 }
 
-/// Another surface is seen than the nearest: one mistake of this kind leaves no room for another.
-pub fn see(c: &mut Candidate, visible: Visible) {
-    if c.behaviour.visible == Visible::Nearest {
+/// Sets which surface is seen, unless a row did so already.
+pub fn set_seen_surface(c: &mut Candidate, visible: SeenSurface) {
+    if c.behaviour.visible == SeenSurface::Nearest {
         c.behaviour.visible = visible;
     }
 }
 
-/// Squares of a board that is drawn are told otherwise, once.
-pub fn tell_squares(c: &mut Candidate, is_first: fn(f64, f64) -> bool) {
+/// Sets the rule for a checkerboard's squares, if one is drawn and no rule is set.
+pub fn set_square_rule(c: &mut Candidate, is_first: fn(f64, f64) -> bool) {
     let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);
     let is_seen =
         drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)));
-    if is_seen && c.behaviour.squares == Squares::default() {
-        c.behaviour.squares = Squares(is_first);
+    if is_seen && c.behaviour.square_rule == SquareRule::default() {
+        c.behaviour.square_rule = SquareRule(is_first);
     }
 }
 
@@ -139,7 +139,7 @@ pub fn exchange_sides(c: &mut Candidate) {
     }
 }
 
-/// The view plane is so many times as far; a field of view is one of an angle that makes it so.
+/// Multiplies the distance of the view plane; a field of view gets the corresponding angle.
 pub fn lengthen(c: &mut Candidate, by: f64) {
     match &mut c.scene.camera.lens {
         Lens::Distance(d) => *d *= by,
@@ -147,13 +147,13 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
     }
 }
 
-/// An angle whose half has a tangent so many times as large.
+/// Returns the angle the tangent of whose half is multiplied by `by`.
 fn widened(angle: Angle, by: f64) -> Angle {
     let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
     Angle::from_degrees((2.0 * half).to_degrees())
 }
 
-/// The distance of the view plane is so many times as large, or the angle as small.
+/// Multiplies the distance of the view plane, or divides the angle of the field of view.
 pub fn zoom(c: &mut Candidate, by: f64) {
     let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
     match &mut c.scene.camera.lens {
@@ -174,7 +174,8 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// A triangle is moved so that a point of it, told by its vertices, lies where its centroid should.
+/// Moves a triangle so that a point of it, computed from its vertices, lies where its centroid
+/// should.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));
@@ -184,7 +185,7 @@ pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) 
     }
 }
 
-/// A box's corners are moved, each by so many times its size.
+/// Moves a box's corners, each by a multiple of its size.
 pub fn stretch(c: &mut Candidate, object: usize, by: [DVec3; 2]) {
     if let Some(Shape::Box(cuboid)) = shapes(c).nth(object) {
         let size = cuboid.max - cuboid.min;

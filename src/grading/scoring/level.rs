@@ -1,5 +1,5 @@
-//! The picture that is judged, at one resolution: what it shows in the cells of a grid, and what
-//! candidates should show there.
+//! A picture at one resolution: what the cells of a grid show, and what candidates should show
+//! there.
 
 use std::{
     cell::{OnceCell, RefCell},
@@ -10,37 +10,37 @@ use std::{
 use glam::DVec3;
 
 use super::{
-    candidate::Candidate,
     grid::Grid,
     jpeg::{coded, variances},
-    light::Curve,
     moments::Moments,
     prediction::Prediction,
     rendering::Rendering,
     work::Work,
 };
-use crate::film::{Film, Jpeg};
+use crate::{
+    film::{Film, Jpeg},
+    grading::hypotheses::{Candidate, Curve},
+};
 
-/// A grid over a part of a picture.
+/// A part of a picture at one resolution.
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
-    /// The part's corner in the film.
+    /// The part's upper left corner in the film.
     corner: [u32; 2],
-    /// What it shows in the cells, as light that was encoded in each way, where that was asked
-    /// for.
-    seen: [OnceCell<Vec<DVec3>>; Curve::COUNT],
-    /// How many samples a cell has; none if it is computed exactly.
+    /// Observed light of the cells, by the curve that encoded it; computed on demand.
+    observed: [OnceCell<Vec<DVec3>>; Curve::COUNT],
+    /// Number of samples in a cell; `None` if cells are computed exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    /// What others are compared with, to make anew only where they differ.
+    /// Base of comparisons: candidates are rendered only where they differ from it.
     base: RefCell<Option<Arc<Rendering>>>,
-    /// What was made last.
+    /// The last rendering, reused in the same way.
     last: RefCell<Option<Arc<Rendering>>>,
 }
 
 impl<'a> Level<'a> {
-    /// Of a grid over the part of a film that has this corner.
+    /// Creates the level of a grid over the part of a film that starts at `corner`.
     pub fn new(
         grid: Grid,
         film: &'a Film,
@@ -52,7 +52,7 @@ impl<'a> Level<'a> {
             grid,
             film,
             corner,
-            seen: std::array::from_fn(|_| OnceCell::new()),
+            observed: std::array::from_fn(|_| OnceCell::new()),
             samples,
             jpeg,
             base: RefCell::default(),
@@ -60,27 +60,25 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// The same, where all that is compared is off by what one prediction differs from an exact
-    /// one.
+    /// Adds the difference of a sampled from an exact prediction to the observed light.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
         level.base = self.base.clone();
         let means = sampled.moments.mean.iter().zip(&exact.moments.mean);
         let errors: Vec<DVec3> = means.map(|(sampled, exact)| sampled - exact).collect();
         for (at, curve) in Curve::ALL.into_iter().enumerate() {
-            let seen = self.seen(curve).iter().zip(&errors);
-            level.seen[at].get_or_init(|| seen.map(|(seen, error)| seen + error).collect());
+            let seen = self.observed(curve).iter().zip(&errors);
+            level.observed[at].get_or_init(|| seen.map(|(seen, error)| seen + error).collect());
         }
         level
     }
 
-    /// What a candidate makes on it; none if it is cancelled, or takes too much work.
+    /// Renders a candidate on the level's grid. Returns `None` if it is cancelled or exceeds the
+    /// budget.
     pub fn render(&self, candidate: &Candidate, work: &Work) -> Option<Arc<Rendering>> {
-        let known = [&self.base, &self.last];
-        let known = known.map(|one| one.borrow().clone());
+        let known = [&self.base, &self.last].map(|one| one.borrow().clone());
         let known: Vec<_> = known.into_iter().flatten().collect();
-        let rendering = candidate.render(&self.grid, self.samples, &known, work)?;
-        let rendering = Arc::new(rendering);
+        let rendering = Arc::new(candidate.render(&self.grid, self.samples, &known, work)?);
         let is_same = |one: &Arc<Rendering>| {
             one.part == rendering.part
                 && one.candidate.traces_as(candidate)
@@ -92,17 +90,17 @@ impl<'a> Level<'a> {
         Some(rendering)
     }
 
-    /// Others will be compared with this.
+    /// Sets the base of comparisons.
     pub fn compare_with(&self, rendering: Arc<Rendering>) {
         self.base.replace(Some(rendering));
     }
 
-    /// What the picture shows in the cells, as light that was encoded in a way.
-    pub fn seen(&self, curve: Curve) -> &[DVec3] {
-        self.seen[curve as usize].get_or_init(|| {
+    /// Returns the observed light of the cells, if it was encoded by `curve`.
+    pub fn observed(&self, curve: Curve) -> &[DVec3] {
+        self.observed[curve as usize].get_or_init(|| {
             let [left, top] = self.corner;
             let pixel = |x, y| DVec3::from(self.film.pixel(left + x, top + y));
-            if curve == Curve::Right {
+            if curve == Curve::Correct {
                 return self.grid.reduce(pixel);
             }
             // Most pixels have one of a few bytes.
@@ -116,9 +114,9 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// What the cells show of something whose pixels are known, all of those of a part.
+    /// Averages a rendering of all pixels of a part over the cells.
     pub fn reduced(&self, rendering: &Arc<Rendering>) -> Arc<Rendering> {
-        let (pixels, part) = (&rendering.right, rendering.part);
+        let (pixels, part) = (&rendering.correct, rendering.part);
         if part == self.grid.cells {
             return Arc::clone(rendering);
         }
@@ -132,30 +130,27 @@ impl<'a> Level<'a> {
         let variance =
             |(mean, square): (DVec3, DVec3)| (mean, (square - mean * mean).max(DVec3::ZERO));
         let moments = Moments::exact(mean.into_iter().zip(squares).map(variance));
-        let candidate = rendering.candidate.clone();
-        Arc::new(Rendering::new(
-            candidate,
-            self.grid.cells,
-            Arc::new(moments),
-        ))
+        let (candidate, moments) = (rendering.candidate.clone(), Arc::new(moments));
+        Arc::new(Rendering::new(candidate, self.grid.cells, moments))
     }
 
-    /// What it should show if a candidate is right.
+    /// Predicts what the level shows if a rendering's candidate is correct.
     pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
         let candidate = &rendering.candidate;
-        let (seen, moments) = (self.seen(candidate.curve), rendering.laid_out(&self.grid));
+        let (seen, moments) = (
+            self.observed(candidate.curve),
+            rendering.laid_out(&self.grid),
+        );
         let mut prediction = Prediction::new(seen, self.grid.width(), moments, candidate.curve);
-        prediction.look(&candidate.looks, &self.grid);
+        prediction.apply(&candidate.effects, &self.grid);
         if let Some(jpeg) = self.jpeg {
             let factor = self.grid.factor as usize;
             let variances = variances(&jpeg, &prediction, factor);
-            let coded = match factor {
-                1 => coded(&jpeg, &prediction, self.grid.cells),
-                _ => None,
-            };
+            let is_single = factor == 1;
+            let coded = is_single.then(|| coded(&jpeg, &prediction, self.grid.cells));
             let moments = Arc::make_mut(&mut prediction.moments);
-            moments.add_doubt(&variances);
-            if let Some(coded) = coded {
+            moments.add_mean_variance(&variances);
+            if let Some(coded) = coded.flatten() {
                 moments.mean = coded;
             }
         }

@@ -1,8 +1,8 @@
-//! A grid over the part of a picture that is compared, of cells of some pixels each: a coarse one
-//! to search on, the pixels themselves to judge on.
+//! A grid over the part of a picture that is compared, whose cells span several pixels each: coarse
+//! for searching, single pixels for judging.
 //!
-//! The cells are the pixels of a smaller picture of the scene, around the same middle, so whatever
-//! makes pictures makes that of the cells.
+//! The cells are the pixels of a smaller picture of the scene around the same middle, so whatever
+//! renders pictures renders cells.
 
 use glam::{DVec2, DVec3};
 
@@ -12,23 +12,23 @@ use crate::{
     scene::{Camera, Image, Lens, Scene},
 };
 
-/// The grid.
+/// A grid of square cells over a part of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// The pixels along a cell's side.
+    /// Number of pixels along a cell's side.
     pub factor: u32,
-    /// The cells that lie in the part, of those of the whole picture.
+    /// The cells inside the part, among those of the whole picture.
     pub cells: Area,
-    /// How many cells the whole picture has in a row and in a column.
+    /// Number of cells in a row and in a column of the whole picture.
     size: [u32; 2],
-    /// What is left over of the whole picture on each side, in pixels.
+    /// Width of the border of the whole picture without cells, on each side, in pixels.
     margin: DVec2,
-    /// The part's corner.
+    /// The part's upper left corner, in pixels.
     corner: DVec2,
 }
 
 impl Grid {
-    /// The grid over a part of a picture, of which the longer side has so many cells at most.
+    /// Covers a part of a picture with at most `longest` cells along its longer side.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let of = |factor: u32| {
             let size = [image.width / factor, image.height / factor];
@@ -61,22 +61,22 @@ impl Grid {
             .unwrap_or_else(|| of(1))
     }
 
-    /// How many cells lie in the part.
+    /// Returns the number of cells in the part.
     pub fn count(&self) -> usize {
         self.cells.pixels() as usize
     }
 
-    /// How many of them lie in a row.
+    /// Returns the number of the part's cells in a row.
     pub fn width(&self) -> usize {
         self.cells.width as usize
     }
 
-    /// How many cells the whole picture has in a row and in a column.
+    /// Returns the number of cells in a row and in a column of the whole picture.
     pub fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// The pixel of the whole picture in the middle of the cell of an index.
+    /// Returns the middle of a cell, given by its index, in pixels of the whole picture.
     pub fn middle(&self, index: usize) -> DVec2 {
         let (x, y) = (index % self.width(), index / self.width());
         let cell = DVec2::new(
@@ -86,7 +86,8 @@ impl Grid {
         self.margin + (cell + 0.5) * f64::from(self.factor)
     }
 
-    /// The indices of a cell and of those so far around it.
+    /// Iterates over the indices of the cells within `reach` columns and rows of a cell, including
+    /// it.
     pub fn around(&self, index: usize, reach: usize) -> impl Iterator<Item = usize> {
         let (width, height) = (self.width(), self.cells.height as usize);
         let near = |at: usize, most: usize| at.saturating_sub(reach)..(at + reach + 1).min(most);
@@ -95,25 +96,25 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// The view of a scene whose pixels the cells are.
+    /// Returns the camera and image whose pixels are the cells.
     pub fn view(&self, scene: &Scene) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
         if self.factor > 1 {
             let pitch = Projection::quick(&camera, &image).pitch;
             [image.width, image.height] = self.size;
             camera.lens = Lens::Distance(1.0);
-            // Within the range of numbers, however long or short the lens is.
+            // Clamped to positive finite numbers, for extreme lenses.
             let view_height = f64::from(image.height * self.factor) * pitch;
             camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }
         (camera, image)
     }
 
-    /// The means of the part's pixels, told by column and row in it, but for those without a
-    /// number.
+    /// Averages the part's pixels, given by column and row in the part, over each cell, ignoring
+    /// NaN.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> DVec3) -> Vec<DVec3> {
         let factor = f64::from(self.factor);
-        // The pixels that a cell has a share of, in columns or in rows, and how much of each.
+        // The columns or rows of a cell's pixels, and the length of each inside the cell.
         let shares = |cell: u32, margin: f64, corner: f64| {
             let start = margin + f64::from(cell) * factor - corner;
             let end = start + factor;
@@ -121,7 +122,7 @@ impl Grid {
             (start.floor() as u32..end.ceil() as u32).map(move |at| (at, share(at)))
         };
         let cell = |(x, y): (u32, u32)| {
-            // From the first on, so that what is one everywhere is not rounded.
+            // Differences from the first pixel are summed, so that a constant is not rounded.
             let mut first = None;
             let (mut sum, mut total) = (DVec3::ZERO, 0.0);
             for (row, height) in shares(y, self.margin.y, self.corner.y) {

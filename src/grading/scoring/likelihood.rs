@@ -1,58 +1,56 @@
-//! How likely a picture is if a prediction of it is right.
+//! How likely a picture is, given a prediction.
 //!
-//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², v being that
-//! of one sample within it and r² that of rounding to a step, a twelfth of its square. n is fitted.
-//! As no sampling but a random one has just that variance everywhere, and as something else may be
-//! wrong in some pixels, too, errors are taken to have Student's distribution with two degrees of
+//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², where v is
+//! the variance of one sample in the pixel, and r² that of rounding, a twelfth of a step's square.
+//! n is fitted. Only random sampling has just this variance everywhere, and some pixels may be
+//! wrong for other reasons, so errors are modelled by Student's distribution with two degrees of
 //! freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution, 1989).
-//! Of two candidates that one is taken which has the greater likelihood, less half a logarithm of
-//! the number of pixels for each number that was fitted: Schwarz, Estimating the dimension of a
-//! model, 1978.
+//! Of two candidates the one is chosen that has the greater likelihood, less half a logarithm of
+//! the number of pixels for each fitted number (Schwarz, Estimating the dimension of a model,
+//! 1978).
 
 use glam::DVec3;
 
-use super::{
-    light::Curve,
-    prediction::{FLAT, Prediction},
-};
+use super::prediction::{FLAT, Prediction};
+use crate::grading::hypotheses::Curve;
 
-/// Degrees of freedom of errors.
+/// Degrees of freedom of the errors' distribution.
 const FREEDOM: f64 = 2.0;
 
-/// Fitting goes on for so many rounds: each leaves less than half of what is missing.
+/// Rounds of fitting 1/n; each more than halves the remaining error.
 const ROUNDS: usize = 8;
 
-/// How well a prediction fits.
+/// How well a prediction fits a picture.
 #[derive(Clone, Debug)]
 pub struct Score {
-    /// The logarithm of the likelihood.
+    /// Logarithm of the likelihood.
     pub likelihood: f64,
-    /// The number of independent samples in a pixel that make as much noise.
+    /// Number of independent samples in a pixel that cause as much noise; `None` if there is no
+    /// noise.
     pub samples: Option<f64>,
-    /// How far each pixel is off, in standard deviations of its error: the sum of the squares of
-    /// its channels.
-    pub off: Vec<f64>,
-    /// The squared difference.
+    /// Squared error of each pixel in standard deviations, summed over its channels.
+    pub chi_squares: Vec<f64>,
+    /// Sum of the squared differences.
     pub squares: f64,
-    /// The part of it that noise of so many samples makes.
+    /// Part of the squared differences that noise explains.
     pub noise: f64,
-    /// The share of a sample's variance that a pixel's error has: 1/n.
+    /// Share of a sample's variance that a pixel's error has: 1/n.
     pub share: f64,
 }
 
-/// The error of a pixel, the variance of a sample in it, and that of rounding and of what is
-/// expected itself.
-struct Error {
+/// The difference of a pixel, with the variances of one sample and of everything else: rounding and
+/// the uncertainty of the expected mean.
+struct PixelError {
     difference: DVec3,
     variance: DVec3,
     rounding: DVec3,
 }
 
-impl Error {
+impl PixelError {
     fn of(prediction: &Prediction, at: usize) -> Self {
         let variance = prediction.moments.variance[at];
-        // Nothing is known of a pixel that is empty.
-        let is_empty = prediction.seen[at].x.is_nan();
+        // An empty pixel has no information.
+        let is_empty = prediction.observed[at].x.is_nan();
         Self {
             difference: prediction.difference(at),
             variance: variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one }),
@@ -60,41 +58,42 @@ impl Error {
         }
     }
 
-    /// Its variance, if it has this share of a sample's.
+    /// Returns the variance of the error, given its share of a sample's variance.
     fn total(&self, share: f64) -> DVec3 {
         self.variance * share + self.rounding
     }
 
-    /// The sum of the squares in standard deviations, if an error has this share of a sample's
+    /// Returns the sum of the squares in standard deviations, given the share of a sample's
     /// variance.
-    fn off(&self, share: f64) -> f64 {
+    fn chi_square(&self, share: f64) -> f64 {
         (self.difference * self.difference / self.total(share)).element_sum()
     }
 
-    /// The logarithm of the density, but for a number that all have.
+    /// Returns the logarithm of the density, up to a constant.
     fn density(&self, share: f64) -> f64 {
         let volume = self.total(share).element_product();
-        -0.5 * libm::log(volume) - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.off(share) / FREEDOM)
+        -0.5 * libm::log(volume)
+            - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.chi_square(share) / FREEDOM)
     }
 }
 
-/// The variances of rounding and of what is expected itself.
+/// Returns the variances of rounding and of the expected mean.
 fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
     let steps = prediction.steps(at);
-    steps * steps / 12.0 + prediction.moments.doubt[at]
+    steps * steps / 12.0 + prediction.moments.mean_variance[at]
 }
 
 impl Prediction<'_> {
-    /// How likely what is seen is.
+    /// Scores the prediction.
     pub fn score(&self) -> Score {
-        let errors = (0..self.seen.len()).map(|at| Error::of(self, at));
-        let errors: Vec<Error> = errors.collect();
-        // 1/n, which is 1 at most.
+        let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
+        let errors: Vec<PixelError> = errors.collect();
+        // 1/n, which is at most 1.
         let mut share: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
             for one in &errors {
-                let weight = (FREEDOM + 3.0) / (FREEDOM + one.off(share));
+                let weight = (FREEDOM + 3.0) / (FREEDOM + one.chi_square(share));
                 let total = one.total(share);
                 let part = one.variance / (total * total);
                 above += part.dot(weight * one.difference * one.difference - total);
@@ -104,23 +103,19 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // Densities are told of the picture's own light.
+        // Densities refer to the light of the picture itself.
         let stretch = |light: &f64| {
-            let own = Curve::Right.step(self.curve.seen(*light));
+            let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))
         };
+        let stretches = self.observed.iter().flat_map(DVec3::as_ref).map(stretch);
         let mut likelihood = match self.curve {
-            Curve::Right => 0.0,
-            _ => -self
-                .seen
-                .iter()
-                .flat_map(DVec3::as_ref)
-                .map(stretch)
-                .sum::<f64>(),
+            Curve::Correct => 0.0,
+            _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Of pixels of several colours: the variances of a sample, and the squared differences
-        // beyond rounding.
+        // Over pixels of several colours: variances of a sample, and squared differences beyond
+        // rounding.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);
@@ -131,34 +126,34 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // What is left of less than a sample in a hundred thousand is rounding.
+        // Less noise than of 100 000 samples is rounding.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
             samples: is_known.then(|| (of_samples / beyond).max(1.0)),
-            off: errors.iter().map(|one| one.off(share)).collect(),
+            chi_squares: errors.iter().map(|one| one.chi_square(share)).collect(),
             squares,
             noise: expected.min(squares),
             share,
         }
     }
 
-    /// The part that is seen of what another prediction changes, and of how many standard
-    /// deviations that part is, where errors have the greater variances of the two; this is the
-    /// score of this one.
-    pub fn part_seen(&self, score: &Score, other: &Self) -> [f64; 2] {
+    /// Returns the observed share of the change from this prediction, whose score is given, to
+    /// another one, and that share in standard deviations, with the greater of the two predictions'
+    /// variances.
+    pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // Light that is encoded otherwise has variances of its own.
+        // Light that is encoded by another curve has variances of its own.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());
             others.for_each(|(one, other)| *one = one.max(other));
         }
         let (mut seen, mut all, mut variance) = (0.0, 0.0, 0.0);
-        for (at, light) in self.seen.iter().enumerate() {
+        for (at, light) in self.observed.iter().enumerate() {
             let before = self.difference(at);
             let after = match other.curve {
-                curve if is_alike || curve == Curve::Right => other.difference(at),
+                curve if is_alike || curve == Curve::Correct => other.difference(at),
                 curve => light - other.moments.mean[at].map(|mean| curve.seen(mean)),
             };
             if before == after || light.x.is_nan() {
@@ -178,8 +173,8 @@ impl Prediction<'_> {
         [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
     }
 
-    /// The variances of the errors of a pixel that have this share of a sample's.
+    /// Returns the variances of a pixel's error, given its share of a sample's variance.
     pub fn error(&self, at: usize, share: f64) -> DVec3 {
-        Error::of(self, at).total(share)
+        PixelError::of(self, at).total(share)
     }
 }

@@ -1,4 +1,4 @@
-//! What the cells of a level should show if a candidate is right, beside what they show.
+//! What the cells of a level should show if a candidate is correct, and what they show.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -6,38 +6,40 @@ use glam::{DVec2, DVec3};
 
 use super::{
     grid::Grid,
-    light::{Curve, Look, STEP, Tabulated, encoded_quickly, is_near},
     moments::{Moments, range},
 };
-use crate::color::{linear_to_srgb, srgb_to_linear};
+use crate::{
+    color::{linear_to_srgb, srgb_to_linear},
+    grading::hypotheses::{Curve, Effect, STEP, Tabulated, encoded_quickly, is_near},
+};
 
-/// The variance below which a pixel shows one colour: a part of 1e-9 of it may be another.
+/// Variance below which a pixel has one colour: at most about 1e-9 of it may have another.
 pub const FLAT: f64 = 1e-9;
 
-/// Half a step is what is lost on an average where bytes are cut off.
+/// Mean change of a truncated byte, in steps.
 const CUT_OFF: f64 = -0.5;
 
-/// What is expected, and what is seen.
+/// Expected and observed light of cells.
 #[derive(Clone, Debug)]
 pub struct Prediction<'a> {
-    /// What is seen, as light that was encoded by the curve; no numbers where that is not known.
-    pub seen: &'a [DVec3],
-    /// How many cells are in a row.
+    /// Observed light, decoded by the curve; NaN where it is not known.
+    pub observed: &'a [DVec3],
+    /// Number of cells in a row.
     pub width: usize,
-    /// Means and variances of what is expected.
+    /// Moments of the expected light.
     pub moments: Arc<Moments>,
-    /// How light is encoded.
+    /// Curve by which light is encoded.
     pub curve: Curve,
-    /// Whether bytes are cut off, not rounded.
+    /// Whether bytes are truncated, not rounded.
     pub is_cut_off: bool,
-    /// The differences where they are, which are asked for again and again and take long.
+    /// Differences of truncated bytes, cached because they take long to compute.
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
 
-/// Means of cells in rows of a width with those beside them, spread by a variance in cells squared.
+/// Blurs cells in rows of `width` by a variance, in cells squared.
 ///
-/// Weights a, 1 − 2a, a have the variance 2a. They are applied again and again, with an a of at
-/// most a sixteenth, so that they reach as far as those of a bell curve do.
+/// Weights a, 1 − 2a, a have the variance 2a. They are applied repeatedly, with a ≤ 1/16, which
+/// approximates a Gaussian.
 fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     let height = cells.len() / width;
     let rounds = (8.0 * variance).ceil();
@@ -60,10 +62,10 @@ fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
 }
 
 impl<'a> Prediction<'a> {
-    /// Expects moments where light is seen that was encoded by a curve.
-    pub fn new(seen: &'a [DVec3], width: usize, moments: Arc<Moments>, curve: Curve) -> Self {
+    /// Creates a prediction of light that is encoded by a curve.
+    pub fn new(observed: &'a [DVec3], width: usize, moments: Arc<Moments>, curve: Curve) -> Self {
         Self {
-            seen,
+            observed,
             width,
             moments,
             curve,
@@ -72,21 +74,21 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Does to the light what is done to it.
-    pub fn look(&mut self, looks: &[Look], grid: &Grid) {
-        if looks.is_empty() {
+    /// Applies effects to the expected light.
+    pub fn apply(&mut self, effects: &[Effect], grid: &Grid) {
+        if effects.is_empty() {
             return;
         }
-        let seen = self.seen;
+        let observed = self.observed;
         let Moments { mean, variance, .. } = Arc::make_mut(&mut self.moments);
-        for look in looks {
-            match *look {
-                Look::Channels(order) => {
+        for effect in effects {
+            match *effect {
+                Effect::Channels(order) => {
                     for one in mean.iter_mut().chain(variance.iter_mut()) {
                         *one = order.map(|i| one[i]).into();
                     }
                 }
-                Look::Gray(weights) => {
+                Effect::Gray(weights) => {
                     for one in mean.iter_mut() {
                         *one = DVec3::splat(one.dot(weights.into()));
                     }
@@ -95,13 +97,13 @@ impl<'a> Prediction<'a> {
                         *one = DVec3::splat(deviation * deviation);
                     }
                 }
-                Look::Curve(curve) => {
+                Effect::PerChannel(curve) => {
                     let quick = Tabulated::new(curve);
                     let slope_of = |mean: f64, variance: f64| {
                         let mean = mean.clamp(0.0, 1.0);
-                        // The slope over what noise of a step, of many samples or of one may
-                        // reach, whichever is greater: light that is cut off has none beside
-                        // where it is.
+                        // Slope over the range of noise: a quarter or all of a step or of one
+                        // sample's deviation, whichever is greater. A clipped curve is flat on one
+                        // side, so the steeper slope counts.
                         let slope = |part: f64| {
                             let by = variance.sqrt().max(STEP) * part;
                             let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
@@ -109,7 +111,7 @@ impl<'a> Prediction<'a> {
                         };
                         slope(0.25).abs().max(slope(1.0).abs())
                     };
-                    // Most cells show what the one before shows, and a curve takes long.
+                    // Most cells equal the one before, and a function is slow to evaluate.
                     let mut known = [[f64::NAN; 2]; 3];
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {
@@ -122,8 +124,8 @@ impl<'a> Prediction<'a> {
                         }
                     }
                 }
-                Look::CutOff => self.is_cut_off = true,
-                Look::Sharpened => {
+                Effect::CutOff => self.is_cut_off = true,
+                Effect::Sharpened => {
                     let encoded: Vec<DVec3> =
                         mean.iter().map(|light| light.map(linear_to_srgb)).collect();
                     let pixels = f64::from(grid.factor * grid.factor);
@@ -137,14 +139,14 @@ impl<'a> Prediction<'a> {
                             let before = mean[at];
                             let sharp = (*own + more).clamp(DVec3::ZERO, DVec3::ONE);
                             mean[at] = sharp.map(srgb_to_linear);
-                            // As noise is sharpened, too.
+                            // Noise is sharpened, too.
                             let by = mean[at] - before;
                             variance[at] += by * by;
                         }
                     }
                 }
-                Look::Blur(width) => {
-                    // A square of the width w has the variance w²/12 in each direction.
+                Effect::Blur(width) => {
+                    // A square of the width w has the variance w²/12 along each axis.
                     let cell = f64::from(grid.factor);
                     let spread = (width * width - 1.0) / (12.0 * cell * cell);
                     let squares = variance.iter().zip(mean.iter());
@@ -158,17 +160,17 @@ impl<'a> Prediction<'a> {
                         *variance = (square - mean * mean).max(DVec3::ZERO);
                     }
                 }
-                Look::Patch { light, area } => {
+                Effect::Patch { light, area } => {
                     let [least, most] = area.map(DVec2::from);
                     let is_part = |at: usize| {
                         let place = grid.middle(at);
                         let is_within = place.cmpge(least).all() && place.cmplt(most).all();
-                        is_within && is_near(seen[at].into(), light)
+                        is_within && is_near(observed[at].into(), light)
                     };
-                    for at in (0..seen.len()).filter(|&at| is_part(at)) {
-                        // Its border is mixed with what is beside it.
+                    for at in (0..observed.len()).filter(|&at| is_part(at)) {
+                        // Its border mixes with the neighbours.
                         for near in grid.around(at, 1) {
-                            (mean[near], variance[near]) = (seen[near], DVec3::ZERO);
+                            (mean[near], variance[near]) = (observed[near], DVec3::ZERO);
                         }
                     }
                 }
@@ -176,20 +178,20 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Whether a cell should show one colour.
+    /// Returns whether a cell should have one colour.
     pub fn is_flat(&self, at: usize) -> bool {
         self.moments.variance[at].max_element() < FLAT
     }
 
-    /// The light of a step of the encoding in a cell.
+    /// Returns the light of a step of the encoding in a cell.
     pub fn steps(&self, at: usize) -> DVec3 {
         self.moments.mean[at].map(|light| self.curve.step(light))
     }
 
-    /// By how much a cell shows more light than is expected.
+    /// Returns the observed less the expected light of a cell.
     pub fn difference(&self, at: usize) -> DVec3 {
         if !self.is_cut_off {
-            let seen = self.seen[at];
+            let seen = self.observed[at];
             return if seen.x.is_nan() {
                 DVec3::ZERO
             } else {
@@ -197,24 +199,24 @@ impl<'a> Prediction<'a> {
             };
         }
         let all = self.of_cut_off.get_or_init(|| {
-            let cells = 0..self.seen.len();
+            let cells = 0..self.observed.len();
             cells.map(|at| self.difference_of_cut_off(at)).collect()
         });
         all[at]
     }
 
-    /// Encodes light as the picture's files do: sRGB from 0 to 1.
+    /// Encodes light as the picture's file does: sRGB from 0 to 1.
     pub fn encoded(&self, light: f64) -> f64 {
         match self.curve {
-            Curve::Right => encoded_quickly(light),
+            Curve::Correct => encoded_quickly(light),
             curve => linear_to_srgb(curve.seen(light)),
         }
     }
 
-    /// Returns the difference of a cell whose bytes are cut off. A colour alone is cut off or not,
-    /// by the last bit of its number; mixtures lose half a step on an average.
+    /// Returns the difference of a cell whose bytes are truncated. A flat colour changes or not, by
+    /// the fraction of its byte; mixtures lose half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
-        let (seen, mean) = (self.seen[at], self.moments.mean[at]);
+        let (seen, mean) = (self.observed[at], self.moments.mean[at]);
         if seen.x.is_nan() {
             return DVec3::ZERO;
         }
@@ -231,28 +233,29 @@ impl<'a> Prediction<'a> {
         }))
     }
 
-    /// The differences of all cells, channel by channel, in the picture's own light.
+    /// Returns the differences of all cells, channel by channel, in the light that the picture
+    /// shows.
     pub fn differences(&self) -> Vec<f64> {
         let own = |at: usize| match self.curve {
-            Curve::Right => self.difference(at),
+            Curve::Correct => self.difference(at),
             curve => {
                 let (difference, mean) = (self.difference(at), self.moments.mean[at]);
                 let own = |light: DVec3| light.map(|light| curve.seen_quickly(light));
                 own(mean + difference) - own(mean)
             }
         };
-        (0..self.seen.len())
+        (0..self.observed.len())
             .flat_map(|at| own(at).to_array())
             .collect()
     }
 
-    /// The standard deviations that these may have, as the mean of a single sample: an edge may be
-    /// one pixel off.
+    /// Returns the standard deviations that the differences may have with one sample in each cell,
+    /// if edges are displaced by up to a cell.
     pub fn deviations(&self) -> Vec<f64> {
-        let cells = 0..self.seen.len();
+        let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {
             let [_, variance] = range(&self.moments.variance, self.width, at, 1);
-            (variance + self.moments.doubt[at] + STEP * STEP)
+            (variance + self.moments.mean_variance[at] + STEP * STEP)
                 .map(f64::sqrt)
                 .to_array()
         });

@@ -1,8 +1,7 @@
-//! The numbers of a scene, each of which may be another one in somebody's picture, and writes
-//! itself as a `--set`.
+//! The numbers of a scene that a program may have wrong, and their `--set` arguments.
 //!
-//! In: a scene. Out: for each field of the language's table that the scene uses its numbers, and
-//! the scene with others in their place.
+//! In: a scene. Out: the fields of the language's table that it uses, their numbers, and scenes
+//! with other numbers.
 
 use std::{ops::Range, sync::Arc};
 
@@ -12,59 +11,55 @@ use crate::{
     color::Color,
     math::Angle,
     projection::Projection,
-    scene::{Camera, FieldOwner as Part, Object, Scene, Shape, View},
+    scene::{Camera, FieldOwner as Part, Object, Scene, View},
     schema::{self, FieldRow as Field, Value},
 };
 
-/// Whose field it is.
+/// Owner of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// The image's.
+    /// The image.
     Image,
-    /// The camera's.
+    /// The camera.
     Camera,
-    /// An object's, which stands for all of its block.
+    /// An object, which stands for all objects of its block.
     Object(usize),
 }
 
-/// One field, or the camera's eye and what it looks at together.
+/// A field of a scene, or the camera's `eye` and `lookat` together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// Whose it is.
+    /// Owner of the fields.
     pub owner: Owner,
-    /// Its fields.
+    /// Names of the fields.
     pub fields: Vec<&'static str>,
 }
 
-/// As far as is seen where a scene has no far plane.
+/// Far plane that stands for none, in metres.
 pub const NO_FAR: f64 = 1e9;
 
-/// Those of a scene that can be told from a picture: up turns it as roll does, and view_height
-/// sizes it as d does, so these two are left to them.
-pub fn fitted(scene: &Scene) -> Vec<Parameter> {
-    let is_told = |parameter: &Parameter| !matches!(parameter.fields[0], "up" | "view_height");
-    let mut fitted: Vec<Parameter> = all(scene).into_iter().filter(is_told).collect();
-    // Of a box one corner may be wrong.
+/// Returns the parameters that a picture determines. Without `up`, which turns the picture as
+/// `roll` does, and `view_height`, which scales it as `d` does.
+pub fn fittable(scene: &Scene) -> Vec<Parameter> {
+    let mut fitted = all(scene);
+    fitted.retain(|parameter| !matches!(parameter.fields[0], "up" | "view_height"));
+    // One corner of a box may be wrong.
     let sizes = fitted
         .iter()
         .filter(|parameter| parameter.fields == ["size"]);
     let owners: Vec<Owner> = sizes.map(|parameter| parameter.owner).collect();
-    fitted.extend(owners.into_iter().flat_map(|owner| {
-        ["min", "max"].map(|corner| Parameter {
-            owner,
-            fields: vec![corner],
-        })
-    }));
+    fitted.extend(
+        owners
+            .into_iter()
+            .flat_map(|owner| ["min", "max"].map(|corner| Parameter::new(owner, &[corner]))),
+    );
     if scene.camera.far.is_none() {
-        fitted.push(Parameter {
-            owner: Owner::Camera,
-            fields: vec!["far"],
-        });
+        fitted.push(Parameter::new(Owner::Camera, &["far"]));
     }
     fitted
 }
 
-/// All of a scene.
+/// Returns all parameters of a scene.
 fn all(scene: &Scene) -> Vec<Parameter> {
     let owners = [Owner::Image, Owner::Camera].into_iter();
     let blocks = scene.objects.chunk_by(Object::is_beside);
@@ -76,46 +71,40 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
-            // A box's numbers are its centre and its size, however it is written.
+            // A box is described by its center and size, however it is written.
             let is_used = move |field: &&Field| {
                 let is_corner = matches!(field.name, "min" | "max");
                 !is_corner && owner.part(scene).value(field.name).is_some()
             };
-            fields.iter().filter(is_used).map(move |field| Parameter {
-                owner,
-                fields: vec![field.name],
-            })
+            let used = fields.iter().filter(is_used);
+            used.map(move |field| Parameter::new(owner, &[field.name]))
         })
         .collect();
     if let View::Lookat(_) = scene.camera.view {
-        found.push(Parameter {
-            owner: Owner::Camera,
-            fields: vec!["eye", "lookat"],
-        });
+        found.push(Parameter::new(Owner::Camera, &["eye", "lookat"]));
     }
     found
 }
 
-/// The fields in which one scene differs from another.
+/// Returns the fields in which two scenes differ.
 pub fn changed(from: &Scene, to: &Scene) -> Vec<Parameter> {
-    let all = all(to).into_iter();
-    let all = all.filter(|parameter| parameter.fields.len() == 1);
-    all.filter(|parameter| parameter.values(from) != parameter.values(to))
-        .collect()
+    let mut changed = all(to);
+    changed.retain(|one| one.fields.len() == 1 && one.values(from) != one.values(to));
+    changed
 }
 
-/// The `--set` arguments that make one scene of another, where these say it.
+/// Returns the `--set` arguments that change one scene into another, as far as they can.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     let mut changed = changed(from, to);
     for parameter in &mut changed {
-        // Either takes the place of min and max, and would leave the other at its default.
+        // Setting only one of them replaces min and max, and leaves the other at its default.
         if parameter.owner.kind(to) == "box" && matches!(parameter.fields[0], "center" | "size") {
             parameter.fields = vec!["center", "size"];
         }
     }
     changed.dedup();
     let arguments = changed.iter().flat_map(|parameter| parameter.arguments(to));
-    // No value says that there is no far plane: nothing is seen that is farther than this.
+    // No value removes the far plane, so it is moved beyond everything.
     let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
     let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
     arguments.chain(far).collect()
@@ -138,7 +127,7 @@ impl Owner {
         }
     }
 
-    /// The objects of its block that stand behind it.
+    /// Returns the objects of its block that follow it.
     fn others(self, scene: &Scene) -> Range<usize> {
         let Self::Object(index) = self else {
             return 0..0;
@@ -148,7 +137,7 @@ impl Owner {
         index + 1..index + 1 + others.count()
     }
 
-    /// What it is called.
+    /// Returns the owner's description in messages.
     pub fn name(self, scene: &Scene) -> String {
         match self {
             Self::Image => "the image".to_owned(),
@@ -162,36 +151,43 @@ impl Owner {
 }
 
 impl Parameter {
-    /// What has it is called.
+    /// Creates the parameter of some fields of an owner.
+    pub fn new(owner: Owner, fields: &[&'static str]) -> Self {
+        let fields = fields.to_vec();
+        Self { owner, fields }
+    }
+
+    /// Returns the owner's description in messages, including the rest of its block.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
-        match self.owner.others(scene).is_empty() {
-            true => name,
-            false => format!("{name}, like the others of its block,"),
+        if self.owner.others(scene).is_empty() {
+            name
+        } else {
+            format!("{name}, like the others of its block,")
         }
     }
 
-    /// Its values.
+    /// Returns the values of its fields.
     pub fn values(&self, scene: &Scene) -> Vec<Value> {
         let part = self.owner.part(scene);
         let fields = self.fields.iter();
         fields.filter_map(|field| part.value(field)).collect()
     }
 
-    /// The value of its first field.
+    /// Returns the value of its first field.
     pub fn value(&self, scene: &Scene) -> Option<Value> {
         self.values(scene).into_iter().next()
     }
 
-    /// Its numbers: angles in degrees, colours from 0 to 255.
+    /// Returns its numbers: angles in degrees, colours from 0 to 255.
     pub fn numbers(&self, scene: &Scene) -> Vec<f64> {
         let numbers = |value: Value| match value {
             Value::Number(number) => vec![number],
             Value::Angle(angle) => vec![angle.in_degrees()],
             Value::Vector(vector) => vector.to_array().to_vec(),
             Value::Color(color) => color.srgb.to_vec(),
-            Value::Colors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
-            Value::FaceColors(colors) => colors.iter().flat_map(|color| color.srgb).collect(),
+            Value::Colors(colors) => colors.map(|color| color.srgb).concat(),
+            Value::FaceColors(colors) => colors.map(|color| color.srgb).concat(),
             Value::Method(_) => Vec::new(),
         };
         if self.fields == ["far"] && scene.camera.far.is_none() {
@@ -200,20 +196,21 @@ impl Parameter {
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
-    /// A scene with other numbers, if they can be. Those of the other objects of a block differ
-    /// from them as much as before.
+    /// Returns a scene with other numbers. Returns `None` if they are impossible. Differences to
+    /// the other objects of a block are kept.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
         let mut changed = self.put_one(scene.clone(), numbers)?;
         let before = self.numbers(scene);
         for index in self.owner.others(scene) {
-            let fields = self.fields.clone();
-            let owner = Owner::Object(index);
-            let other = Self { owner, fields };
+            let other = Self::new(Owner::Object(index), &self.fields);
             let own = other.numbers(scene).into_iter();
             let own = own.zip(before.iter().zip(numbers));
-            let moved = own.map(|(own, (before, after))| match own == *before {
-                true => *after,
-                false => own + (after - before),
+            let moved = own.map(|(own, (before, after))| {
+                if own == *before {
+                    *after
+                } else {
+                    own + (after - before)
+                }
             });
             changed = other.put_one(changed, &Vec::from_iter(moved))?;
         }
@@ -267,8 +264,8 @@ impl Parameter {
         })
     }
 
-    /// The arguments that set it to what it is in a scene; none where its object has no name, or
-    /// where it is not the same for all objects of its block.
+    /// Returns the `--set` arguments for its values. Returns none if its object has no name, or if
+    /// the objects of its block have different values.
     pub fn arguments(&self, scene: &Scene) -> Vec<String> {
         let values = self.values(scene);
         let is_same = |index| {
@@ -299,25 +296,22 @@ impl Parameter {
             .collect()
     }
 
-    /// By how much each number changes the picture by about so many pixels, or a colour by a few
-    /// steps.
+    /// Returns for each number the change that moves the picture by about `pixels` pixels, or a
+    /// colour by 8 of 255.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         let projection = Projection::quick(&scene.camera, &scene.image);
-        // How large a pixel is at a point, in metres.
+        // Size of a pixel at a point, in metres.
         let pixel_at =
             |point: DVec3| (point - projection.eye).length().max(1e-9) * projection.pitch;
+        let pixel_of = |object: &Object| object.shape.center().map(pixel_at);
         let wide = f64::from(scene.image.width.max(scene.image.height));
         let pixel = match self.owner {
-            Owner::Object(index) => match middle(&scene.objects[index].shape) {
-                Some(middle) => pixel_at(middle),
-                None => 0.0,
-            },
+            Owner::Object(index) => pixel_of(&scene.objects[index]).unwrap_or(0.0),
             _ => match scene.camera.view {
                 View::Lookat(point) => pixel_at(point),
-                // That of the nearest object.
+                // At the nearest object.
                 View::Direction(_) => {
-                    let shapes = scene.objects.iter().map(|object| &object.shape);
-                    let pixels = shapes.filter_map(middle).map(pixel_at);
+                    let pixels = scene.objects.iter().filter_map(pixel_of);
                     pixels.reduce(f64::min).unwrap_or(projection.pitch)
                 }
             },
@@ -345,18 +339,13 @@ impl Parameter {
         steps.map(|step| by * step).collect()
     }
 
-    /// Whether it is a colour, which moves nothing.
+    /// Returns whether it is a colour, which moves nothing.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
     }
 }
 
-/// A few steps of a channel that stay between 0 and 255.
+/// Returns a step of a channel that stays between 0 and 255.
 fn inward(channel: f64) -> f64 {
     if channel < 128.0 { 8.0 } else { -8.0 }
-}
-
-/// The middle of a shape that has one.
-fn middle(shape: &Shape) -> Option<DVec3> {
-    shape.center()
 }

@@ -1,38 +1,34 @@
-//! A picture under judgement: its grids, its work, and how well candidates explain it.
+//! A picture under judgement: its levels, its budget of work, and the operations of the search.
 
-use std::sync::{Arc, atomic::AtomicBool};
+use std::sync::Arc;
 
-use super::{
-    Reference,
-    candidate::Candidate,
-    grid::Grid,
-    level::Level,
-    levenberg_marquardt::{Fitted, absolute, fit},
-    light::Look,
-    likelihood::Score,
-    prediction::Prediction,
-    rendering::Rendering,
-    work::{self, Work},
-};
+use super::levenberg_marquardt::{Fitted, absolute, fit};
 use crate::{
     area::Area,
     film::{Film, Jpeg},
+    grading::{
+        hypotheses::{Candidate, Effect},
+        scoring::{Grid, Level, Prediction, Rendering, Score, Work, work},
+    },
     scene::Scene,
 };
 
-/// The longest sides of the grids, in cells.
+/// Longest side of the grid on which mistakes are selected, in cells.
 const TINY: u32 = 32;
+/// Longest side of the grid on which numbers are first fitted, in cells.
 const COARSE: u32 = 48;
+/// Longest side of the grid on which candidates are judged, in cells.
 const MIDDLE: u32 = 96;
 
-/// By how much of a cell numbers are varied on the middle grid.
+/// Change of the picture, in cells, by which numbers are varied to find their derivatives.
 pub const CELL_STEP: f64 = 0.25;
 
-/// The samples in a cell of the tiny grid, on which starts are looked for.
+/// Samples in a cell of the tiny grid.
 const SAMPLES: usize = 5;
 
-/// Of so many pixels in the middle of a picture, those tell of edges.
-const PIXELS_OF_EDGES: u64 = 20_000;
+/// Number of pixels in the central crop of a picture on which edges are judged. More pixels
+/// determine edges better, at proportionally more work.
+const CENTRAL_PIXELS: u64 = 20_000;
 
 /// A picture that is compared with a scene.
 pub struct Judge<'a> {
@@ -41,38 +37,37 @@ pub struct Judge<'a> {
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
-    /// The pixels in the middle of the picture, if these are not all.
+    /// The central crop at full resolution, if it is not the whole picture.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
-    pub cancel: &'a AtomicBool,
 }
 
-/// A candidate that was judged.
+/// A candidate that was judged on a level.
 pub struct Judged {
-    /// What it makes on the level that it was judged on.
+    /// Its rendering on that level.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Half a logarithm of the number of pixels for each number that was fitted, less the
-    /// logarithm of the likelihood.
+    /// Cost: `price` of the candidate's parameters, less the logarithm of the likelihood.
     pub cost: f64,
 }
 
 impl Judged {
-    /// The candidate.
+    /// Returns the candidate.
     pub fn candidate(&self) -> &Candidate {
         &self.rendering.candidate
     }
 }
 
 impl<'a> Judge<'a> {
-    /// For a picture of a part of a scene's.
+    /// Prepares a picture for judging; `exact` is what a correct program renders of its part.
     pub fn new(
-        reference: &'a Reference,
+        scene: &'a Scene,
+        exact: &Arc<Rendering>,
         film: &'a Film,
         jpeg: Option<Jpeg>,
-        cancel: &'a AtomicBool,
+        work: Work<'a>,
     ) -> Self {
-        let Reference { scene, part, .. } = *reference;
+        let part = exact.part;
         let level = |area: Area, longest, samples| {
             let grid = Grid::new(&scene.image, area, longest);
             let corner = [area.x - part.x, area.y - part.y];
@@ -85,32 +80,33 @@ impl<'a> Judge<'a> {
             middle: level(part, MIDDLE, None),
             fine: level(part, u32::MAX, None),
             central: central(part).map(|part| level(part, u32::MAX, None)),
-            work: Work::new(part.pixels(), reference.work, reference.effort, cancel),
-            cancel,
+            work,
         };
         let levels = [&judge.coarse, &judge.middle, &judge.fine];
         for level in levels.into_iter().chain(&judge.central) {
-            level.compare_with(level.reduced(&reference.right));
+            level.compare_with(level.reduced(exact));
         }
         judge
     }
 
-    /// The level on which numbers are fitted: the middle one, but for a program that changes light
-    /// by a curve, which does not make of the mean of pixels the mean of what it makes of them.
+    /// Returns the level on which numbers are fitted: the middle one, or pixels if a curve is
+    /// applied to light, because a curve of a mean is not the mean of the curve.
     pub fn fitting(&self, candidate: &Candidate) -> &Level<'a> {
-        let is_curve = |look: &Look| matches!(look, Look::Curve(_) | Look::CutOff);
-        match candidate.looks.iter().any(is_curve) {
-            true => self.edges(),
-            false => &self.middle,
+        let is_curve = |effect: &Effect| matches!(effect, Effect::PerChannel(_) | Effect::CutOff);
+        if candidate.effects.iter().any(is_curve) {
+            self.central_crop()
+        } else {
+            &self.middle
         }
     }
 
-    /// The pixels that tell of edges.
-    pub fn edges(&self) -> &Level<'a> {
+    /// Returns the level on which edges are judged.
+    pub fn central_crop(&self) -> &Level<'a> {
         self.central.as_ref().unwrap_or(&self.fine)
     }
 
-    /// Others will be compared with this candidate.
+    /// Makes a candidate the base of the levels, so that later ones are rendered only where they
+    /// differ.
     pub fn compare_with(&self, candidate: &Candidate) {
         for level in [&self.coarse, &self.middle, &self.fine] {
             if let Some(rendering) = level.render(candidate, &self.work) {
@@ -119,14 +115,14 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The tiny level around a candidate that others are compared with. Where it is known what this
-    /// makes exactly, the error of its samples is added to what is seen, so that it cancels.
+    /// Returns the tiny level for comparisons with a candidate. If the candidate's exact picture is
+    /// known, the error of its samples is added to the observed light, so that it cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
         level.compare_with(Arc::clone(&sampled));
         let mut exact = Arc::clone(&sampled);
-        if candidate.behaviour.is_right() {
+        if candidate.behaviour.is_correct() {
             let fine = self.fine.render(candidate, &self.work)?;
             if fine.part == self.fine.grid.cells {
                 exact = level.reduced(&fine);
@@ -135,22 +131,24 @@ impl<'a> Judge<'a> {
         Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }
 
-    /// What a level should show if a candidate is right; none if that is not known.
+    /// Predicts what a level shows if a candidate is correct. Returns `None` if the budget is used
+    /// up.
     pub fn predicted<'b>(&self, candidate: &Candidate, level: &'b Level) -> Option<Prediction<'b>> {
         let rendering = level.render(candidate, &self.work)?;
-        self.work.spend(work::PREDICTED * level.grid.count() as f64);
+        self.work
+            .spend(work::COMPARISON * level.grid.count() as f64);
         Some(level.predict(&rendering))
     }
 
-    /// By how much a level differs from what a candidate makes, channel by channel; none if there
-    /// was too much work before.
+    /// Returns the differences of a level from a candidate's prediction, channel by channel.
+    /// Returns `None` if the budget is used up.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
-        self.work.may_go_on().then_some(())?;
+        self.work.check()?;
         Some(self.predicted(candidate, level)?.differences())
     }
 
-    /// A candidate with the sum of the absolute differences that it leaves on a level.
-    pub fn left(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
+    /// Returns a candidate with the sum of its absolute differences on a level.
+    pub fn with_difference(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
         let differences = self.differences(&candidate, level)?;
         Some((absolute(&differences), candidate))
     }
@@ -159,7 +157,7 @@ impl<'a> Judge<'a> {
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();
-        let cost = price(level, candidate.fitted()) - score.likelihood;
+        let cost = price(level, candidate.parameter_count()) - score.likelihood;
         Some(Judged {
             rendering,
             score,
@@ -167,8 +165,8 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// The numbers of a candidate at these places, fitted on a level; each is varied so as to
-    /// change the picture by about so much of a cell.
+    /// Fits the numbers of a candidate at the indices `free`. Each is varied so that the picture
+    /// moves by about `cells` cells.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -182,9 +180,9 @@ impl<'a> Judge<'a> {
         let of = |all: &[f64]| free.iter().map(|&at| all[at]).collect::<Vec<f64>>();
         let with = |numbers: &[f64]| {
             let mut changed = all.clone();
-            free.iter()
-                .zip(numbers)
-                .for_each(|(&at, x)| changed[at] = *x);
+            for (&at, x) in free.iter().zip(numbers) {
+                changed[at] = *x;
+            }
             candidate.with_numbers(self.scene, &changed)
         };
         let trial = |numbers: &[f64]| self.differences(&with(numbers)?, level);
@@ -195,14 +193,14 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// What so many numbers cost that are fitted to a level. A part of a picture is judged as the whole
-/// is: of a few pixels anything can be fitted.
+/// Returns the cost of `fitted` parameters: half a logarithm of the number of cells each. A part of
+/// a picture is judged like the whole, because anything can be fitted to a few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size().map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)
 }
 
-/// So many of those of which least is left, these first.
+/// Returns at most `most` items, least first.
 pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut all: Vec<_> = all.collect();
     all.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -210,14 +208,16 @@ pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T
     all
 }
 
-/// The middle of a part of a picture, of its proportions and of so many pixels; none if it has no
-/// more.
+/// Returns the central crop of a part, with its aspect ratio. Returns `None` if the part has no
+/// more pixels than the crop.
 fn central(part: Area) -> Option<Area> {
-    (part.pixels() > PIXELS_OF_EDGES).then_some(())?;
-    let by = (PIXELS_OF_EDGES as f64 / part.pixels() as f64).sqrt();
+    if part.pixels() <= CENTRAL_PIXELS {
+        return None;
+    }
+    let by = (CENTRAL_PIXELS as f64 / part.pixels() as f64).sqrt();
     let [width, height] =
         [part.width, part.height].map(|length| ((f64::from(length) * by) as u32).max(1));
-    // A JPEG is coded in blocks of so many pixels, at most.
+    // A multiple of the side of a JPEG's blocks.
     let aligned = |left: u32| left / 2 / 16 * 16;
     Some(Area {
         x: part.x + aligned(part.width - width),

@@ -1,56 +1,58 @@
-//! What a candidate makes in the cells of a grid, before it is laid out and its light is changed:
-//! exactly, or sampled by the faulty tracer, on the tiny grid and for behaviour that no scene can
-//! say.
+//! Renders a candidate in the cells of a grid, before layout and effects on light: exactly, or by
+//! the faulty tracer, which serves the tiny grid and behaviour that no scene can express.
 
 use std::{cell::OnceCell, sync::Arc};
 
 use glam::DVec2;
 
 use super::{
-    candidate::Candidate,
-    faulty_tracer::{Behaviour, FaultyTracer, bounds},
+    faulty_tracer::{FaultyTracer, bounds},
     grid::Grid,
     moments::Moments,
     work::Work,
 };
-use crate::{area::Area, projection::Projection, scene::Scene};
+use crate::{
+    area::Area,
+    grading::hypotheses::{Behaviour, Candidate},
+    projection::Projection,
+    scene::Scene,
+};
 
-/// Samples in a cell of what no scene can say.
+/// Samples in a cell for behaviour that no scene can express.
 const SAMPLES: usize = 34;
 
-/// The share of a cell that may be missed where the faulty tracer takes it for one of a single
-/// colour.
+/// Share of a cell that the faulty tracer may miss where it takes the cell for one colour.
 const MISSED: f64 = 1e-3;
 
-/// What a candidate makes.
+/// The rendering of a candidate.
 #[derive(Clone)]
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// What it would make if it behaved as a right program; in samples, what it makes as it
-    /// behaves.
-    pub right: Arc<Moments>,
-    /// What it makes, if it behaves otherwise.
+    /// Moments of a correct program with the candidate's scene; on the tiny grid, of the
+    /// candidate's behaviour.
+    pub correct: Arc<Moments>,
+    /// Moments with the candidate's behaviour, if that is faulty.
     behaved: Option<Arc<Moments>>,
-    /// What as many samples show of a right program, if that was needed.
+    /// Moments of a correct program, estimated from as many samples as `behaved`, if needed.
     sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
-    /// What a candidate that behaves as a right program makes in a part of the picture.
+    /// Creates the rendering of a candidate with correct behaviour in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
             part,
-            right: moments,
+            correct: moments,
             behaved: None,
             sampled: None,
         }
     }
 
-    /// As it is laid out in the cells of a grid.
+    /// Returns the moments as they are laid out in the cells of a grid.
     pub fn laid_out(&self, grid: &Grid) -> Arc<Moments> {
-        let moments = self.behaved.as_ref().unwrap_or(&self.right);
+        let moments = self.behaved.as_ref().unwrap_or(&self.correct);
         let layout = self.candidate.layout;
         if layout == Default::default() {
             return Arc::clone(moments);
@@ -65,7 +67,7 @@ impl Rendering {
 }
 
 impl Candidate {
-    /// The scene that a grid's cells are pixels of, without what it does not draw.
+    /// Returns the scene whose pixels are a grid's cells, without objects that are not drawn.
     pub fn drawn(&self, grid: &Grid) -> Scene {
         let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
@@ -80,9 +82,9 @@ impl Candidate {
         scene
     }
 
-    /// What it makes in the cells of a grid: exactly, or by so many samples in a cell where these
-    /// are given. What it makes as one of others does is taken from that which makes most of it.
-    /// None if it is cancelled, or takes too much work.
+    /// Renders the candidate in the cells of a grid: exactly, or with a number of samples per cell.
+    /// Of `known`, the rendering that shares most of the picture is reused. Returns `None` if it is
+    /// cancelled or exceeds the budget.
     pub fn render(
         &self,
         grid: &Grid,
@@ -91,13 +93,13 @@ impl Candidate {
         work: &Work,
     ) -> Option<Rendering> {
         let part = self.layout.sources(grid.cells, grid.size());
-        let is_alike = |one: &&Arc<Rendering>| {
+        let is_reusable = |one: &&Arc<Rendering>| {
             let behaves = one.candidate.behaviour == self.behaviour;
             one.part == part && (samples.is_none() || behaves)
         };
-        let alike = known.iter().filter(is_alike);
-        let alike = alike.map(|one| (one, self.changed(&one.candidate, grid, part)));
-        let nearest = alike.min_by_key(|(one, changed)| {
+        let reusable = known.iter().filter(is_reusable);
+        let reusable = reusable.map(|one| (one, self.changed(&one.candidate, grid, part)));
+        let nearest = reusable.min_by_key(|(one, changed)| {
             let behaves_otherwise = one.candidate.behaviour != self.behaviour;
             (changed.pixels(), behaves_otherwise)
         });
@@ -105,7 +107,7 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
-            // Objects are told by their place among those that are drawn.
+            // Objects are indexed among those that are drawn.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
             let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
             let behaviour = Behaviour {
@@ -114,33 +116,33 @@ impl Candidate {
                 pixel: 1.0 + (behaviour.pixel - 1.0) / f64::from(grid.factor),
                 ..behaviour
             };
-            let tracer = FaultyTracer::new(scene(), behaviour, self.averaged);
+            let tracer = FaultyTracer::new(scene(), behaviour, self.decoding);
             Some(tracer.moments(area, samples))
         };
         let traced = |area| match samples {
-            None => work.exact_moments(scene(), self.averaged, area),
+            None => work.exact_moments(scene(), self.decoding, area),
             Some(samples) => sampled(self.behaviour, area, samples),
         };
-        let right = nearest.map(|(one, area)| (&one.right, area));
-        let right = completed(right, part, traced)?;
+        let correct = nearest.map(|(one, area)| (&one.correct, area));
+        let correct = completed(correct, part, traced)?;
         let mut behaved = None;
         let is_same = |one: &&Arc<Rendering>| one.part == part && one.candidate.traces_as(self);
         let mut same = known.iter().filter(is_same);
-        let mut of_right = same.find_map(|one| one.sampled.clone());
-        if samples.is_none() && !self.behaviour.is_right() {
+        let mut of_correct = same.find_map(|one| one.sampled.clone());
+        if samples.is_none() && !self.behaviour.is_correct() {
             let nearest = nearest.filter(|(one, _)| one.candidate.behaviour == self.behaviour);
             let nearest = nearest.and_then(|(one, area)| Some((one.behaved.as_ref()?, area)));
             behaved = Some(completed(nearest, part, |area| {
                 let indices: Vec<usize> = area.iter().map(|(x, y)| part.index(x, y)).collect();
-                let own = match &of_right {
+                let own = match &of_correct {
                     Some(known) => known.select(&indices),
                     None => sampled(Behaviour::default(), area, SAMPLES)?,
                 };
                 let other = sampled(self.behaviour, area, SAMPLES)?;
-                let right = right.select(&indices);
-                let replaced = replaced_where_they_differ(right, &own, &other);
+                let correct = correct.select(&indices);
+                let replaced = replaced_where_they_differ(correct, &own, &other);
                 if area == part {
-                    of_right = Some(Arc::new(own));
+                    of_correct = Some(Arc::new(own));
                 }
                 Some(replaced)
             })?);
@@ -148,14 +150,14 @@ impl Candidate {
         Some(Rendering {
             candidate: self.clone(),
             part,
-            right,
+            correct,
             behaved,
-            sampled: of_right,
+            sampled: of_correct,
         })
     }
 
-    /// The area of a part of the picture, before it is laid out, outside of which it is known that
-    /// another candidate shows the same.
+    /// Returns an area of a part of the picture, before layout, outside of which another candidate
+    /// is known to look the same.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         let nothing = Area {
             width: 0,
@@ -166,10 +168,10 @@ impl Candidate {
             return nothing;
         }
         let (one, two) = (&self.scene, &other.scene);
-        // Objects are seen only where they are.
+        // Objects are visible only where they are.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
-        if !is_in_place || !is_same_view || self.averaged != other.averaged {
+        if !is_in_place || !is_same_view || self.decoding != other.decoding {
             return part;
         }
         let (camera, image) = grid.view(one);
@@ -201,7 +203,7 @@ impl Candidate {
     }
 }
 
-/// What is made in a part of the picture, of which all is known but an area.
+/// Completes known moments of a part by those of the area in which they are not known.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,
@@ -218,15 +220,15 @@ fn completed(
     }
 }
 
-/// What samples show of a program that behaves otherwise, and how far off these means may be; where
-/// samples of a right one show the same, it is what that shows exactly.
-fn replaced_where_they_differ(mut right: Moments, own: &Moments, other: &Moments) -> Moments {
+/// Replaces exact moments by sampled ones of faulty behaviour, except where samples of correct
+/// behaviour are equal to those.
+fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];
         if own.mean[at] != other.mean[at] || own.variance[at] != variance {
-            (right.mean[at], right.variance[at]) = (other.mean[at], variance);
-            right.doubt[at] = variance / SAMPLES as f64 + MISSED * MISSED;
+            (correct.mean[at], correct.variance[at]) = (other.mean[at], variance);
+            correct.mean_variance[at] = variance / SAMPLES as f64 + MISSED * MISSED;
         }
     }
-    right
+    correct
 }

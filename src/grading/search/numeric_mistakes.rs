@@ -1,28 +1,26 @@
-//! Finds which numbers of a scene, changed, explain a picture best.
+//! Finds the numbers of a scene whose change explains a picture best.
 //!
-//! The tiny grid tells where to start, and is fitted to.
+//! Starts are compared on the tiny grid, and the best are fitted to it.
 
 use glam::DVec3;
 
-use super::{
-    candidate::{Candidate, Mistake},
-    judge::{Judge, Judged, least},
-    level::Level,
-    parameters::{self, Owner, Parameter},
-    prediction::Prediction,
-};
+use super::judge::{Judge, Judged, least};
 use crate::{
     color::{Color, linear_to_srgb},
+    grading::{
+        hypotheses::{Candidate, Mistake, Owner, Parameter, parameters},
+        scoring::{Level, Prediction},
+    },
     scene::View,
 };
 
-/// From so many starts numbers are fitted on the tiny grid.
+/// Number of starts from which a parameter is fitted on the tiny grid, best first.
 const STARTS: usize = 2;
 
-/// So many parameters are fitted there, those that start best.
+/// Number of parameters that are fitted on the tiny grid, those with the best start first.
 const STARTED: usize = 12;
 
-/// Some numbers of the scene, each with what comes nearest on the tiny grid.
+/// Fits parameters of the scene to the tiny grid. Returns candidates with their differences on it.
 pub fn numeric_mistakes(
     judge: &Judge,
     from: &Judged,
@@ -35,32 +33,31 @@ pub fn numeric_mistakes(
             let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
             object == suspect || own.is_beside(other)
         }),
-        // A camera that stands or looks elsewhere moves all objects.
+        // A wrong camera moves all objects.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => {
             suspects.len() > 1 || candidate.scene.objects.len() == 1
         }
         _ => true,
     };
-    let all = parameters::fitted(&candidate.scene).into_iter();
+    let all = parameters::fittable(&candidate.scene).into_iter();
     let is_named = |parameter: &Parameter| candidate.numeric().any(|(own, _)| own == parameter);
     let all = all.filter(|parameter| is_suspect(parameter) && !is_named(parameter));
-    let shown = judge.middle.predict(&from.rendering);
+    let prediction = judge.middle.predict(&from.rendering);
     let started = all.filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
-        let starts = match parameter.is_color() {
-            true => vec![colors(&numbers, &shown)],
-            false => {
-                let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
-                let steps = parameter.steps(&candidate.scene, pixels);
-                match parameter.fields[..] {
-                    ["near" | "far"] => planes(judge, numbers),
-                    _ => starts(&parameter, &numbers, &steps),
-                }
+        let starts = if parameter.is_color() {
+            vec![colors(&numbers, &prediction)]
+        } else {
+            let pixels = f64::from(judge.coarse.grid.factor) / 2.0;
+            let steps = parameter.steps(&candidate.scene, pixels);
+            match parameter.fields[..] {
+                ["near" | "far"] => planes(judge, numbers),
+                _ => starts(&parameter, &numbers, &steps),
             }
         };
         let tried = starts.into_iter().filter_map(|start| {
             let started = candidate.with(Mistake::Numbers(parameter.clone(), start))?;
-            judge.left(started, tiny)
+            judge.with_difference(started, tiny)
         });
         let tried = least(tried, STARTS);
         Some((tried.first()?.0, (parameter, tried)))
@@ -68,8 +65,8 @@ pub fn numeric_mistakes(
     let started = least(started, STARTED).into_iter();
     let fitted = started.filter_map(|(_, (parameter, tried))| {
         let fit = |(left, start): (f64, Candidate)| {
-            // Colours are read, but where something is done to them.
-            if parameter.is_color() && candidate.looks.is_empty() {
+            // The picture's colours are used as they are, unless an effect changes them.
+            if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
             let free = candidate.numbers().len()..start.numbers().len();
@@ -82,35 +79,33 @@ pub fn numeric_mistakes(
     fitted.collect()
 }
 
-/// The colours that a picture has where these colours alone should be seen: the medians of their
-/// channels.
-fn colors(numbers: &[f64], shown: &Prediction) -> Vec<f64> {
-    let color = |own: &[f64]| {
-        let light = Color {
-            srgb: [own[0], own[1], own[2]],
-        }
-        .to_linear();
-        let light = DVec3::from(light);
-        let moments = &shown.moments;
+/// Returns the median colours of the picture where the prediction shows one of the given colours
+/// alone.
+fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
+    let color = |own: &[f64; 3]| {
+        let light = DVec3::from(Color { srgb: *own }.to_linear());
+        let moments = &prediction.moments;
         let is_alone =
             |at: &usize| moments.mean[*at] == light && moments.variance[*at] == DVec3::ZERO;
-        let seen = (0..shown.seen.len())
+        let seen = (0..prediction.observed.len())
             .filter(is_alone)
-            .map(|at| shown.seen[at]);
+            .map(|at| prediction.observed[at]);
         let mut seen: Vec<DVec3> = seen.filter(|seen| !seen.x.is_nan()).collect();
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
-            // A byte, if the picture has bytes.
+            // Rounded to 1/1024 of a byte's step, so that the bytes of a picture with bytes are
+            // exact.
             Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
         };
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
     };
-    numbers.chunks_exact(3).flat_map(color).collect()
+    let (colors, _) = numbers.as_chunks();
+    colors.iter().flat_map(color).collect()
 }
 
-/// Where to look for a plane that clips: at depths around that of the nearest object and what is
-/// looked at, each a fifth more than the one before.
+/// Returns starts for a clipping plane: depths around that of the point looked at. Each is a fifth
+/// farther than the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;
@@ -123,11 +118,11 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     std::iter::once(numbers).chain(depths).collect()
 }
 
-/// Where to look for numbers: as they are, a little off, and what a slip makes of them, a sign, two
-/// exchanged, a double or a half.
+/// Returns starts for numbers: their own, neighbours, and what slips make of them: a wrong sign,
+/// two exchanged numbers, a double or a half.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
-    // A single number costs little: all within reach are tried.
+    // A single number costs little, so a wider range is tried.
     let far = match numbers.len() {
         1 => 10,
         _ => 3,
@@ -150,7 +145,7 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
         (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
     }
     for i in 0..numbers.len() {
-        // A slip is made in one field.
+        // A slip affects one field.
         if parameter.fields.len() == 1 {
             with(&|other| other[i] = -other[i]);
             with(&|other| other[i] = 0.0);

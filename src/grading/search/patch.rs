@@ -1,31 +1,30 @@
-//! An extra patch of one colour in a picture, which no object of the scene explains.
+//! Finds an extra patch of one colour in a picture, which no object of the scene explains.
 
 use glam::DVec2;
 
-use super::{
-    candidate::Mistake,
-    judge::{Judge, Judged},
-    light::is_near,
-};
+use super::judge::{Judge, Judged};
+use crate::grading::hypotheses::{Mistake, is_near};
 
-/// Fewer pixels than this are not taken for something too many.
+/// Least number of pixels in a patch. Smaller ones may be noise.
 const SMALLEST: usize = 4;
 
-/// A piece is compact: it fills at least this part of its rectangle, and at most that of the
-/// picture. Something that takes all of it in explains nothing.
+/// Least share of its rectangle that a patch fills: it is compact.
 const FILLED: f64 = 0.25;
+/// Greatest share of the picture that a patch's rectangle may cover: a larger one would explain
+/// anything.
 const MOST: f64 = 0.2;
 
-/// Something of one colour where the picture shows what the scene does not: the largest piece of
-/// such pixels that hang together.
+/// Finds the largest connected piece of one colour that the candidate does not explain. Returns
+/// `None` if there is none, or if the candidate has a patch already.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
-    let has_one = others.any(|one| matches!(one, Mistake::Patch(..)));
-    (!has_one).then_some(())?;
+    if others.any(|one| matches!(one, Mistake::Patch(..))) {
+        return None;
+    }
     let grid = &judge.fine.grid;
-    let shown = judge.predicted(from.candidate(), &judge.fine)?;
-    let (seen, strays) = (shown.seen, shown.strays().pixels);
-    let pairs = seen.iter().zip(&shown.moments.mean);
+    let prediction = judge.predicted(from.candidate(), &judge.fine)?;
+    let (seen, strays) = (prediction.observed, prediction.strays().pixels);
+    let pairs = seen.iter().zip(&prediction.moments.mean);
     let mut is_left: Vec<bool> = pairs
         .map(|(seen, mean)| !is_near((*seen).into(), (*mean).into()))
         .collect();
@@ -51,20 +50,23 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         }
     }
     let light = seen[*largest.first()?].to_array();
-    // What has a colour of the scene is rather something of it that is elsewhere.
+    // A piece of a colour of the scene is more likely an object in a wrong place.
     let scene = &from.candidate().scene;
     let objects = scene.objects.iter();
-    let mut own = objects.flat_map(|object| object.shape.colors());
-    let is_own = own.any(|color| is_near(color.to_linear(), light));
-    let is_background = is_near(scene.image.background.to_linear(), light);
-    (!is_own && !is_background).then_some(())?;
+    let colors = objects.flat_map(|object| object.shape.colors());
+    let mut colors = colors.chain([scene.image.background]);
+    if colors.any(|color| is_near(color.to_linear(), light)) {
+        return None;
+    }
     let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for place in largest.iter().map(|&at| grid.middle(at)) {
         (least, most) = (least.min(place), most.max(place));
     }
     let rectangle = most - least + 1.0;
     let [own, all] = [rectangle.x * rectangle.y, grid.count() as f64];
-    (largest.len() as f64 >= FILLED * own && own <= MOST * all).then_some(())?;
+    if (largest.len() as f64) < FILLED * own || own > MOST * all {
+        return None;
+    }
     let reach = f64::from(grid.factor);
     let area = [(least - reach).to_array(), (most + reach).to_array()];
     Some(Mistake::Patch(light, area))

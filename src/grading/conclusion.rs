@@ -1,0 +1,171 @@
+//! Turns the result of a search into a verdict: its mistakes are named, or become guesses.
+
+use super::{
+    hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
+    objects,
+    scoring::WRONG,
+    search::{Judge, Judged},
+    verdict::{Kind, NamedMistake, Verdict},
+};
+use crate::{
+    color::srgb_to_linear,
+    film::{Film, Jpeg},
+    scene::Scene,
+};
+
+/// Makes the verdict of what the search found, a candidate and whether it explains the picture.
+pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
+    let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
+    let right = Candidate::correct(scene);
+    // The conclusion takes work, too. A search that explains the picture ended for that, not at its
+    // budget.
+    let is_explained = matches!(found, Some((_, true)));
+    let is_cut = judge.work.is_cut() && !is_explained;
+    let mut verdict = match found {
+        Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
+            wrong(judge, &found, is_explained, is_cut)
+        }
+        Some((_, true)) if !has_other_colors(film, scene, jpeg) => {
+            let judged = judge.judged(&right, &judge.fine);
+            Verdict {
+                samples: judged.and_then(|judged| judged.score.samples),
+                ..Verdict::without_mistakes(Kind::Noise, scene)
+            }
+        }
+        _ => {
+            let (objects, is_background_right) = objects::judged(judge, &right);
+            Verdict {
+                objects,
+                is_background_right,
+                is_cut,
+                ..Verdict::without_mistakes(Kind::Unknown, scene)
+            }
+        }
+    };
+    verdict.is_coded = jpeg.is_some();
+    verdict
+}
+
+/// Returns whether a picture has a channel below or above those of all colours of the scene, which
+/// no mean of them has.
+fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
+    let colors = scene.objects.iter();
+    let colors = colors.flat_map(|object| object.shape.colors());
+    let all = colors.chain([scene.image.background]);
+    let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for srgb in all.map(|color| color.srgb) {
+        for i in 0..3 {
+            (least[i], most[i]) = (least[i].min(srgb[i]), most[i].max(srgb[i]));
+        }
+    }
+    let least = least.map(|srgb| srgb_to_linear((srgb - WRONG) / 255.0));
+    let most = most.map(|srgb| srgb_to_linear((srgb + WRONG) / 255.0));
+    let is_other = |pixel: &[f64; 3]| (0..3).any(|i| pixel[i] < least[i] || pixel[i] > most[i]);
+    // JPEG makes colours overshoot at edges.
+    jpeg.is_none() && film.pixels().iter().any(is_other)
+}
+
+/// Concludes from mistakes: they are named if together they explain the picture, and are guesses
+/// otherwise.
+fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
+    let (scene, last) = (judge.scene, found.candidate());
+    // All squared differences are compared on one grid, less the final noise. Shifts by half a
+    // pixel are visible only at full resolution.
+    let level = if last.behaviour.is_shifted() || last.is_filtered() {
+        judge.central_crop()
+    } else {
+        &judge.middle
+    };
+    let judged = |candidate: &Candidate| judge.judged(candidate, level);
+    let noise = judged(last).map_or(0.0, |last| last.score.noise);
+    let beyond = |candidate: &Candidate| {
+        judged(candidate).map_or(0.0, |found| (found.score.squares - noise).max(0.0))
+    };
+    let mut before = Candidate::correct(scene);
+    let all = beyond(&before).max(1e-12);
+    let mut left = all;
+    let mut mistakes = Vec::new();
+    // The mistake first that leaves least: its share may be larger once another no longer hides it.
+    let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
+    while !others.is_empty() {
+        let with = |(at, mistake): (usize, &&Mistake)| {
+            let after = before.with((*mistake).clone())?;
+            Some((beyond(&after), at, after))
+        };
+        let with = others.iter().enumerate().filter_map(with);
+        let Some((now, at, after)) = with.min_by(|one, other| one.0.total_cmp(&other.0)) else {
+            break;
+        };
+        let mistake = others.remove(at);
+        let set = parameters::arguments(&before.scene, &after.scene);
+        let mut message = mistake.message(scene);
+        if let (Mistake::Row(..), [_]) = (mistake, &set[..])
+            && let [changed] = &parameters::changed(&before.scene, &after.scene)[..]
+            && let Some(should) = changed.value(&before.scene)
+            && let Some(is) = changed.value(&after.scene)
+        {
+            message = format!("{message}: {is} instead of {should}");
+        }
+        let equivalent = is_explained.then(|| equivalent_rows(judge, last, mistake));
+        for other in equivalent.iter().flatten() {
+            let other = other.message(scene);
+            message = format!("{message}; or, in a picture like this, {other}");
+        }
+        mistakes.push(NamedMistake {
+            id: mistake.id(),
+            message,
+            help: mistake.help(scene),
+            set,
+            explains: ((left - now) / all).clamp(0.0, 1.0),
+        });
+        (left, before) = (now, after);
+    }
+    let square = |candidate: &Candidate| {
+        let shown = judge.predicted(candidate, &judge.fine);
+        shown.map_or(f64::INFINITY, |shown| shown.strays().square())
+    };
+    let correct = Candidate::correct(scene);
+    let rest = (!is_explained).then(|| square(last) / square(&correct));
+    let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
+    mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);
+    let is_named = !is_cut && !mistakes.is_empty() && is_explained;
+    let (kind, mistakes, guesses) = if is_named {
+        (Kind::Wrong, mistakes, Vec::new())
+    } else {
+        (Kind::Unknown, Vec::new(), mistakes)
+    };
+    // With guesses, nothing is known about single objects.
+    let known = if is_named { last } else { &correct };
+    let (objects, is_background_right) = objects::judged(judge, known);
+    Verdict {
+        samples: found.score.samples,
+        rest,
+        mistakes,
+        guesses,
+        objects,
+        is_background_right,
+        is_cut,
+        ..Verdict::without_mistakes(kind, scene)
+    }
+}
+
+/// Returns rows of the same identifier that explain the picture equally well in place of a mistake,
+/// so that nobody can tell them apart.
+fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
+    let Mistake::Row(row, object) = mistake else {
+        return Vec::new();
+    };
+    let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
+    let others = rows.filter(|other| other.id == row.id && other.message != row.message);
+    let others = others.filter(|other| other.shows == Shows::InAreas);
+    let others = others.map(|other| Mistake::Row(other, *object));
+    let explains = |other: &Mistake| {
+        let mut mistakes = candidate.mistakes.clone();
+        for one in mistakes.iter_mut().filter(|one| one.is_same_kind(mistake)) {
+            *one = other.clone();
+        }
+        let replaced = Candidate::of(judge.scene, mistakes);
+        replaced.is_some_and(|replaced| judge.explains(&replaced))
+    };
+    others.filter(explains).collect()
+}

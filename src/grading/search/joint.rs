@@ -1,0 +1,103 @@
+//! Rows of the table that only explain something together: layout, visible surfaces, order of
+//! channels, and encoding of light.
+//!
+//! One of them alone may explain nothing: truncated squares of a board are not recognised in a
+//! picture that is upside down. On the tiny grid all combinations are tried, before any number is
+//! fitted.
+
+use super::{
+    judge::{Judge, least},
+    levenberg_marquardt::absolute,
+};
+use crate::grading::{
+    hypotheses::{Candidate, Mistake, ROWS, Shows},
+    scoring::{Level, Prediction},
+};
+
+/// Number of combinations that are kept, least difference first, and combined with a second effect
+/// on light.
+const BEST: usize = 8;
+
+/// Number of combinations of layout and visible surfaces that are combined with effects on light,
+/// highest correlation with the picture first.
+const CORRELATED: usize = 32;
+
+/// Ratio by which each further row has to reduce the difference.
+const ROW_RATIO: f64 = 0.95;
+
+/// Returns the absolute correlation of the observed and the expected sums of the channels, which
+/// effects on light mostly preserve, even an inversion.
+fn correlation(prediction: &Prediction) -> f64 {
+    let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
+    for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
+        let [a, b] = [seen, mean].map(|light| light.element_sum());
+        if !a.is_nan() {
+            count += 1.0;
+            sums = [sums[0] + a, sums[1] + b];
+            products = [
+                products[0] + a * a,
+                products[1] + a * b,
+                products[2] + b * b,
+            ];
+        }
+    }
+    let [aa, ab, bb] = [(0, 0, 0), (1, 0, 1), (2, 1, 1)]
+        .map(|(at, i, j)| products[at] - sums[i] * sums[j] / f64::max(count, 1.0));
+    ab.abs() / (aa * bb).sqrt().max(1e-12)
+}
+
+/// Returns combinations of several rows with little difference on the tiny grid, each with its
+/// difference.
+pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
+    let rows = ROWS.iter();
+    // A JPEG's coding hides weak mistakes.
+    let is_coded = judge.fine.jpeg.is_some();
+    let rows = rows.filter(|row| match row.shows {
+        Shows::InAreas => true,
+        Shows::AtEdges => false,
+        Shows::Everywhere => !is_coded && row.id == "gamma_22",
+    });
+    let rows = rows.filter_map(|row| {
+        let mistake = Mistake::Row(row, None);
+        Some((right.with(mistake.clone())?, mistake))
+    });
+    let (light, others): (Vec<_>, Vec<_>) =
+        rows.partition(|(one, _)| one.curve != right.curve || !one.effects.is_empty());
+    let (layout, seen): (Vec<_>, Vec<_>) = others
+        .into_iter()
+        .partition(|(one, _)| one.layout != right.layout);
+    // The candidate itself, and with each row.
+    let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
+        let changed = rows
+            .iter()
+            .map(|(_, mistake)| candidate.with(mistake.clone()));
+        let all = std::iter::once(Some(candidate.clone())).chain(changed);
+        Vec::from_iter(all.flatten())
+    };
+    let left = |candidate: Candidate| {
+        judge.work.check()?;
+        let prediction = judge.predicted(&candidate, tiny)?;
+        // A picture of one colour was handled before.
+        let mean = &prediction.moments.mean;
+        if mean.iter().all(|one| *one == mean[0]) {
+            return None;
+        }
+        let penalty = libm::pow(ROW_RATIO, candidate.mistakes.len() as f64);
+        Some((absolute(&prediction.differences()) / penalty, candidate))
+    };
+    // Visible surfaces come first, so that each scene is rendered only once.
+    let seen = with(right, &seen).into_iter();
+    let laid_out = seen.flat_map(|candidate| with(&candidate, &layout));
+    let correlated = laid_out.filter_map(|candidate| {
+        judge.work.check()?;
+        Some((-correlation(&judge.predicted(&candidate, tiny)?), candidate))
+    });
+    let correlated = least(correlated, CORRELATED).into_iter();
+    let lit = correlated.flat_map(|(_, candidate)| with(&candidate, &light));
+    let best = least(lit.filter_map(left), BEST).into_iter();
+    let both = best.flat_map(|(_, candidate)| with(&candidate, &light));
+    let best = least(both.filter_map(left), BEST).into_iter();
+    best.filter(|(_, candidate)| candidate.mistakes.len() > 1)
+        .filter_map(|(_, candidate)| judge.with_difference(candidate, tiny))
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! The modules of the library import each other one way, in the order of `src/lib.rs`.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::Path,
+};
+
+/// Returns the groups of modules in `src/lib.rs`, which blank lines separate.
+fn groups(source: &Path) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(source.join("lib.rs")).unwrap();
+    let module = |line: &str| {
+        let (_, name) = line.split_once("mod ")?;
+        Some(name.strip_suffix(';')?.to_owned())
+    };
+    let groups = text.split("\n\n");
+    let groups = groups.map(|group| group.lines().filter_map(module).collect());
+    groups.filter(|group: &Vec<_>| !group.is_empty()).collect()
+}
+
+/// Returns the program text of a file or a folder without comments and unit tests; none if it is
+/// not there, as a module is one of the two or both.
+fn code(path: &Path) -> String {
+    if path.is_dir() {
+        let entries = fs::read_dir(path).unwrap();
+        return entries.map(|entry| code(&entry.unwrap().path())).collect();
+    }
+    let is_code = path.extension().is_some_and(|ending| ending == "rs");
+    if !is_code || !path.exists() || path.file_stem().is_some_and(|name| name == "tests") {
+        return String::new();
+    }
+    let text = fs::read_to_string(path).unwrap();
+    let own = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+    let lines = own.lines().filter(|line| !line.trim().starts_with("//"));
+    lines.map(|line| line.to_owned() + "\n").collect()
+}
+
+/// Returns the first names behind every `crate::`, also those of a list in braces.
+fn imports(code: &str) -> BTreeSet<String> {
+    let name = |text: &str| -> String {
+        let signs = text.trim_start().chars();
+        signs
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect()
+    };
+    let mut found = BTreeSet::new();
+    for rest in code.split("crate::").skip(1) {
+        let Some(list) = rest.strip_prefix('{') else {
+            found.insert(name(rest));
+            continue;
+        };
+        let (mut depth, mut own) = (1, String::new());
+        for sign in list.chars() {
+            match sign {
+                '{' => depth += 1,
+                '}' => depth -= 1,
+                _ if depth == 1 => own.push(sign),
+                _ => {}
+            }
+            if depth == 0 {
+                break;
+            }
+        }
+        found.extend(own.split(',').map(name));
+    }
+    found
+}
+
+#[test]
+fn modules_import_one_way_in_the_order_of_the_library() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let groups = groups(&source);
+    assert!(groups.len() > 5, "{groups:?}");
+    let mut before: BTreeSet<&String> = BTreeSet::new();
+    for group in &groups {
+        before.extend(group);
+        let mut rest: BTreeMap<&String, BTreeSet<String>> = group
+            .iter()
+            .map(|module| {
+                let text = code(&source.join(format!("{module}.rs"))) + &code(&source.join(module));
+                (module, imports(&text))
+            })
+            .collect();
+        let all = groups.iter().flatten();
+        for (module, imported) in &rest {
+            let after = all.clone().filter(|it| !before.contains(it));
+            let wrong: Vec<_> = after.filter(|it| imported.contains(*it)).collect();
+            assert!(
+                wrong.is_empty(),
+                "{module} imports {wrong:?}, which come after it"
+            );
+        }
+        // A module that imports none of the rest is in no circle.
+        while !rest.is_empty() {
+            let is_free = |module: &&String| {
+                let mut others = rest.keys().filter(|it| *it != module);
+                !others.any(|other| rest[*module].contains(*other))
+            };
+            let free = rest.keys().copied().find(is_free);
+            let free = free.unwrap_or_else(|| panic!("a circle among {:?}", rest.keys()));
+            rest.remove(free);
+        }
+    }
+}
