@@ -1,4 +1,5 @@
-//! The end of each command's `--help`, after the options: examples, JSON output, exit status.
+//! Texts at the end of each command's `--help`, after the options: examples, JSON output, exit
+//! status.
 
 pub const EXAMPLES: &str = "\
 Examples:

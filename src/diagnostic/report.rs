@@ -1,7 +1,7 @@
 //! Reports for people.
 //!
 //! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette or
-//! narrated. miette receives only the labelled lines, cut to what can be shown.
+//! as sentences. miette receives only the labelled lines, shortened to what can be shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write, ops::Range};
 
@@ -22,25 +22,25 @@ use crate::{
 /// Style of the reports for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
-    /// What the report is drawn with.
+    /// How a report is drawn.
     pub drawing: Drawing,
-    /// Whether the terminal shows colours.
+    /// Whether colours are used.
     pub color: bool,
-    /// The terminal's width in columns; help is wrapped to it.
+    /// Width in columns to which help is wrapped.
     pub width: usize,
-    /// Width of a terminal in columns, to which the lines of an excerpt are cut and its labels and
-    /// the title are wrapped. `None` without a terminal: only very long lines are cut.
+    /// Width of the terminal in columns. Lines of an excerpt are cut to it, and labels and titles
+    /// are wrapped. If it is `None`, there is no terminal, and only very long lines are cut.
     pub excerpt: Option<usize>,
 }
 
-/// Characters that a report is drawn with.
+/// How a report is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
-    /// ASCII only, unless the scene has other characters.
+    /// ASCII only, except characters of the scene itself.
     Ascii,
-    /// No drawing: every label is a sentence, for screen readers.
+    /// Nothing is drawn: every label is a sentence, for screen readers.
     Narrated,
 }
 
@@ -62,7 +62,7 @@ pub struct Report<'s> {
     style: Style,
 }
 
-/// Returns the number of diagnostics of each kind, the most frequent kind first.
+/// Returns a line for each kind of diagnostic with its count, the most frequent kind first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for diagnostic in diagnostics
@@ -80,18 +80,19 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl<'s> Report<'s> {
-    /// Maximum number of reports that a terminal shows. Of more, it shows the first few and the
-    /// number of each kind; JSON has all of them.
+    /// Maximum number of reports that are shown in full. If there are more, only the first
+    /// [`Self::FIRST_SHOWN`] and the count of each kind are shown; JSON has all of them.
     pub const MOST_SHOWN: usize = 100;
     /// Number of reports that are shown if there are more than [`Self::MOST_SHOWN`].
     pub const FIRST_SHOWN: usize = 20;
 
-    /// Makes a printer for diagnostics of these sources.
+    /// Makes a printer for diagnostics about `sources`.
     pub fn new(sources: &'s Sources, style: Style) -> Self {
         Self { sources, style }
     }
 
-    /// Returns all reports, separated by empty lines, and their number.
+    /// Returns the reports, separated by empty lines, and a summary of their number. Returns an
+    /// empty text if there are no diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();
@@ -129,7 +130,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// Returns the report of one diagnostic.
+    /// Returns the report of one diagnostic, drawn or narrated.
     pub fn one(&self, diagnostic: &Diagnostic) -> String {
         match self.style.drawing {
             Drawing::Narrated => self.narrated(diagnostic),
@@ -173,7 +174,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// Returns the labelled lines of one source, drawn by miette.
+    /// Returns the labelled lines of one source and the help, drawn by miette.
     fn snippet(&self, excerpt: Excerpt<'_>, help: Option<String>) -> String {
         let theme = match (self.style.drawing, self.style.color) {
             (Drawing::Unicode, true) => GraphicalTheme::unicode(),
@@ -188,9 +189,11 @@ impl<'s> Report<'s> {
             .without_syntax_highlighting();
         let mut text = String::new();
         let snippet = Snippet { excerpt, help };
-        // Writing to a string does not fail, and an excerpt holds all of its labels.
+        // Rendering cannot fail: writing to a string does not fail, and an excerpt contains all of
+        // its labels.
         let _ = handler.render_report(&mut text, &snippet);
-        // miette's own header is a line with an icon; ours stands above already.
+        // The first line is miette's own header with an icon. It is dropped, since the report has a
+        // header already.
         match text.split_once('\n') {
             Some((_, rest)) => rest
                 .lines()
@@ -234,7 +237,7 @@ impl<'s> Report<'s> {
     }
 }
 
-/// An excerpt in the form that miette takes.
+/// An excerpt and a help in the form that miette takes.
 #[derive(Debug)]
 struct Snippet<'s> {
     excerpt: Excerpt<'s>,
@@ -263,11 +266,11 @@ impl miette::Diagnostic for Snippet<'_> {
     }
 }
 
-/// The labelled lines of one source, with long lines cut to the parts around the labels.
+/// Excerpt of a source: the labelled lines, with long lines cut to the parts around the labels.
 ///
-/// miette reads the excerpt instead of the text: a line of ten megabytes is neither printed nor
-/// scanned, and every label lies within it (miette omits a label at the end of a text, and panics
-/// at one past it).
+/// miette reads the excerpt instead of the text, so a line of ten megabytes is neither printed nor
+/// scanned, and every label lies within the text that miette sees. (miette omits a label at the end
+/// of a text, and panics at a label past it.)
 #[derive(Debug)]
 struct Excerpt<'s> {
     source: &'s Source,
@@ -278,25 +281,26 @@ struct Excerpt<'s> {
 
 #[derive(Debug)]
 struct ExcerptLine {
-    /// Line number in the source, from 1.
+    /// Line number in the source, counted from 1.
     number: usize,
-    /// Start in the excerpt, in bytes.
+    /// Start of the line in the excerpt, in bytes.
     start: usize,
-    /// End in the excerpt, in bytes, without the line feed.
+    /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Offsets of each shown character in the source and in the excerpt, and those of the end.
+    /// Offsets of each shown character in the source and in the excerpt, and those of the end of
+    /// each shown part.
     shown: Vec<(usize, usize)>,
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
 const LONG_LINE_BYTES: usize = 160;
-/// Minimum number of columns, however narrow the terminal is.
+/// Minimum width of an excerpt, in columns, even if the terminal is narrower.
 const MIN_COLUMNS: usize = 30;
-/// Columns between a label and its message.
+/// Number of columns between a label and its message.
 const HOOK_COLUMNS: usize = 4;
-/// Minimum number of columns for a message, wherever its label stands.
+/// Minimum number of columns for a message, even if its label stands far to the right.
 const MIN_MESSAGE_COLUMNS: usize = 16;
-/// Maximum number of lines of a label; a longer one is drawn under its first line only.
+/// Maximum number of lines of a label. A longer label is drawn under its first line only.
 const MAX_LABEL_LINES: usize = 6;
 
 /// Returns an excerpt of every source that has labels, in the order of the labels.
@@ -315,7 +319,7 @@ fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -
 }
 
 impl<'s> Excerpt<'s> {
-    /// Makes the excerpt, with lines of at most `columns` bytes.
+    /// Makes the excerpt of a source, with lines of at most about `columns` bytes.
     fn new<'l>(
         source: &'s Source,
         labels: impl Iterator<Item = &'l Label>,
@@ -344,11 +348,11 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // miette draws the hook at the label's middle.
+            // miette draws the hook of a label at the label's middle.
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
-            // miette shows line and column of the primary label.
+            // miette shows the line and column of the primary label in its header.
             excerpt.labels.push(match index {
                 0 => LabeledSpan::new_primary_with_span(Some(message), inner),
                 _ => LabeledSpan::new_with_span(Some(message), inner),
@@ -362,8 +366,8 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette joins the frames of labels whose lines follow one another, and numbers them on
-        // from the first.
+        // miette joins the frames of labels on consecutive lines and numbers the lines onwards from
+        // the first, so lines that are not consecutive are separated by an empty one.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -376,7 +380,7 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // An escaped control character is longer than its own bytes.
+                // A control character is escaped, which is longer than its own bytes.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));
@@ -384,7 +388,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line needs a character to stand under.
+        // A label at the end of the line needs a character to be drawn under.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,
@@ -395,13 +399,14 @@ impl<'s> Excerpt<'s> {
         self.text.push('\n');
     }
 
-    /// Returns the place of a source's offset in the excerpt.
+    /// Converts an offset in the source to an offset in the excerpt.
     fn offset_of(&self, offset: usize) -> usize {
         let number = self.source.line(offset);
         let line = self.lines.iter().find(|line| line.number == number);
         let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
         let found = shown.find(|(at, _)| *at <= offset);
-        // A byte order mark is not shown.
+        // A byte order mark is not shown, so an offset before all shown characters is the line's
+        // start.
         let start = line.map_or(0, |line| line.start);
         found.map_or(start, |(_, place)| *place)
     }
@@ -427,7 +432,8 @@ impl SourceCode for Excerpt<'_> {
         ) else {
             return Err(MietteError::OutOfBounds);
         };
-        // Lines that do not follow one another stay in frames of their own.
+        // Lines that are not consecutive are refused, so that miette draws them in frames of their
+        // own.
         if last.number - first.number != last_index - first_index {
             return Err(MietteError::OutOfBounds);
         }
@@ -447,7 +453,8 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label that is drawn.
+/// Returns the part of a label that is drawn: its first line if it has too many lines, and at most
+/// half of the columns if its line is long.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = clamp(span, source);
     let first = source.line(span.start);
@@ -462,8 +469,9 @@ fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     span
 }
 
-/// Returns the parts of a line that are shown: all of a short line; of a long one, or one without
-/// room for a label's message, a quarter of the columns to the left and right of each label.
+/// Returns the parts of a line that are shown. A line that fits is shown whole. A line that is too
+/// long, or leaves no room for a label's message, is shown for a quarter of the columns to the left
+/// and right of each label.
 fn shown_pieces(
     source: &Source,
     line: Range<usize>,
@@ -486,7 +494,8 @@ fn shown_pieces(
         let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
         let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            // An ellipsis in place of one or two letters would help nobody.
+            // Parts with up to three bytes between them are joined, since an ellipsis would not be
+            // shorter.
             Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }
