@@ -10,6 +10,7 @@ mod check;
 mod diff;
 mod exact_pictures;
 mod explain;
+mod figure;
 mod fmt;
 mod grade;
 mod help;
@@ -78,6 +79,7 @@ pub fn run() -> ExitCode {
         Command::Grade(args) => grade::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Sheet(args) => sheet::run(&args, &interrupt),
+        Command::Figure(args) => figure::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]

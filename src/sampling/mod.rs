@@ -35,6 +35,7 @@ pub(crate) mod rng;
 mod scatter;
 mod shuffle;
 mod sobol;
+mod tilings;
 
 use std::ops::Range;
 
@@ -44,7 +45,11 @@ use self::{
     bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
     multi_jittered::MultiJittered, rng::Key, sobol::Sobol,
 };
-pub use self::{points::Points, rng::CounterRng};
+pub use self::{
+    points::Points,
+    rng::CounterRng,
+    tilings::{Tiling, tilings},
+};
 use crate::{
     area::Area,
     math::{HAS_WIDER, SimdWidth},

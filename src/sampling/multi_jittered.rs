@@ -50,6 +50,11 @@ impl MultiJittered {
         }
     }
 
+    /// Returns the numbers of its columns and rows.
+    pub fn grid(&self) -> [u64; 2] {
+        [self.columns, self.rows]
+    }
+
     /// Places the points with these indices, row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {

@@ -2,6 +2,7 @@
 
 mod errors;
 mod strata;
+mod tilings;
 mod totals;
 
 use std::ops::Range;
