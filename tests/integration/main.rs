@@ -1,4 +1,4 @@
-//! One test binary, a module per subject.
+//! Integration tests: a single test binary with one module per subject.
 #![allow(
     clippy::disallowed_methods,
     reason = "tests make the files that the program is tried with"
