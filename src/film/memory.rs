@@ -40,7 +40,7 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Fails as [`check`] does, or if the system does not allocate the needed bytes. The allocation
+/// Fails as `check` does, or if the system does not allocate the needed bytes. The allocation
 /// that tests this is freed at once.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;

@@ -166,8 +166,8 @@ impl Search<'_> {
         }
     }
 
-    /// Returns whether another candidate explains the picture with fewer parameters, or with as many
-    /// at no more cost.
+    /// Returns whether another candidate explains the picture with fewer parameters, or with as
+    /// many at no more cost.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
