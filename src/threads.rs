@@ -15,8 +15,8 @@ pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Maximum number of threads, even if more are requested: no machine has more processors for one
-/// picture.
+/// Greatest number of threads that can be requested; a greater request is reduced to it. Few
+/// machines have more processors.
 const MAX_THREADS: usize = 1024;
 
 /// Limit on the number of threads of the process; 0 if there is none. This limit and the number of

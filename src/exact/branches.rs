@@ -22,8 +22,8 @@ const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 /// less than eight roundings.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Distance from the pixel from which on a branch is certainly outside, relative to the size of its
-/// values. It is millions of times their rounding errors.
+/// Margin by which a branch must lie above or below the pixel to be left out, as a fraction of its
+/// largest |y| (or of 1 if that is greater). Rounding errors of y are millions of times smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).

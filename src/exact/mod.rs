@@ -98,8 +98,9 @@ const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 const PIECE_WORK: f64 = 100.0;
 /// Work per object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
-/// Work per pair of curves in a piece with a conic, in units of about 50 ns. Measured: a heap of
-/// 10⁴ spheres takes twice as long as the work of its regions alone suggests.
+/// Work per ordered pair of curves in a piece that a conic passes through, in units of about 50 ns.
+/// It is charged in addition to the work of the regions of the piece, which accounts for only half
+/// of the time that was measured for a heap of 10⁴ spheres.
 const SLABS_WORK: f64 = 60.0;
 /// Work of a pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;

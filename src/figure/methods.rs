@@ -21,11 +21,12 @@ const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
 /// Refuses numbers of samples that nobody can tell apart.
 pub fn most(count: u64) -> Result<(), String> {
-    match count <= MOST {
-        true => Ok(()),
-        false => Err(format!(
+    if count <= MOST {
+        Ok(())
+    } else {
+        Err(format!(
             "a figure shows at most {MOST} samples in a pixel, and there are {count}: try `--set sampler.per_pixel=16`"
-        )),
+        ))
     }
 }
 

@@ -213,9 +213,10 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
             }
             while to - from > 1 {
                 let middle = from.midpoint(to);
-                match slot(middle, y) == first {
-                    true => from = middle,
-                    false => to = middle,
+                if slot(middle, y) == first {
+                    from = middle;
+                } else {
+                    to = middle;
                 }
             }
             let score = evenness(world, [to, y]);

@@ -46,7 +46,8 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     };
     let (level_camera, level) = rolled(Angle::default());
     let roll = scene.camera.roll;
-    // Where a point of the picture after a roll lies in that before it.
+    // Returns where a point of the rolled camera's picture lies in the picture of the camera
+    // without roll: both show the same ray.
     let seen = |roll: Angle, point: DVec2| {
         let (_, view) = rolled(roll);
         level.projected(view.at_depth(point, 1.0))

@@ -164,7 +164,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if the file cannot be
 /// read.
 pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum length in bytes. A table of the system has a few thousand bytes for each processor.
+    /// Maximum length in bytes. The longest file that is read, `/proc/cpuinfo`, has at most a few
+    /// thousand bytes for each processor.
     const LIMIT: u64 = 16 << 20;
     String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
 }

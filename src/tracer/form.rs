@@ -15,9 +15,10 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// Error bound of a computed value.
     rad: T::Radius,
-    /// Error bounds in units of |X|, |Y| and |Z|; only in the last precision. No precision follows
-    /// it, so the error is bounded for each ray separately: in the middle of the widest views,
-    /// values are far smaller than elsewhere.
+    /// For big numbers only: error bounds in units of |X|, |Y| and |Z| of a ray. The bound `rad`
+    /// holds in the whole window, so in the middle of a very wide view it is far greater than a
+    /// ray's own error. Other precisions can afford that, since a doubt is passed to the next one;
+    /// big numbers are the last.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 

@@ -50,7 +50,6 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("cut_off", Criterion::Colours),
     ("not_decoded", Criterion::Colours),
     ("decoded_twice", Criterion::Colours),
-    ("six_levels", Criterion::Colours),
     ("inverted", Criterion::Colours),
     ("not_divided", Criterion::Colours),
     ("black", Criterion::Colours),

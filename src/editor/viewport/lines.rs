@@ -52,8 +52,8 @@ impl Projection {
         lines
     }
 
-    /// Clips a segment to the picture grown by a number of its sizes on each side. Returns
-    /// `None` if nothing of it is left.
+    /// Clips a segment to the picture, enlarged on each side by `grown` times its width or height.
+    /// Returns `None` if nothing of the segment is left.
     pub(super) fn clip(&self, segment: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }

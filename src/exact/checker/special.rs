@@ -222,7 +222,8 @@ fn third(y: f64) -> Complex {
     }
 }
 
-/// Returns F_s+1(y) = (1 + iy·F_s)/s, where `integral` is F_s(y) and `order` is s.
+/// Returns F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral` is F_s(y) and `order` is
+/// s.
 fn next(y: f64, integral: Complex, order: f64) -> Complex {
     [(1.0 - y * integral[1]) / order, y * integral[0] / order]
 }

@@ -348,7 +348,8 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if self.is_name(0) && self.words.takes(kind.text, self.word(0)).is_some() {
             self.body(&mut block, close);
-            // If nothing closes the block, or the block contains braces, its end is unknown.
+            // A fix is offered only if the end of the block is certain: something closes it, and no
+            // `{` in it may own that brace.
             let is_flat = !self.written(block.span).contains('{');
             fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));

@@ -212,8 +212,9 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // The sign of the line's form is that of x/square − k. It is ≥ 0 in the square
-                // after the line, which has the other parity.
+                // The form of line k has the sign of x/square − k (for the second family, z/square
+                // − k). If it is positive in the whole pixel, the pixel lies beyond the line, where
+                // the parity is the other one.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}

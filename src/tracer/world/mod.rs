@@ -192,9 +192,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // An object that the last precision cannot decide counts as hit, unless its bounds
-            // exclude it. Such objects outside of their bounds are left out here, so that the
-            // answer does not depend on which objects were tested.
+            // Only the last precision gave an answer. In it, an object counts as hit if the ray
+            // cannot be told from one that hits it, even if the ray lies outside of the object's
+            // bounds in the quadtree. Some callers pass only objects whose bounds contain the ray,
+            // others pass all. The others are therefore left out here, so that all callers get the
+            // same answer.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {

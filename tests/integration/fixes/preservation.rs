@@ -78,7 +78,7 @@ fn texts_that_once_lost_content_to_a_fix_keep_it() {
         "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
         "sphere { center 0 1 0 // R\n radius 2 }",
         "sphere { center 0 1 0\n-- R\n radius 2 }",
-        // A word that is torn apart is not two values.
+        // A fix must not split a word with a number attached, such as `min1.6`, into two values.
         "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
         "sphere { center (a.5, 2) }",
         "let ball = { center1.6, 1, 0 }",

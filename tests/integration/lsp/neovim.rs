@@ -132,8 +132,10 @@ fn neovim_completes_while_typing() {
     assert!(behind.contains("no field `radus`"), "{behind}");
 }
 
-/// Types the keys of `rows` in Neovim, whose configuration contains `snippet` if there is one.
-/// Returns the resulting lines and the other findings of the script.
+/// Runs `tests/lsp/neovim_types.lua`, which types the keys of each row into its text in a Neovim
+/// with `snippet`, if given, as its configuration. Returns the JSON that the script writes: the
+/// resulting `lines`, and with a snippet also `hints` (whether inlay hints are on) and
+/// `behind_lines` (the text shown behind lines).
 fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
     let rows = rows.iter().map(|[text, keys, _]| {
         let keys: Vec<&str> = keys.split(' ').collect();

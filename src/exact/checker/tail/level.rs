@@ -145,7 +145,8 @@ mod tests {
         sum
     }
 
-    /// Returns the phases of the first term and of the one after the last, if the first phase is 0.
+    /// Returns the last argument of [`geometric`] and [`partial`] for φ = 0: the numbers 1 and
+    /// e^(iθN), where N is the number of `lines`.
     fn places(theta: f64, lines: f64) -> [Complex; 2] {
         [cis(0.0), cis(theta * lines)]
     }

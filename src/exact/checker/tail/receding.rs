@@ -12,7 +12,8 @@ use super::{
 };
 use crate::math::Double;
 
-/// Running time of a mode divided by that of a crossing. Measured: 12 ns and 3 ns.
+/// Time to add one Fourier mode, divided by the time to add one crossing directly. Measured: 12 ns
+/// and 3 ns.
 const MODE_COST: f64 = 4.0;
 /// Number n of the last mode that is always computed; later modes are skipped if they are small.
 /// Measured: with 7, a horizon takes up to a fifth longer; with 123, it is not faster.
