@@ -4,6 +4,8 @@
 //! the diagnostics in the order of the text, as a report for a terminal or as lines of JSON. The
 //! caller decides where to print them, and in which style.
 
+#[cfg(feature = "cli")]
+mod excerpt;
 mod fix;
 mod problems;
 #[cfg(feature = "cli")]

@@ -75,7 +75,7 @@ fn lengths(random: &mut CaseRng) -> Camera {
 /// Through the widest lenses, the rays of whole rows of the picture differ from the board's
 /// direction only by about d. By the language, a ray is parallel to the board (a tie) if that
 /// difference is below about 2^−90. Pinhole treats it as parallel only below 2^−310, and the oracle
-/// only below 2^−500. Lenses between these limits are not tested.
+/// only below 2^−1071, 5/14 of its bits. Lenses between these limits are not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);

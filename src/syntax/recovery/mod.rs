@@ -13,6 +13,7 @@
 //! - If one value has different mistakes, none of their fixes is certain (`clear_uncertain_fixes`).
 
 mod adjacent;
+mod definitions;
 mod fields;
 mod foreign;
 mod head;
