@@ -1,5 +1,5 @@
-//! The modules of the library import each other one way, in the order of `src/lib.rs`, and each file
-//! can be read in one sitting.
+//! The modules of the library import each other one way, in the order of `src/lib.rs`, and each
+//! file can be read in one sitting.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
